@@ -1,0 +1,43 @@
+# A room is a library whose modules can be used only by those that link it: the module files of each
+# room lie in a folder of their own, so a `use` that USES does not allow fails to compile.
+#
+#   add_room(coarse USES mesh)          every .f90 file of the calling folder
+#   add_room_test(test_x USES coarse)   test_x.f90 of the room's tests/ folder, run by CTest
+function(add_room name)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.f90)
+  set(mod_dir ${CMAKE_CURRENT_BINARY_DIR}/mod)
+  add_library(${name} STATIC ${sources})
+  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${mod_dir})
+  target_include_directories(${name} PUBLIC ${mod_dir})
+  target_link_libraries(${name} PUBLIC ${ARG_USES})
+  room_compile_options(${name})
+endfunction()
+
+function(add_room_test name)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  add_executable(${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.f90)
+  set_target_properties(
+    ${name} PROPERTIES Fortran_MODULE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/mod_tests/${name}
+  )
+  target_link_libraries(${name} PRIVATE ${ARG_USES})
+  room_compile_options(${name})
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()
+
+function(room_compile_options name)
+  target_compile_options(
+    ${name}
+    PRIVATE
+      $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
+      -Wall
+      -Wextra
+      -Wimplicit-interface
+      -fimplicit-none
+      $<$<CONFIG:Release>:-O3
+      -march=native>
+      $<$<CONFIG:Debug>:-fcheck=all
+      -fbacktrace
+      -finit-real=snan>>
+  )
+endfunction()
