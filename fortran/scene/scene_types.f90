@@ -1,0 +1,134 @@
+!> What a scene is: the problem as the user states it, in SI units, after reading and checking.
+module scene_types
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: boundary_side_t, discretization_t, domain_t, fluid_t, fracture_t, growth_t, initial_t
+   public :: injection_t, material_t, output_t, probe_t, scene_t, time_t
+   public :: name_length
+
+   integer, parameter :: name_length = 64
+
+   !> Rectangular body.
+   type :: domain_t
+      real(rk) :: x_min = 0.0_rk, x_max = 0.0_rk  !< [m]
+      real(rk) :: y_min = 0.0_rk, y_max = 0.0_rk  !< [m]
+   end type domain_t
+
+   !> Rock.
+   type :: material_t
+      real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
+      real(rk) :: poisson = 0.0_rk  !< Poisson's ratio [-]
+      real(rk) :: biot = 0.0_rk  !< Biot's coefficient [-]
+      real(rk) :: porosity = 0.0_rk  !< [-]
+      real(rk) :: permeability_xx = 0.0_rk  !< [m2]
+      real(rk) :: permeability_yy = 0.0_rk  !< [m2]
+      real(rk) :: permeability_xy = 0.0_rk  !< [m2]
+      real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
+      logical :: plane_stress = .false.
+      character(len=name_length) :: storage = "thesis"  !< "thesis": (alpha-phi)/K_dr; "textbook": times (1-alpha)
+   end type material_t
+
+   !> Pore and fracture fluid.
+   type :: fluid_t
+      real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
+      real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
+   end type fluid_t
+
+   !> One fracture and its law.
+   type :: fracture_t
+      character(len=name_length) :: name = ""
+      real(rk), allocatable :: x(:), y(:)  !< vertices [m]
+      real(rk) :: friction = 0.0_rk  !< mu_s [-]
+      real(rk) :: dilation = 0.0_rk  !< psi [rad]
+      real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
+   end type fracture_t
+
+   !> One side of the body. A component of displacement or of total traction is prescribed, not both.
+   type :: boundary_side_t
+      logical :: displacement_given(2) = .false.  !< x, y: else traction is given
+      real(rk) :: displacement(2) = 0.0_rk  !< [m]
+      real(rk) :: traction(2) = 0.0_rk  !< total traction [Pa]
+      logical :: pressure_given = .false.  !< else no flow
+      real(rk) :: pressure = 0.0_rk  !< [Pa]
+   end type boundary_side_t
+
+   !> A well: fluid injected into a fracture.
+   type :: injection_t
+      integer(ik) :: fracture = 0  !< index into scene%fractures
+      logical :: at_point = .false.  !< into the fracture cell nearest to (x, y), else spread over the fracture as it is at the start
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
+      real(rk) :: rate = 0.0_rk  !< Q [m2/s] per metre of thickness, over the whole well
+      real(rk) :: start = 0.0_rk, end = huge(1.0_rk)  !< [s]
+   end type injection_t
+
+   !> State before the first step.
+   type :: initial_t
+      character(len=name_length) :: fracture_pressure = "equilibrated"  !< "equilibrated" or "undrained"
+      real(rk) :: pressure = 0.0_rk  !< pore pressure before the load acts [Pa]
+   end type initial_t
+
+   !> Time steps.
+   type :: time_t
+      real(rk) :: end = 0.0_rk  !< [s]
+      real(rk) :: step = 0.0_rk  !< regular step [s]
+      real(rk) :: growth_factor = 0.01_rk  !< steps after growth are this much shorter [-]
+      real(rk) :: smallest_factor = 1.0e-6_rk  !< a step cut below this share of the regular one ends the run [-]
+   end type time_t
+
+   !> Meshes and solvers of both levels.
+   type :: discretization_t
+      real(rk) :: size_fracture = 0.0_rk  !< dH: coarse cells at the fractures [m]
+      real(rk) :: size_boundary = 0.0_rk  !< coarse cells far from them [m]
+      real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window [m]
+      real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
+      integer(ik) :: rosette_sectors = 12  !< elements around a tip
+      character(len=name_length) :: face_condition = "contact"  !< "contact", "jump" or "traction" on old faces
+      integer(ik) :: newton_max = 30  !< iterations before a step is cut
+      real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
+   end type discretization_t
+
+   !> Fracture growth.
+   type :: growth_t
+      logical :: enabled = .false.
+      logical :: intensities = .false.  !< compute stress intensity factors (always with growth)
+      real(rk) :: increment = 0.0_rk  !< l_max [m]; 0: the fine mesh size
+      real(rk) :: exponent = 0.35_rk  !< of the Paris-type law [-]
+      real(rk) :: threshold = 0.5_rk  !< eps_p: growth is handed over at eps_p*dH [-]
+      real(rk) :: new_aperture = 1.0e-5_rk  !< residual aperture of new fracture cells [m]
+      character(len=name_length) :: new_volume = "conserved"  !< "conserved" or "prefilled"
+      real(rk) :: stop_gain = huge(1.0_rk)  !< the run ends when any fracture end has grown by this [m]
+   end type growth_t
+
+   !> A point where the matrix state is recorded.
+   type :: probe_t
+      character(len=name_length) :: name = ""
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
+   end type probe_t
+
+   !> What is written, and how often.
+   type :: output_t
+      logical :: vtu = .true.
+      real(rk) :: interval = 0.0_rk  !< between written fields [s]; 0: every regular step
+   end type output_t
+
+   !> The whole problem.
+   type :: scene_t
+      character(len=name_length) :: name = ""
+      character(len=256) :: title = ""
+      type(domain_t) :: domain
+      type(material_t) :: material
+      type(fluid_t) :: fluid
+      type(fracture_t), allocatable :: fractures(:)
+      type(boundary_side_t) :: sides(4)  !< left, right, bottom, top
+      type(injection_t), allocatable :: injections(:)
+      type(initial_t) :: initial
+      type(time_t) :: time
+      type(discretization_t) :: discretization
+      type(growth_t) :: growth
+      type(probe_t), allocatable :: probes(:)
+      type(output_t) :: output
+   end type scene_t
+
+end module scene_types
