@@ -1,0 +1,248 @@
+!> Sparse symmetric systems by MUMPS: analysed once per pattern, factorized once per set of values,
+!! solved many times; on request condensed onto a few unknowns (Schur complement).
+!!
+!! Settings follow measurements on systems of this kind: approximate minimum degree (ordering costs more
+!! than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS reports an exactly singular
+!! matrix only with null-pivot detection, which is therefore on.
+module base_mumps
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: mumps_t
+   public :: mumps_definite, mumps_indefinite
+
+   include 'dmumps_struc.h'
+
+   integer(ik), parameter :: mumps_definite = 1  !< symmetric positive definite (SYM=1)
+   integer(ik), parameter :: mumps_indefinite = 2  !< general symmetric (SYM=2)
+
+   interface
+      subroutine dmumps(id)
+         import :: dmumps_struc
+         implicit none(type, external)
+         type(dmumps_struc), intent(inout) :: id
+      end subroutine dmumps
+   end interface
+
+   !> One matrix with its factors. Not to be copied: the factors belong to the original.
+   type :: mumps_t
+      private
+      type(dmumps_struc) :: id
+      logical :: active = .false.
+      integer(ik) :: n_schur = 0
+   contains
+      procedure :: analyse
+      procedure :: factorize
+      procedure :: solve
+      procedure :: get_schur
+      procedure :: condense
+      procedure :: expand
+      procedure :: entries_in_factors
+      procedure :: release
+      final :: finalize
+   end type mumps_t
+
+contains
+
+   !> Order the unknowns and find the pattern of the factors.
+   !!
+   !! One triangle of the matrix as triplets; entries given twice are added.
+   subroutine analyse(self, n, row, col, kind, error, schur)
+      class(mumps_t), intent(inout) :: self
+      integer(ik), intent(in) :: n  !< number of unknowns
+      integer(ik), intent(in) :: row(:), col(:)  !< (n_entries) from 1
+      integer(ik), intent(in) :: kind  !< mumps_definite or mumps_indefinite
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
+
+      call self%release()
+      self%id%comm = 0
+      self%id%par = 1
+      self%id%sym = kind
+      self%id%job = -1
+      call dmumps(self%id)
+      self%active = .true.
+      self%id%icntl(1:3) = -1  ! no printing
+      self%id%icntl(4) = 0
+      self%id%icntl(7) = 0  ! approximate minimum degree
+      self%id%icntl(14) = 40
+      self%id%icntl(24) = 1
+      self%id%n = n
+      self%id%nnz = size(row)
+      allocate (self%id%irn(size(row)), self%id%jcn(size(col)), self%id%a(size(row)))
+      self%id%irn = row
+      self%id%jcn = col
+      self%n_schur = 0
+      if (present(schur)) then
+         self%n_schur = size(schur)
+         if (self%n_schur > 0) then
+            self%id%icntl(19) = 1
+            self%id%icntl(24) = 0  ! not available together with a Schur complement
+            self%id%size_schur = self%n_schur
+            allocate (self%id%listvar_schur(self%n_schur))
+            self%id%listvar_schur = schur
+            allocate (self%id%schur(self%n_schur**2))
+            allocate (self%id%redrhs(self%n_schur))
+         end if
+      end if
+      self%id%job = 1
+      call dmumps(self%id)
+      call check_status(self, "analysis", error)
+   end subroutine analyse
+
+   !> Factorize for new values, in the order of the triplets.
+   subroutine factorize(self, values, error)
+      class(mumps_t), intent(inout) :: self
+      real(rk), intent(in) :: values(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer :: attempt
+
+      if (.not. self%active .or. size(values) /= size(self%id%a)) then
+         call raise_error(error, "mumps_t%factorize", "the matrix has not been analysed for these entries")
+         return
+      end if
+      if (.not. sum(abs(values)) <= huge(1.0_rk)) then
+         call raise_error(error, "mumps_t%factorize", "the matrix has an entry that is not a finite number")
+         return
+      end if
+      do attempt = 1, 3
+         self%id%a = values
+         self%id%job = 2
+         call dmumps(self%id)
+         if (self%id%infog(1) /= -9) exit
+         self%id%icntl(14) = 2*self%id%icntl(14)  ! more delayed pivots than foreseen
+      end do
+      call check_status(self, "factorization", error)
+      if (allocated(error)) return
+      if (self%id%infog(28) > 0) call raise_error(error, "mumps_t%factorize", "the matrix is singular")
+   end subroutine factorize
+
+   !> Solve for one or more right-hand sides, which are overwritten by the solutions.
+   subroutine solve(self, x, error)
+      class(mumps_t), intent(inout) :: self
+      real(rk), intent(inout), contiguous :: x(:, :)  !< (n, n_rhs)
+      type(error_t), allocatable, intent(out) :: error
+
+      self%id%nrhs = size(x, 2)
+      self%id%lrhs = size(x, 1)
+      call provide_rhs(self, size(x))
+      self%id%rhs = reshape(x, [size(x)])
+      self%id%icntl(26) = 0
+      self%id%job = 3
+      call dmumps(self%id)
+      call check_status(self, "solution", error)
+      if (.not. allocated(error)) x = reshape(self%id%rhs, shape(x))
+   end subroutine solve
+
+   !> The Schur complement, full and symmetric.
+   subroutine get_schur(self, schur)
+      class(mumps_t), intent(in) :: self
+      real(rk), intent(out) :: schur(:, :)  !< (n_schur, n_schur)
+      integer(ik) :: i, j
+
+      ! MUMPS gives the lower triangle by rows, that is, the upper one by columns.
+      do j = 1, self%n_schur
+         do i = 1, j
+            schur(i, j) = self%id%schur((j - 1)*self%n_schur + i)
+            schur(j, i) = schur(i, j)
+         end do
+      end do
+   end subroutine get_schur
+
+   !> Forward elimination: the right-hand side of the condensed system.
+   subroutine condense(self, rhs, reduced, error)
+      class(mumps_t), intent(inout) :: self
+      real(rk), intent(in) :: rhs(:)  !< (n) entries of the condensed unknowns included
+      real(rk), intent(out) :: reduced(:)  !< (n_schur)
+      type(error_t), allocatable, intent(out) :: error
+
+      self%id%nrhs = 1
+      self%id%lrhs = size(rhs)
+      self%id%lredrhs = self%n_schur
+      call provide_rhs(self, size(rhs))
+      self%id%rhs = rhs
+      self%id%icntl(26) = 1
+      self%id%job = 3
+      call dmumps(self%id)
+      call check_status(self, "condensation", error)
+      reduced = self%id%redrhs
+   end subroutine condense
+
+   !> Back substitution after `condense`: all unknowns from the condensed ones.
+   subroutine expand(self, condensed, x, error)
+      class(mumps_t), intent(inout) :: self
+      real(rk), intent(in) :: condensed(:)  !< (n_schur)
+      real(rk), intent(out) :: x(:)  !< (n)
+      type(error_t), allocatable, intent(out) :: error
+
+      self%id%redrhs = condensed
+      self%id%icntl(26) = 2
+      self%id%job = 3
+      call dmumps(self%id)
+      call check_status(self, "expansion", error)
+      x = self%id%rhs(:size(x))
+   end subroutine expand
+
+   !> Number of entries in the factors, a measure of memory and work.
+   pure function entries_in_factors(self) result(n)
+      class(mumps_t), intent(in) :: self
+      integer(ik) :: n
+
+      n = self%id%infog(9)
+   end function entries_in_factors
+
+   !> Give all memory back.
+   subroutine release(self)
+      class(mumps_t), intent(inout) :: self
+
+      if (.not. self%active) return
+      self%id%job = -2
+      if (associated(self%id%irn)) deallocate (self%id%irn, self%id%jcn, self%id%a)
+      if (associated(self%id%rhs)) deallocate (self%id%rhs)
+      if (associated(self%id%listvar_schur)) then
+         deallocate (self%id%listvar_schur, self%id%schur, self%id%redrhs)
+      end if
+      call dmumps(self%id)
+      self%active = .false.
+      self%n_schur = 0
+   end subroutine release
+
+   subroutine finalize(self)
+      type(mumps_t), intent(inout) :: self
+
+      call self%release()
+   end subroutine finalize
+
+   subroutine provide_rhs(self, n)
+      class(mumps_t), intent(inout) :: self
+      integer(ik), intent(in) :: n
+
+      if (associated(self%id%rhs)) then
+         if (size(self%id%rhs) == n) return
+         deallocate (self%id%rhs)
+      end if
+      allocate (self%id%rhs(n))
+   end subroutine provide_rhs
+
+   subroutine check_status(self, phase, error)
+      class(mumps_t), intent(in) :: self
+      character(len=*), intent(in) :: phase
+      type(error_t), allocatable, intent(out) :: error
+      character(len=120) :: text
+
+      if (self%id%infog(1) >= 0) return
+      select case (self%id%infog(1))
+      case (-10)
+         call raise_error(error, "mumps_t", "the matrix is singular (found in the "//phase//")")
+      case (-13, -9)
+         call raise_error(error, "mumps_t", "not enough memory for the "//phase//" of the matrix")
+      case default
+         write (text, '(a,i0,a,i0,a)') " failed (INFOG(1)=", self%id%infog(1), ", INFOG(2)=", &
+            self%id%infog(2), ")"
+         call raise_error(error, "mumps_t", phase//trim(text))
+      end select
+   end subroutine check_status
+
+end module base_mumps
