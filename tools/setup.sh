@@ -1,0 +1,237 @@
+# Set-up: the system packages and the Python environment. Sourced by the launcher.
+# The checks use nothing but the shell's own tests, so that a call with everything in place costs
+# a few milliseconds; only when something is missing do programs start.
+
+readonly venv=$root/.venv
+readonly venv_python=$venv/bin/python
+readonly venv_record=$venv/wingcrack-setup
+readonly setup_log=$root/build/setup.log
+
+# prepare [TARGET]: see to the environment and, if a build target is named, to the release build.
+prepare() {
+    local target=${1:-}
+    find_missing_packages
+    if ((${#missing_packages[@]} == 0)) && python_is_ready; then
+        if [[ -z $target ]] || build_is_current release "$target"; then return; fi
+    fi
+    with_lock set_up
+    if [[ -n $target ]]; then with_lock build release "$target"; fi
+}
+
+# with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.
+with_lock() {
+    local lock
+    { mkdir -p "$root/build" && exec {lock}>"$root/build/setup.lock"; } ||
+        fail "$exit_environment" "the set-up needs to write to $root/build"
+    if ! flock --nonblock "$lock"; then
+        say 'waiting for another call to finish the set-up'
+        flock "$lock"
+    fi
+    "$@"
+    exec {lock}>&-
+}
+
+set_up() {
+    find_missing_packages
+    python_is_ready || adopt_python || find_system_python
+    if ((${#missing_packages[@]} == 0)) && python_is_ready; then return; fi
+    if [[ ${WINGCRACK_NO_INSTALL:-0} != 0 ]]; then refuse_to_install; fi
+    if ((${#missing_packages[@]} > 0)); then install_packages; fi
+    if ! python_is_ready; then install_python; fi
+}
+
+# System packages --------------------------------------------------------------------------------
+
+# Fill missing_packages with the lines of system_packages.txt whose probe fails, as "package|why".
+find_missing_packages() {
+    local package how why
+    missing_packages=()
+    while IFS='|' read -r package how why; do
+        if [[ -z $package || $package == '#'* ]]; then continue; fi
+        # Unquoted on purpose: the words of `how` are the probe and what it looks for.
+        # shellcheck disable=SC2086
+        set -f && set -- $how && set +f
+        if ! "has_$1" "$2"; then missing_packages+=("${package%% *}|${why# }"); fi
+    done <"$root/tools/system_packages.txt"
+}
+
+has_command() { command -v "$1" >/dev/null; }
+
+has_library() {
+    local directory
+    for directory in "/usr/lib/$HOSTTYPE-linux-gnu" /usr/lib64 /usr/lib /usr/local/lib; do
+        file_exists "$directory" "$1" && return
+    done
+    return 1
+}
+
+has_header() { file_exists /usr/include "$1" || file_exists /usr/local/include "$1"; }
+
+# file_exists DIRECTORY PATTERN: a plain name is one look, a wildcard one reading of the directory.
+file_exists() {
+    if [[ $2 == *'*'* ]]; then
+        compgen -G "$1/$2" >/dev/null
+    else
+        [[ -e $1/$2 ]]
+    fi
+}
+
+install_packages() {
+    local entry
+    say 'these system packages are missing:'
+    for entry in "${missing_packages[@]}"; do
+        printf '  %-22s %s\n' "${entry%%|*}" "${entry#*|}" >&2
+    done
+    has_command apt-get || fail "$exit_environment" 'there is no apt here: install them by hand'
+    local as_root=()
+    if ((EUID != 0)); then
+        has_command sudo || fail "$exit_environment" 'installing them takes root or sudo'
+        as_root=(sudo)
+    fi
+    say "installing them with apt (log: $setup_log)"
+    local apt=("${as_root[@]+"${as_root[@]}"}" env DEBIAN_FRONTEND=noninteractive
+        apt-get -y -o DPkg::Lock::Timeout=300)
+    if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; then update_lists; fi
+    # Lists can be there and old: then the servers no longer have what they name.
+    if ! { name_packages && install_named; }; then
+        update_lists
+        { name_packages && install_named; } || fail_with_log 'apt could not install the packages'
+    fi
+    find_missing_packages
+    if ((${#missing_packages[@]} > 0)); then
+        fail "$exit_environment" "apt is done, and these are still missing: ${missing_packages[*]%%|*}"
+    fi
+}
+
+update_lists() { logged "${apt[@]}" update || fail_with_log 'apt-get update failed'; }
+
+install_named() { logged "${apt[@]}" install --no-install-recommends "${names[@]}"; }
+
+# Fill names: package names with a wildcard become the newest name that apt knows.
+name_packages() {
+    local entry package found
+    names=()
+    for entry in "${missing_packages[@]}"; do
+        package=${entry%%|*}
+        if [[ $package == *'*' ]]; then
+            found=$(apt-cache pkgnames "${package%'*'}" | sort --version-sort | tail -n 1)
+            if [[ -z $found ]]; then
+                printf 'apt offers no package %s\n' "$package" >>"$setup_log"
+                return 1
+            fi
+            package=$found
+        fi
+        names+=("$package")
+    done
+}
+
+# Python environment -----------------------------------------------------------------------------
+
+# The record of a complete environment: where the tree lay, the interpreter behind it, what was
+# asked for. A tree that was moved, a system Python that was replaced or a changed list differ.
+python_is_ready() {
+    local record='' interpreter='' requirements=''
+    if [[ ! -x $venv_python || ! -r $venv_record ]]; then return 1; fi
+    IFS= read -r -d '' record <"$venv_record"
+    interpreter=${record#*$'\n'}
+    interpreter=${interpreter%%$'\n'*}
+    IFS= read -r -d '' requirements <"$root/requirements.txt"
+    [[ $venv_python -ef $interpreter && $record == "$root"$'\n'"$interpreter"$'\n'"$requirements" ]]
+}
+
+record_python() {
+    local interpreter
+    interpreter=$(readlink -f -- "$venv_python") &&
+        { printf '%s\n%s\n' "$root" "$interpreter" && cat "$root/requirements.txt"; } >"$venv_record"
+}
+
+# The requirements that .venv does not hold, one per line; all of them if it cannot say.
+missing_requirements() {
+    "$venv_python" -I - "$root/requirements.txt" 2>/dev/null <<'PYTHON' ||
+import importlib.metadata
+import sys
+
+for line in open(sys.argv[1], encoding="utf-8"):
+    name, _, version = line.strip().partition("==")
+    if not version:
+        continue
+    try:
+        found = importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        found = None
+    if found != version:
+        print(line.strip())
+PYTHON
+        grep '==' "$root/requirements.txt"
+}
+
+# A .venv that was made by hand, or moved with the tree, is good if it is complete.
+adopt_python() { [[ -x $venv_python && -z $(missing_requirements) ]] && record_python; }
+
+# Set system_python to an interpreter that is new enough, or leave it empty; add the packages that
+# making .venv with it takes.
+find_system_python() {
+    local candidate why='makes the Python environment (.venv)'
+    system_python=''
+    for candidate in python3 python3.14 python3.13 python3.12 python3.11; do
+        if is_new_enough "$candidate"; then
+            system_python=$candidate
+            if ! "$candidate" -c 'import ensurepip, venv' 2>/dev/null; then
+                missing_packages+=("$candidate-venv|$why")
+            fi
+            return
+        fi
+    done
+    if ! has_command python3; then
+        missing_packages+=("python3|$why" "python3-venv|$why")
+    fi
+}
+
+is_new_enough() { "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; }
+
+install_python() {
+    if [[ -z $system_python ]] && is_new_enough python3; then system_python=python3; fi
+    if [[ -z $system_python ]]; then fail "$exit_environment" "$(python_too_old)"; fi
+    say "installing the Python packages of requirements.txt into .venv (log: $setup_log)"
+    rm -f "$venv_record"
+    if ! "$venv_python" -I -c 'import pip' 2>/dev/null; then
+        logged "$system_python" -m venv --clear "$venv" ||
+            fail_with_log 'making the Python environment .venv failed'
+    fi
+    logged "$venv_python" -m pip install --no-input --disable-pip-version-check \
+        --requirement "$root/requirements.txt" ||
+        fail_with_log 'installing the Python packages failed'
+    record_python || fail "$exit_environment" "$venv cannot be written"
+}
+
+python_too_old() { printf 'Python 3.11 or newer is needed, and here is %s' "$(python3 --version)"; }
+
+# Messages ---------------------------------------------------------------------------------------
+
+refuse_to_install() {
+    local entry requirement
+    say 'missing, and WINGCRACK_NO_INSTALL forbids installing:'
+    for entry in "${missing_packages[@]+"${missing_packages[@]}"}"; do
+        printf '  system package %-22s %s\n' "${entry%%|*}" "${entry#*|}" >&2
+    done
+    if ! python_is_ready; then
+        if [[ -z $system_python ]] && has_command python3; then
+            printf '  %s\n' "$(python_too_old)" >&2
+        fi
+        while IFS= read -r requirement; do
+            printf '  Python package %s (.venv)\n' "$requirement" >&2
+        done < <(missing_requirements)
+    fi
+    fail "$exit_environment" 'the environment lacks what is named above'
+}
+
+# logged COMMAND...: keep its words in the log.
+logged() {
+    printf '\n$ %s\n' "$*" >>"$setup_log"
+    "$@" >>"$setup_log" 2>&1 <&0
+}
+
+fail_with_log() {
+    tail -n 25 "$setup_log" >&2
+    fail "$exit_environment" "$1; $setup_log has it all"
+}
