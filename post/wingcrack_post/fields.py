@@ -1,0 +1,132 @@
+"""Fields from the VTU files of a run, as plain arrays."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from wingcrack_post.errors import EnvironmentLacksError, RunError
+from wingcrack_post.table import FloatArray
+
+IntArray = npt.NDArray[np.int64]
+
+_LINE, _TRIANGLE = 3, 5  # VTK cell types
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """One written VTU file."""
+
+    time_s: float
+    path: Path
+
+
+@dataclass(frozen=True)
+class MatrixField:
+    """Rock at one time.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Nodes [m].
+    triangles : (m, 3) array
+        Nodes of each cell, from 0.
+    cell : dict of str to array
+        Cell data by name, first axis of length m.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    cell: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class FractureField:
+    """Fractures at one time.
+
+    Attributes
+    ----------
+    segments : (m, 2, 2) array
+        Both ends of each fracture cell [m].
+    state : (m,) array
+        0 stick, 1 slip, 2 open.
+    """
+
+    segments: FloatArray
+    state: IntArray
+
+
+def read_series(path: Path) -> tuple[Snapshot, ...]:
+    """List the files of a PVD collection by time; nothing where there is no such file."""
+    if not path.exists():
+        return ()
+    try:
+        entries = ElementTree.parse(path).iter("DataSet")
+        found = [
+            Snapshot(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"])
+            for entry in entries
+        ]
+    except (ElementTree.ParseError, KeyError, ValueError) as reason:
+        raise RunError(f"{path}: the file is no valid PVD collection ({reason}).") from None
+    return tuple(sorted(found, key=lambda snapshot: snapshot.time_s))
+
+
+def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
+    """Give the snapshot written closest to a time."""
+    return min(series, key=lambda snapshot: abs(snapshot.time_s - time_s))
+
+
+def read_matrix(path: Path) -> MatrixField:
+    """Read a file of the matrix series, which holds triangles only."""
+    mesh = _read_grid(path)
+    triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
+    cell = {name: np.asarray(mesh.cell_data[name], dtype=float) for name in mesh.cell_data.keys()}  # noqa: SIM118
+    return MatrixField(np.asarray(mesh.points, dtype=float)[:, :2], triangles, cell)
+
+
+def read_fractures(path: Path) -> FractureField:
+    """Read a file of the fracture series, which holds lines only."""
+    mesh = _read_grid(path)
+    points = np.asarray(mesh.points, dtype=float)[:, :2]
+    if mesh.n_cells == 0:
+        return FractureField(np.empty((0, 2, 2)), np.empty(0, dtype=np.int64))
+    lines = _cells(mesh, path, _LINE, 2, "lines")
+    if "state" not in mesh.cell_data:
+        raise RunError(f"{path}: the cell data 'state' is missing.")
+    return FractureField(points[lines], np.asarray(mesh.cell_data["state"]).astype(np.int64))
+
+
+def load_pyvista() -> Any:
+    """Import pyvista late: it takes longer than all the rest together."""
+    try:
+        import pyvista
+    except ImportError as reason:
+        raise EnvironmentLacksError(f"pyvista cannot be used here ({reason})") from None
+    return pyvista
+
+
+def _read_grid(path: Path) -> Any:
+    if not path.is_file():
+        raise RunError(f"{path}: the file is missing, though its PVD collection names it.")
+    pyvista = load_pyvista()
+    try:
+        mesh = pyvista.read(path)
+    except Exception as reason:  # VTK raises many kinds; all mean an unreadable file
+        raise RunError(f"{path}: the file cannot be read ({reason}).") from None
+    if mesh.n_points == 0 and path.stat().st_size > 0 and mesh.n_cells > 0:
+        raise RunError(f"{path}: the file has cells but no points.")
+    return mesh
+
+
+def _cells(mesh: Any, path: Path, kind: int, nodes: int, name: str) -> IntArray:
+    if mesh.n_cells == 0:
+        raise RunError(f"{path}: the file has no cells.")
+    if not np.all(np.asarray(mesh.celltypes) == kind):
+        raise RunError(f"{path}: cells other than {name} were found.")
+    return np.asarray(mesh.cell_connectivity, dtype=np.int64).reshape(-1, nodes)

@@ -1,0 +1,190 @@
+"""The run against time: stress intensities, length, well pressure, states, fluid balance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from wingcrack_post import style
+from wingcrack_post.errors import AbsentError
+from wingcrack_post.read import Run, needed
+from wingcrack_post.table import BoolArray, FloatArray, Table
+from wingcrack_post.times import growth_start
+from wingcrack_post.units import (
+    INTENSITY,
+    MEGAPASCAL,
+    METRE,
+    Unit,
+    area_unit,
+    displacement_unit,
+    time_unit,
+)
+
+_MODES = (
+    ("mode I", r"$K_\mathrm{I}$", "k1_pa_sqrtm", "k1_dc_pa_sqrtm"),
+    ("mode II", r"$K_\mathrm{II}$", "k2_pa_sqrtm", "k2_dc_pa_sqrtm"),
+    ("equivalent", r"$K_\mathrm{eq}$", "keq_pa_sqrtm", None),
+)
+_MOST_MARKERS = 25  # per line: more run into each other
+
+
+def clock_of(run: Run) -> Unit:
+    """Unit of the time axis of all figures of a run."""
+    return time_unit(float(run.history.number("time_s")[-1]))
+
+
+def intensities(run: Run) -> Figure:
+    """Stress intensity factors of every tip by both methods, and K_IC if the scene tells it.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no tips.
+    """
+    table = needed(run.tips, "tips.csv", "stress intensity factors")
+    clock = clock_of(run)
+    time = clock.of(table.number("time_s"))
+    figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
+    panels = list(figure.subplots(1, len(_MODES)))
+    tips = _tips(table)
+    for axes, (title, symbol, integral, correlation) in zip(panels, _MODES, strict=True):
+        for index, (_, rows) in enumerate(tips):
+            look = style.line_look(index)
+            axes.plot(time[rows], INTENSITY.of(table.number(integral)[rows]), **look)
+            if correlation is not None:
+                every = max(1, int(rows.sum()) // _MOST_MARKERS)
+                axes.plot(
+                    time[rows], INTENSITY.of(table.number(correlation)[rows]), linestyle="none",
+                    marker="o", markerfacecolor="none", markeredgecolor=look["color"],
+                    markeredgewidth=0.7, markevery=every,
+                )  # fmt: skip
+        _finish(axes, title, f"{symbol} [{INTENSITY.name}]", clock)
+    toughness = run.scene.toughness_pa_sqrtm if run.scene else None
+    if toughness is not None:
+        panels[-1].axhline(float(INTENSITY.of(toughness)), color="#555555", linewidth=0.8, ls="--")
+    style.letter(panels)
+    style.outside_legend(figure, _tip_handles(run, tips, toughness), 4)
+    return figure
+
+
+def development(run: Run) -> Figure:
+    """Fracture length, well pressure (with a fluid), slip and opening, and the states."""
+    table = run.history
+    clock = clock_of(run)
+    time = clock.of(table.number("time_s"))
+    fluid = table.has("well_pressure_pa")
+    figure = style.new_figure(style.DOUBLE_COLUMN, 4.6)
+    panels = list(figure.subplots(2, 2, sharex=True).flat)
+    length, pressure, jumps, states = panels
+    length.plot(time, METRE.of(table.number("fracture_length_m")), color=style.CYCLE[0])
+    _finish(length, "fracture length", "total length [m]", clock)
+    if fluid:
+        pressure.plot(time, MEGAPASCAL.of(table.number("well_pressure_pa")), color=style.CYCLE[0])
+        _finish(pressure, "well pressure", "pressure [MPa]", clock)
+    else:
+        pressure.remove()
+        panels.remove(pressure)
+        length.tick_params(labelbottom=True)
+    slip, opening = table.number("max_slip_m"), table.number("max_opening_m")
+    unit = displacement_unit(slip, opening)
+    jumps.plot(time, unit.of(slip), color=style.CYCLE[1], label="slip")
+    jumps.plot(time, unit.of(opening), color=style.CYCLE[0], linestyle="--", label="opening")
+    jumps.legend()
+    _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", clock)
+    for state in style.STATES:
+        states.step(
+            time, table.number(f"n_{state}"), where="post", color=style.STATE_COLOURS[state],
+            label=state,
+        )  # fmt: skip
+    states.set_ylim(bottom=0.0)
+    states.legend()
+    _finish(states, "contact state", "fracture cells", clock)
+    start = growth_start(run)
+    if start is not None:
+        for axes in panels:
+            axes.axvline(float(clock.of(start)), color="#999999", linewidth=0.7, linestyle=":")
+        length.annotate(
+            "first growth", (float(clock.of(start)), 0.97), rotation=90, va="top", ha="right",
+            xycoords=("data", "axes fraction"), fontsize=6.5, color="#555555",
+        )  # fmt: skip
+    style.letter(panels)
+    return figure
+
+
+def balance(run: Run) -> Figure:
+    """Where the injected fluid went, and how well mass is conserved.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no fluid.
+    """
+    table = run.history
+    if not table.has("injected_m2"):
+        raise AbsentError("the run has no fluid (mechanics only)")
+    clock = clock_of(run)
+    time = clock.of(table.number("time_s"))
+    volume = table.number("fracture_volume_m2")
+    series: list[tuple[str, FloatArray]] = [
+        ("injected", table.number("injected_m2")),
+        ("leaked off into the rock", table.number("leakoff_m2")),
+        ("fracture volume, change", volume - volume[0]),
+    ]
+    if table.has("prefilled_m2") and np.any(table.number("prefilled_m2") != 0.0):
+        series.append(("prefilled new cells", table.number("prefilled_m2")))
+    unit = area_unit(*(values for _, values in series))
+    figure = style.new_figure(style.DOUBLE_COLUMN, 2.6)
+    volumes, errors = figure.subplots(1, 2)
+    for index, (label, values) in enumerate(series):
+        dashes = style.LINE_STYLES[index % len(style.LINE_STYLES)]
+        volumes.plot(time, unit.of(values), color=style.CYCLE[index], linestyle=dashes, label=label)
+    volumes.legend()
+    _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", clock)
+    error = np.abs(table.number("mass_error_relative"))
+    # zero cannot stand on a logarithmic axis; such steps are exact to round-off
+    errors.semilogy(time, np.maximum(error, np.finfo(float).eps), color=style.CYCLE[0])
+    _finish(errors, "mass conservation", "relative mass error [-]", clock)
+    style.letter([volumes, errors])
+    return figure
+
+
+def _tips(table: Table) -> list[tuple[str, BoolArray]]:
+    names = table.text("tip")
+    first_rows = np.unique(names, return_index=True)[1]
+    return [(str(name), names == name) for name in names[np.sort(first_rows)]]
+
+
+def _tip_handles(
+    run: Run, tips: Sequence[tuple[str, BoolArray]], toughness: float | None
+) -> list[Line2D]:
+    table = needed(run.tips, "tips.csv", "stress intensity factors")
+    fractures = table.text("fracture")
+    handles = [
+        Line2D(
+            [], [], **style.line_look(index),
+            label=f"tip {name} ({run.fracture_name(str(fractures[rows][0]))})",
+        )
+        for index, (name, rows) in enumerate(tips)
+    ]  # fmt: skip
+    handles.append(Line2D([], [], color="#555555", label="lines: interaction integral"))
+    handles.append(
+        Line2D(
+            [], [], color="#555555", linestyle="none", marker="o", markerfacecolor="none",
+            label="circles: displacement correlation",
+        )
+    )  # fmt: skip
+    if toughness is not None:
+        handles.append(
+            Line2D([], [], color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
+        )
+    return handles
+
+
+def _finish(axes: Axes, title: str, label: str, clock: Unit) -> None:
+    axes.set_title(title)
+    axes.set_ylabel(label)
+    axes.set_xlabel(f"time [{clock.name}]")

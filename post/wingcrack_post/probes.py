@@ -1,0 +1,95 @@
+"""Pressure, displacement and stress at the probe points against time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from wingcrack_post import style
+from wingcrack_post.errors import AbsentError
+from wingcrack_post.history import clock_of
+from wingcrack_post.read import Run, needed
+from wingcrack_post.table import Table
+from wingcrack_post.units import MEGAPASCAL, displacement_unit
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    title: str
+    label: str
+    parts: tuple[tuple[str, str], ...]  # end of the column name, symbol
+    stress: bool
+
+
+_QUANTITIES = (
+    _Quantity("pore pressure", "pressure", (("_p_pa", "$p$"),), stress=True),
+    _Quantity(
+        "displacement", "displacement", (("_ux_m", "$u_x$"), ("_uy_m", "$u_y$")), stress=False
+    ),
+    _Quantity(
+        "total stress",
+        "stress",
+        (
+            ("_sxx_pa", r"$\sigma_{xx}$"),
+            ("_syy_pa", r"$\sigma_{yy}$"),
+            ("_sxy_pa", r"$\sigma_{xy}$"),
+        ),
+        stress=True,
+    ),
+)
+
+
+def probe_names(table: Table) -> list[str]:
+    """Names of the probe points, from the columns ``NAME_ux_m``."""
+    return [name.removesuffix("_ux_m") for name in table.cells if name.endswith("_ux_m")]
+
+
+def probe_histories(run: Run) -> Figure:
+    """Draw every quantity at every probe: colour tells the probe, dashes the component.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no probes.
+    """
+    table = needed(run.probes, "probes.csv", "values at probe points")
+    names = probe_names(table)
+    if not names:
+        raise AbsentError("probes.csv has no probe points")
+    quantities = [q for q in _QUANTITIES if any(table.has(names[0] + end) for end, _ in q.parts)]
+    clock = clock_of(run)
+    time = clock.of(table.number("time_s"))
+    figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
+    panels = list(figure.subplots(1, len(quantities), squeeze=False).flat)
+    for axes, quantity in zip(panels, quantities, strict=True):
+        columns = [name + end for name in names for end, _ in quantity.parts]
+        unit = (
+            MEGAPASCAL
+            if quantity.stress
+            else displacement_unit(*(table.number(column) for column in columns))
+        )
+        for index, name in enumerate(names):
+            for part, (end, _) in enumerate(quantity.parts):
+                axes.plot(
+                    time, unit.of(table.number(name + end)), linestyle=style.LINE_STYLES[part],
+                    color=style.CYCLE[index % len(style.CYCLE)],
+                )  # fmt: skip
+        if len(quantity.parts) > 1:
+            axes.legend(
+                handles=[
+                    Line2D([], [], color="#555555", linestyle=style.LINE_STYLES[part], label=symbol)
+                    for part, (_, symbol) in enumerate(quantity.parts)
+                ]
+            )
+        axes.set_title(quantity.title)
+        axes.set_ylabel(f"{quantity.label} [{unit.name}]")
+        axes.set_xlabel(f"time [{clock.name}]")
+    style.letter(panels)
+    handles = [
+        Line2D([], [], color=style.CYCLE[index % len(style.CYCLE)], label=f"probe {name}")
+        for index, name in enumerate(names)
+    ]
+    style.outside_legend(figure, handles, min(len(handles), 6))
+    return figure

@@ -1,0 +1,174 @@
+"""Opening, slip and tractions along each fracture, lines coloured by time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from wingcrack_post import style
+from wingcrack_post.errors import RunError
+from wingcrack_post.read import Run, needed
+from wingcrack_post.table import BoolArray, FloatArray, Table
+from wingcrack_post.times import select_times
+from wingcrack_post.units import MEGAPASCAL, Unit, displacement_unit, time_unit
+
+DEFAULT_COUNT = 8
+
+
+@dataclass(frozen=True)
+class _Panel:
+    column: str
+    title: str
+    label: str
+    stress: bool
+
+
+_PANELS = (
+    _Panel("jump_n_m", "opening", r"opening $[u]_n$", stress=False),
+    _Panel("jump_t_m", "slip", r"slip $[u]_\tau$", stress=False),
+    _Panel("traction_n_pa", "normal traction", r"normal traction $f_n$", stress=True),
+    _Panel("traction_t_pa", "tangential traction", r"tangential traction $f_\tau$", stress=True),
+)
+_FLUID_PANELS = (
+    _Panel("aperture_m", "aperture", r"aperture $a$", stress=False),
+    _Panel("pressure_pa", "fluid pressure", r"fluid pressure $p_\mathrm{F}$", stress=True),
+)
+
+
+def fracture_profiles(run: Run, wanted_s: Sequence[float] = ()) -> Iterator[tuple[str, Figure]]:
+    """Draw one figure per fracture; yields its label in the files and the figure.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no fracture cells.
+    """
+    table = needed(run.fractures, "fractures.csv", "the state along fractures")
+    labels = table.text("fracture")
+    # in the order of the file, which is the order of the scene
+    first_rows = np.unique(labels, return_index=True)[1]
+    for label in labels[np.sort(first_rows)]:
+        yield str(label), _profile(run, table, str(label), labels == label, wanted_s)
+
+
+def arc_length(time: FloatArray, s: FloatArray, xy: FloatArray) -> FloatArray:
+    """Arc length with an origin that stays in place when the fracture grows at its start.
+
+    The middle of the fracture at the first time keeps its arc length at all times, so a wing at
+    the start has negative values. Arguments are per row: time [s], arc length [m], (n, 2) points.
+    """
+    shifted = s.copy()
+    first = time == time[0]
+    middle = int(np.argmin(np.abs(s[first] - s[first].mean())))
+    anchor, anchor_s = xy[first][middle], s[first][middle]
+    for moment in np.unique(time):
+        rows = np.flatnonzero(time == moment)
+        rows = rows[np.argsort(s[rows])]
+        shifted[rows] += anchor_s - _arc_length_at(anchor, s[rows], xy[rows])
+    return shifted
+
+
+def _arc_length_at(point: FloatArray, s: FloatArray, xy: FloatArray) -> float:
+    """Arc length of the point on the polyline nearest to `point`."""
+    if len(s) == 1:
+        return float(s[0])
+    edge = np.diff(xy, axis=0)
+    squared = np.maximum(np.sum(edge**2, axis=1), np.finfo(float).tiny)
+    share = np.clip(np.sum((point - xy[:-1]) * edge, axis=1) / squared, 0.0, 1.0)
+    foot = xy[:-1] + share[:, None] * edge
+    nearest = int(np.argmin(np.sum((foot - point) ** 2, axis=1)))
+    return float(s[nearest] + share[nearest] * (s[nearest + 1] - s[nearest]))
+
+
+def _profile(
+    run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
+) -> Figure:
+    time = table.number("time_s")[mine]
+    xy = np.column_stack((table.number("x_m")[mine], table.number("y_m")[mine]))
+    s = arc_length(time, table.number("s_m")[mine], xy)
+    panels = list(_PANELS)
+    if table.has("pressure_pa", "aperture_m"):
+        panels = [_FLUID_PANELS[0], *_PANELS[:2], _FLUID_PANELS[1], *_PANELS[2:]]
+    columns = len(panels) // 2
+    figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
+    axes = list(figure.subplots(2, columns, sharex=True).flat)
+    times = select_times(run, time, DEFAULT_COUNT, wanted_s)
+    colours = style.ordered_colours(len(times))
+    initial = s[time == time[0]]
+    for panel, axis in zip(panels, axes, strict=True):
+        values = table.number(panel.column)[mine]
+        unit = MEGAPASCAL if panel.stress else displacement_unit(values)
+        for moment, colour in zip(times, colours, strict=True):
+            rows = np.flatnonzero(time == moment)
+            rows = rows[np.argsort(s[rows])]
+            marker = "." if rows.size < 3 else ""
+            axis.plot(s[rows], unit.of(values[rows]), color=colour, marker=marker)
+        axis.set_title(panel.title)
+        axis.set_ylabel(f"{panel.label} [{unit.name}]")
+        _mark_initial_ends(axis, initial)
+    friction = _friction(run, label)
+    if friction is not None:
+        _draw_bound(axes[-1], table, mine, s, times, colours, friction)
+    for axis in axes[columns:]:
+        axis.set_xlabel("distance along the fracture [m]")
+    style.letter(axes)
+    figure.suptitle(run.fracture_name(label), fontsize=9)
+    clock = time_unit(float(run.history.number("time_s")[-1]))
+    style.outside_legend(figure, _time_handles(times, colours, clock, friction), 5)
+    return figure
+
+
+def _mark_initial_ends(axis: Axes, initial_s: FloatArray) -> None:
+    """Thin lines where the fracture ended at first, half a cell beyond the outermost centres."""
+    if initial_s.size < 2:
+        return
+    ordered = np.sort(initial_s)
+    ends = (1.5 * ordered[0] - 0.5 * ordered[1], 1.5 * ordered[-1] - 0.5 * ordered[-2])
+    for end in ends:
+        axis.axvline(end, color="#999999", linewidth=0.6, linestyle=":", zorder=0)
+
+
+def _friction(run: Run, label: str) -> float | None:
+    law = run.scene.fracture(label) if run.scene else None
+    return law.friction if law and law.friction else None
+
+
+def _draw_bound(
+    axis: Axes, table: Table, mine: BoolArray, s: FloatArray, times: Sequence[float],
+    colours: Sequence[tuple[float, float, float, float]], friction: float,
+) -> None:  # fmt: skip
+    """Dash mu_s |f_n| on the side of zero where the tangential traction is."""
+    time = table.number("time_s")[mine]
+    normal = table.number("traction_n_pa")[mine]
+    tangential = table.number("traction_t_pa")[mine]
+    side = -1.0 if np.nansum(tangential) < 0.0 else 1.0
+    bound = side * friction * np.maximum(0.0, -normal)
+    for moment, colour in zip(times, colours, strict=True):
+        rows = np.flatnonzero(time == moment)
+        rows = rows[np.argsort(s[rows])]
+        axis.plot(
+            s[rows], MEGAPASCAL.of(bound[rows]), color=colour, linestyle=(0, (3, 2)), linewidth=0.8
+        )
+
+
+def _time_handles(
+    times: Sequence[float], colours: Sequence[tuple[float, float, float, float]], clock: Unit,
+    friction: float | None,
+) -> list[Line2D]:  # fmt: skip
+    if not times:
+        raise RunError("fractures.csv: there are no written times.")
+    handles = [
+        Line2D([], [], color=colour, label=f"$t$ = {float(clock.of(time)):.4g} {clock.name}")
+        for time, colour in zip(times, colours, strict=True)
+    ]
+    if friction is not None:
+        bound = rf"friction bound $\mu_s |f_n|$, $\mu_s$ = {friction:g}"
+        handles.append(
+            Line2D([], [], color="#555555", linestyle=(0, (3, 2)), linewidth=0.8, label=bound)
+        )
+    return handles

@@ -1,0 +1,134 @@
+"""One look for all figures: legible in print and for colour-blind readers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+SINGLE_COLUMN = 3.5  # [inch], as most journals have it
+DOUBLE_COLUMN = 7.1  # [inch]
+
+# Okabe and Ito (2008), "Color universal design"; yellow is left out: too light on paper
+CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+LINE_STYLES = ("-", "--", "-.", ":")
+
+STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files
+STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
+
+FIELD_COLOURS = "cividis"
+FORMATS = ("png", "pdf")
+
+RC: dict[str, Any] = {
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "axes.labelsize": 8,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 8,
+    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.h_pad": 0.05,
+    "figure.constrained_layout.w_pad": 0.05,
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],  # comes with matplotlib, so it is the same everywhere
+    "font.size": 8,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.4,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 3,
+    "mathtext.fontset": "dejavusans",
+    "pdf.fonttype": 42,  # TrueType: text in the PDF stays text
+    "savefig.dpi": 300,
+    "xtick.labelsize": 7,
+    "xtick.major.width": 0.6,
+    "ytick.labelsize": 7,
+    "ytick.major.width": 0.6,
+}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Empty figure in the common style; sizes in inches.
+
+    No pyplot: a figure belongs to its caller and leaves no state behind.
+    """
+    return Figure(figsize=(width, height))
+
+
+def styled() -> Any:
+    """Context in which figures are made and saved."""
+    return matplotlib.rc_context(RC)
+
+
+def line_look(index: int) -> dict[str, str]:
+    """Colour and dash pattern of the line with this number: 28 that differ."""
+    return {
+        "color": CYCLE[index % len(CYCLE)],
+        "linestyle": LINE_STYLES[index // len(CYCLE) % len(LINE_STYLES)],
+    }
+
+
+def ordered_colours(count: int) -> list[tuple[float, float, float, float]]:
+    """Give colours from dark to light for lines in order; the palest part is left out."""
+    colours = time_colours()
+    return [colours(index / max(count - 1, 1)) for index in range(count)]
+
+
+def time_colours() -> Colormap:
+    """Sequential map whose light end is still seen on white paper."""
+    base = matplotlib.colormaps["viridis"]
+    return LinearSegmentedColormap.from_list("time", [base(0.88 * i / 63) for i in range(64)])
+
+
+def letter(axes: Sequence[Axes]) -> None:
+    """Put (a), (b), ... before the titles of panels, for the caption to refer to."""
+    for index, axis in enumerate(axes):
+        title = axis.get_title(loc="left")
+        axis.set_title(f"({chr(ord('a') + index)})  {title}".rstrip(), loc="left")
+
+
+def state_handles(line_width: float = 2.0) -> list[Line2D]:
+    """Entries of the legend that tells stick, slip and open."""
+    return [
+        Line2D([], [], color=STATE_COLOURS[state], linewidth=line_width, label=state)
+        for state in STATES
+    ]
+
+
+def outside_legend(
+    figure: Figure, handles: Sequence[Any], columns: int, title: str | None = None
+) -> None:
+    """Legend below all panels."""
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, title=title)
+
+
+def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
+    """Write a figure in each format and return the files.
+
+    A file appears whole (written aside, then renamed) and holds no date, so that the same run
+    gives the same bytes.
+    """
+    written = []
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    for form in formats:
+        target = stem.with_name(f"{stem.name}.{form}")
+        aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
+        metadata = {"CreationDate": None} if form == "pdf" else {"Software": None}
+        try:
+            figure.savefig(aside, format=form, metadata=metadata)
+            aside.replace(target)
+        finally:
+            aside.unlink(missing_ok=True)
+        written.append(target)
+    return written

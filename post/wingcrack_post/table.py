@@ -1,0 +1,104 @@
+"""CSV tables of a run: named columns with the unit in the name."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from wingcrack_post.errors import RunError
+
+FloatArray = npt.NDArray[np.float64]
+TextArray = npt.NDArray[np.str_]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file by columns.
+
+    Attributes
+    ----------
+    path : Path
+        The file, for error messages.
+    cells : dict of str to sequence of str
+        The text of every column, in the order of the rows.
+    rows : int
+        Number of rows below the header.
+    """
+
+    path: Path
+    cells: dict[str, Sequence[str]]
+    rows: int
+
+    def has(self, *names: str) -> bool:
+        """Whether all the named columns are there."""
+        return all(name in self.cells for name in names)
+
+    def text(self, name: str) -> TextArray:
+        """Column as text; a missing one is a `RunError` that names file and column."""
+        if name not in self.cells:
+            raise RunError(
+                f"{self.path}: the column '{name}' is missing (there are: {', '.join(self.cells)})."
+            )
+        return np.asarray(self.cells[name], dtype=np.str_)
+
+    def number(self, name: str) -> FloatArray:
+        """Column as numbers in the unit of its name; an empty cell is nan."""
+        text = self.text(name)
+        try:
+            return np.where(text == "", "nan", text).astype(np.float64)
+        except ValueError:
+            for row, value in enumerate(text):
+                _check_number(self.path, name, row, str(value))
+            raise
+
+
+def _check_number(path: Path, name: str, row: int, value: str) -> None:
+    try:
+        float(value or "nan")
+    except ValueError:
+        # the header is line 1, so row 0 stands on line 2
+        raise RunError(f"{path}, line {row + 2}: '{value}' in column '{name}' is no number.") from (
+            None
+        )
+
+
+def read_table(path: Path) -> Table:
+    """Read a CSV file with one header line.
+
+    A last line that is cut off (no line end, too few values) belongs to a run that is still being
+    written and is left out.
+
+    Raises
+    ------
+    RunError
+        If the file is missing, not text, without header, or if a line has the wrong number of
+        values.
+    """
+    try:
+        content = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise RunError(f"{path}: the file is missing.") from None
+    except (OSError, UnicodeDecodeError) as reason:
+        raise RunError(f"{path}: the file cannot be read ({reason}).") from None
+    lines = list(csv.reader(content.splitlines(), skipinitialspace=True))
+    if not lines or not lines[0]:
+        raise RunError(f"{path}: the file is empty, a header line was expected.")
+    names = [name.strip() for name in lines[0]]
+    if len(set(names)) != len(names):
+        raise RunError(f"{path}: a column name stands twice in the header.")
+    values = [[cell.strip() for cell in line] for line in lines[1:]]
+    if values and len(values[-1]) < len(names) and not content.endswith("\n"):
+        values.pop()
+    for row, cells in enumerate(values):
+        if len(cells) != len(names):
+            raise RunError(
+                f"{path}, line {row + 2}: {len(cells)} values where the header has {len(names)}."
+            )
+    columns = list(zip(*values, strict=True)) if values else [()] * len(names)
+    return Table(path, dict(zip(names, columns, strict=True)), len(values))

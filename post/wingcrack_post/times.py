@@ -1,0 +1,74 @@
+"""Which of the written times a figure shows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from wingcrack_post.errors import RunError
+from wingcrack_post.read import Run
+from wingcrack_post.table import FloatArray
+from wingcrack_post.units import SECONDS
+
+_TIME = re.compile(r"([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(s|min|h|d)?")
+
+
+def parse_times(text: str) -> tuple[float, ...]:
+    """Read a comma-separated list of times into seconds.
+
+    >>> parse_times("90, 2min, 1.5h")
+    (90.0, 120.0, 5400.0)
+
+    Raises
+    ------
+    ValueError
+        If an entry is no number with an optional unit s, min, h or d.
+    """
+    times = []
+    for entry in text.split(","):
+        match = _TIME.fullmatch(entry.strip())
+        if match is None:
+            raise ValueError(f"'{entry.strip()}' is no time (a number, then s, min, h or d)")
+        times.append(float(match.group(1)) * SECONDS[match.group(2) or "s"])
+    return tuple(times)
+
+
+def select_times(
+    run: Run, written_s: Sequence[float] | FloatArray, count: int, wanted_s: Sequence[float] = ()
+) -> list[float]:
+    """Choose some of the written times, in increasing order.
+
+    With `wanted_s` these are the written times nearest to them. Without, they are the first one,
+    the first one with growth, times of equally spaced fracture length up to the last one; without
+    growth, equally spaced times.
+    """
+    written = np.unique(np.asarray(written_s, dtype=float))
+    if written.size == 0:
+        raise RunError(f"{run.directory}: no fields are written yet.")
+    targets = np.asarray(wanted_s, dtype=float) if len(wanted_s) else _targets(run, written, count)
+    chosen = {int(np.argmin(np.abs(written - target))) for target in targets}
+    return [float(written[index]) for index in sorted(chosen)]
+
+
+def growth_start(run: Run) -> float | None:
+    """Time of the first step with longer fractures than at the start [s]; None without growth."""
+    if not run.history.has("fracture_length_m"):
+        return None
+    length = run.history.number("fracture_length_m")
+    grown = np.flatnonzero(length > length[0] * (1.0 + 1e-9))
+    return float(run.history.number("time_s")[grown[0]]) if grown.size else None
+
+
+def _targets(run: Run, written: FloatArray, count: int) -> FloatArray:
+    start = growth_start(run)
+    if start is None or start >= written[-1]:
+        return np.linspace(written[0], written[-1], count)
+    later = written[written >= start]
+    time, length = run.history.number("time_s"), run.history.number("fracture_length_m")
+    lengths = np.interp(later, time, length)
+    # lengths never shrink, so the time of a length is the first one that reaches it
+    steps = np.linspace(lengths[0], lengths[-1], count - 1)
+    reached = np.minimum(np.searchsorted(lengths, steps * (1.0 - 1e-12)), later.size - 1)
+    return np.concatenate(([written[0]], later[reached[:-1]], [written[-1]]))
