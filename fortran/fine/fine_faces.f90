@@ -1,0 +1,242 @@
+!> Conditions on the fracture faces, and how they tie the displacements of both sides together.
+!!
+!! Where two nodes face each other across a fracture, u(+) = m - [u]/2 and u(-) = m + [u]/2 with their
+!! mean m and jump [u] = u(-) - u(+). A given jump leaves m as unknown; a slipping pair keeps m and the
+!! amount of slip d, with [u] = d*(tau + dilation*n). Every displacement is then linear in fewer
+!! unknowns, u = T q + c, and the stiffness becomes T' K T: definite, without penalty or multipliers.
+!!
+!! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free, whatever the
+!! conditions of the cells around, and so does a pair of which one node alone lies on the outer boundary.
+module fine_faces
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use fine_mesh, only: fine_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: build_constraints, check_conditions, constraints_t, face_conditions_t, loaded_everywhere
+   public :: face_jump, face_loaded, face_slip, prescribe_jumps
+
+   ! Conditions of a fracture cell. Where cells meet, the larger number holds at their common nodes.
+   integer(ik), parameter :: face_loaded = 1  !< contact traction and fluid pressure given
+   integer(ik), parameter :: face_slip = 2  !< slip free, its traction given; opening tied to the slip
+   integer(ik), parameter :: face_jump = 3  !< displacement jump given
+
+   !> What holds on each fracture cell; the values belong to the loads.
+   type :: face_conditions_t
+      integer(ik), allocatable :: condition(:)  !< (fracture cells) face_loaded, face_slip or face_jump
+      real(rk), allocatable :: dilation(:)  !< (fracture cells) sign of the slip * tan(psi) [-]; for face_slip
+   end type face_conditions_t
+
+   !> How displacements depend on the unknowns.
+   type :: constraints_t
+      integer(ik) :: n_dofs = 0
+      integer(ik), allocatable :: n_columns(:)  !< (n_nodes) unknowns that move a node
+      integer(ik), allocatable :: dof(:, :)  !< (3, n_nodes) which ones
+      real(rk), allocatable :: basis(:, :, :)  !< (2, 3, n_nodes) how it moves with each
+      logical, allocatable :: prescribed(:)  !< (n_nodes) part of its displacement is given
+      ! Pairs of nodes that face each other.
+      integer(ik) :: n_pairs = 0
+      integer(ik), allocatable :: pair_nodes(:, :)  !< (2, n_pairs) on side +, -
+      integer(ik), allocatable :: pair_condition(:)  !< (n_pairs)
+      integer(ik), allocatable :: face_pair(:, :)  !< (3, fracture cells) pair at start, end, mid; 0 at a tip or joint
+      logical, allocatable :: face_flipped(:, :)  !< (3, fracture cells) the cell sees the pair's sides exchanged
+   end type constraints_t
+
+contains
+
+   !> Contact traction and pressure given on every fracture cell.
+   pure function loaded_everywhere(fine) result(conditions)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t) :: conditions
+
+      allocate (conditions%condition(fine%fracture%n_cells), source=face_loaded)
+      allocate (conditions%dilation(fine%fracture%n_cells), source=0.0_rk)
+   end function loaded_everywhere
+
+   !> Refuse unknown conditions and arrays of the wrong size.
+   pure subroutine check_conditions(fine, conditions, error)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: origin = "check_conditions"
+
+      if (.not. (allocated(conditions%condition) .and. allocated(conditions%dilation))) then
+         call raise_error(error, origin, "the face conditions have not been set")
+      else if (size(conditions%condition) /= fine%fracture%n_cells &
+               .or. size(conditions%dilation) /= fine%fracture%n_cells) then
+         call raise_error(error, origin, "the face conditions do not belong to this mesh: wrong number of cells")
+      else if (any(conditions%condition < face_loaded .or. conditions%condition > face_jump)) then
+         call raise_error(error, origin, "a fracture cell has an unknown face condition")
+      else if (.not. sum(abs(conditions%dilation)) <= huge(1.0_rk)) then
+         call raise_error(error, origin, "a dilation is not a finite number")
+      end if
+   end subroutine check_conditions
+
+   !> Find the pairs, and number the unknowns.
+   pure subroutine build_constraints(fine, conditions, constraints)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(constraints_t), intent(out) :: constraints
+      real(rk), allocatable :: slip_direction(:, :)
+      integer(ik) :: node, pair, column
+
+      call find_pairs(fine, constraints)
+      allocate (slip_direction(2, constraints%n_pairs))
+      call combine_conditions(fine, conditions, constraints, slip_direction)
+
+      allocate (constraints%n_columns(fine%n_nodes), source=2_ik)
+      allocate (constraints%dof(3, fine%n_nodes), source=0_ik)
+      allocate (constraints%basis(2, 3, fine%n_nodes), source=0.0_rk)
+      constraints%basis(1, 1, :) = 1.0_rk
+      constraints%basis(2, 2, :) = 1.0_rk
+      constraints%prescribed = fine%on_boundary
+      where (fine%on_boundary) constraints%n_columns = 0
+
+      do pair = 1, constraints%n_pairs
+         associate (plus => constraints%pair_nodes(1, pair), minus => constraints%pair_nodes(2, pair))
+            if (constraints%pair_condition(pair) == face_jump) then
+               constraints%prescribed([plus, minus]) = .true.
+            else if (constraints%pair_condition(pair) == face_slip) then
+               constraints%n_columns([plus, minus]) = 3
+               constraints%basis(:, 3, plus) = -0.5_rk*slip_direction(:, pair)
+               constraints%basis(:, 3, minus) = 0.5_rk*slip_direction(:, pair)
+            end if
+         end associate
+      end do
+
+      ! The minus node of a tied pair takes the unknowns of its plus node.
+      do pair = 1, constraints%n_pairs
+         if (constraints%pair_condition(pair) /= face_loaded) constraints%dof(1, constraints%pair_nodes(2, pair)) = -1
+      end do
+      do node = 1, fine%n_nodes
+         if (constraints%dof(1, node) < 0) cycle
+         do column = 1, constraints%n_columns(node)
+            constraints%n_dofs = constraints%n_dofs + 1
+            constraints%dof(column, node) = constraints%n_dofs
+         end do
+      end do
+      do pair = 1, constraints%n_pairs
+         if (constraints%pair_condition(pair) == face_loaded) cycle
+         constraints%dof(:, constraints%pair_nodes(2, pair)) = constraints%dof(:, constraints%pair_nodes(1, pair))
+      end do
+   end subroutine build_constraints
+
+   !> Node pairs across the fractures, without tips (one node) and joints (more than two).
+   pure subroutine find_pairs(fine, constraints)
+      type(fine_mesh_t), intent(in) :: fine
+      type(constraints_t), intent(inout) :: constraints
+      integer(ik), allocatable :: partner(:), pair_of(:)
+      logical, allocatable :: is_joint(:)
+      integer(ik) :: cell, k
+
+      allocate (partner(fine%n_nodes), pair_of(fine%n_nodes), source=0_ik)
+      allocate (is_joint(fine%n_nodes), source=.false.)
+      do cell = 1, fine%fracture%n_cells
+         do k = 1, 3
+            associate (plus => fine%face_nodes(k, 1, cell), minus => fine%face_nodes(k, 2, cell))
+               if (plus == minus) cycle
+               if (partner(plus) == 0) partner(plus) = minus
+               if (partner(minus) == 0) partner(minus) = plus
+               if (partner(plus) /= minus .or. partner(minus) /= plus) then
+                  is_joint([plus, minus, partner(plus), partner(minus)]) = .true.
+               end if
+            end associate
+         end do
+      end do
+
+      allocate (constraints%face_pair(3, fine%fracture%n_cells), source=0_ik)
+      allocate (constraints%face_flipped(3, fine%fracture%n_cells), source=.false.)
+      allocate (constraints%pair_nodes(2, 3*fine%fracture%n_cells))
+      do cell = 1, fine%fracture%n_cells
+         do k = 1, 3
+            associate (plus => fine%face_nodes(k, 1, cell), minus => fine%face_nodes(k, 2, cell))
+               if (plus == minus .or. any(is_joint([plus, minus]))) cycle
+               if (pair_of(plus) == 0) then
+                  constraints%n_pairs = constraints%n_pairs + 1
+                  constraints%pair_nodes(:, constraints%n_pairs) = [plus, minus]
+                  pair_of([plus, minus]) = constraints%n_pairs
+               end if
+               constraints%face_pair(k, cell) = pair_of(plus)
+               constraints%face_flipped(k, cell) = constraints%pair_nodes(1, pair_of(plus)) /= plus
+            end associate
+         end do
+      end do
+   end subroutine find_pairs
+
+   !> The condition of each pair, and the direction in which a slipping pair moves. At a kink the frame is
+   !! the mean of the frames of the slipping cells.
+   pure subroutine combine_conditions(fine, conditions, constraints, slip_direction)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(constraints_t), intent(inout) :: constraints
+      real(rk), intent(out) :: slip_direction(:, :)  !< (2, n_pairs) tau + dilation*n
+      real(rk), allocatable :: tangent(:, :), dilation(:)
+      integer(ik), allocatable :: n_slipping(:)
+      real(rk) :: tau(2)
+      integer(ik) :: cell, k, pair
+
+      allocate (tangent(2, constraints%n_pairs), dilation(constraints%n_pairs), source=0.0_rk)
+      allocate (n_slipping(constraints%n_pairs), source=0_ik)
+      allocate (constraints%pair_condition(constraints%n_pairs), source=face_loaded)
+      do cell = 1, fine%fracture%n_cells
+         do k = 1, 3
+            pair = constraints%face_pair(k, cell)
+            if (pair == 0) cycle
+            constraints%pair_condition(pair) = max(constraints%pair_condition(pair), conditions%condition(cell))
+            if (conditions%condition(cell) /= face_slip) cycle
+            ! Seen from the other side tau, n and the jump all change sign: its components do not.
+            tau = fine%face_tangent(:, cell)
+            if (constraints%face_flipped(k, cell)) tau = -tau
+            tangent(:, pair) = tangent(:, pair) + tau
+            dilation(pair) = dilation(pair) + conditions%dilation(cell)
+            n_slipping(pair) = n_slipping(pair) + 1
+         end do
+      end do
+
+      slip_direction = 0.0_rk
+      do pair = 1, constraints%n_pairs
+         if (any(fine%on_boundary(constraints%pair_nodes(:, pair)))) constraints%pair_condition(pair) = face_loaded
+         if (constraints%pair_condition(pair) /= face_slip) cycle
+         tau = tangent(:, pair)/norm2(tangent(:, pair))
+         slip_direction(:, pair) = tau + dilation(pair)/n_slipping(pair)*[-tau(2), tau(1)]
+      end do
+   end subroutine combine_conditions
+
+   !> Add half of the given jumps to the given part of the displacements of both sides. Where two cells
+   !! meet, the mean of what they say is taken.
+   pure subroutine prescribe_jumps(fine, conditions, constraints, jump, displacement)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(constraints_t), intent(in) :: constraints
+      real(rk), intent(in) :: jump(:, :, :)  !< (2, 3, fracture cells) in tau and n at start, end, mid [m]
+      real(rk), intent(inout) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: total(:, :)
+      integer(ik), allocatable :: n_given(:)
+      real(rk) :: tau(2), vector(2)
+      integer(ik) :: cell, k, pair
+
+      allocate (total(2, constraints%n_pairs), source=0.0_rk)
+      allocate (n_given(constraints%n_pairs), source=0_ik)
+      do cell = 1, fine%fracture%n_cells
+         if (conditions%condition(cell) /= face_jump) cycle
+         tau = fine%face_tangent(:, cell)
+         do k = 1, 3
+            pair = constraints%face_pair(k, cell)
+            if (pair == 0) cycle
+            vector = jump(1, k, cell)*tau + jump(2, k, cell)*[-tau(2), tau(1)]
+            if (constraints%face_flipped(k, cell)) vector = -vector
+            total(:, pair) = total(:, pair) + vector
+            n_given(pair) = n_given(pair) + 1
+         end do
+      end do
+      do pair = 1, constraints%n_pairs
+         if (constraints%pair_condition(pair) /= face_jump) cycle
+         associate (half => 0.5_rk*total(:, pair)/n_given(pair), nodes => constraints%pair_nodes(:, pair))
+            displacement(:, nodes(1)) = displacement(:, nodes(1)) - half
+            displacement(:, nodes(2)) = displacement(:, nodes(2)) + half
+         end associate
+      end do
+   end subroutine prescribe_jumps
+
+end module fine_faces

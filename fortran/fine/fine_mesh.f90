@@ -1,0 +1,171 @@
+!> From a triangle mesh to six-node triangles, with quarter-point elements around the free tips.
+module fine_mesh
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use mesh_types, only: fracture_mesh_t, mesh_t
+   implicit none(type, external)
+   private
+
+   public :: build_fine_mesh, fine_mesh_t
+
+   !> Six-node triangles. The first n_vertices nodes are those of the mesh they come from, in its order;
+   !! node n_vertices + f lies on its face f. Both sides of a fracture have nodes of their own.
+   type :: fine_mesh_t
+      integer(ik) :: n_vertices = 0
+      integer(ik) :: n_nodes = 0
+      integer(ik) :: n_cells = 0
+      real(rk), allocatable :: xy(:, :)  !< (2, n_nodes) [m]
+      integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then the node on face k
+      integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner at a free tip, 0 for an ordinary element
+      logical, allocatable :: on_boundary(:)  !< (n_nodes) on the outer boundary
+      integer(ik), allocatable :: boundary_faces(:, :)  !< (2, n) end nodes of the outer boundary's faces
+      integer(ik), allocatable :: face_nodes(:, :, :)  !< (3, 2, fracture cells) start, end, mid; side +, -
+      integer(ik), allocatable :: face_cells(:, :)  !< (2, fracture cells) element on side +, -
+      integer(ik), allocatable :: face_tip(:)  !< (fracture cells) free tip at the start (1) or end (2), else 0
+      real(rk), allocatable :: face_s(:, :)  !< (3, fracture cells) arc length of start, end, mid node [m]
+      real(rk), allocatable :: face_tangent(:, :)  !< (2, fracture cells) unit vector tau
+      real(rk), allocatable :: face_length(:)  !< (fracture cells) [m]
+      type(fracture_mesh_t) :: fracture  !< as in the mesh this one comes from
+   end type fine_mesh_t
+
+contains
+
+   !> Number the nodes, place them, and check that no element is inverted.
+   subroutine build_fine_mesh(mesh, fine, error)
+      type(mesh_t), intent(in) :: mesh
+      type(fine_mesh_t), intent(out) :: fine
+      type(error_t), allocatable, intent(out) :: error
+      logical, allocatable :: is_tip(:)
+      integer(ik) :: face, tip, tip_end, cell, k
+      real(rk) :: ends(2, 2), near_start
+
+      if (.not. sum(abs(mesh%xy)) <= huge(1.0_rk)) then
+         call raise_error(error, "build_fine_mesh", "a node's coordinate is not a finite number")
+         return
+      end if
+      allocate (is_tip(mesh%n_nodes), source=.false.)
+      do tip = 1, mesh%fracture%n_tips
+         is_tip(mesh%fracture%tip_node(tip)) = .true.
+      end do
+
+      fine%n_vertices = mesh%n_nodes
+      fine%n_nodes = mesh%n_nodes + mesh%n_faces
+      fine%n_cells = mesh%n_cells
+      allocate (fine%xy(2, fine%n_nodes))
+      fine%xy(:, :mesh%n_nodes) = mesh%xy(:, :mesh%n_nodes)
+      do face = 1, mesh%n_faces
+         ends = mesh%xy(:, mesh%face_nodes(:, face))
+         near_start = 0.5_rk
+         if (all(is_tip(mesh%face_nodes(:, face)))) then
+            call raise_error(error, "build_fine_mesh", "one edge joins two tips: the mesh around them is too coarse")
+            return
+         else if (is_tip(mesh%face_nodes(1, face))) then
+            near_start = 0.75_rk
+         else if (is_tip(mesh%face_nodes(2, face))) then
+            near_start = 0.25_rk
+         end if
+         fine%xy(:, mesh%n_nodes + face) = near_start*ends(:, 1) + (1.0_rk - near_start)*ends(:, 2)
+      end do
+
+      allocate (fine%cell_nodes(6, fine%n_cells))
+      allocate (fine%tip_corner(fine%n_cells), source=0_ik)
+      fine%cell_nodes(1:3, :) = mesh%cell_nodes(:, :fine%n_cells)
+      fine%cell_nodes(4:6, :) = mesh%n_nodes + mesh%cell_faces(:, :fine%n_cells)
+      do cell = 1, fine%n_cells
+         do k = 1, 3
+            if (is_tip(mesh%cell_nodes(k, cell))) fine%tip_corner(cell) = k
+         end do
+      end do
+      call check_cells(fine, error)
+      if (allocated(error)) return
+
+      allocate (fine%on_boundary(fine%n_nodes), source=.false.)
+      fine%boundary_faces = mesh%face_nodes(:, pack([(face, face=1, mesh%n_faces)], mesh%face_side > 0))
+      do face = 1, mesh%n_faces
+         if (mesh%face_side(face) == 0) cycle
+         fine%on_boundary(mesh%face_nodes(:, face)) = .true.
+         fine%on_boundary(mesh%n_nodes + face) = .true.
+      end do
+
+      call number_fracture_faces(mesh, fine, error)
+      if (allocated(error)) return
+      allocate (fine%face_tip(fine%fracture%n_cells), source=0_ik)
+      do face = 1, fine%fracture%n_cells
+         do tip_end = 1, 2
+            if (is_tip(fine%face_nodes(tip_end, 1, face))) fine%face_tip(face) = tip_end
+         end do
+         fine%face_s(1:2, face) = mesh%fracture%cell_s(:, face)
+         near_start = 0.5_rk
+         if (fine%face_tip(face) == 1) near_start = 0.75_rk
+         if (fine%face_tip(face) == 2) near_start = 0.25_rk
+         fine%face_s(3, face) = near_start*fine%face_s(1, face) + (1.0_rk - near_start)*fine%face_s(2, face)
+      end do
+   end subroutine build_fine_mesh
+
+   !> Every element must be counter-clockwise and not flat. The quarter-point map of a straight-edged
+   !! triangle is one to one if the triangle is, so the corners decide.
+   pure subroutine check_cells(fine, error)
+      type(fine_mesh_t), intent(in) :: fine
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: flattest = 1.0e-10_rk  ! double area over squared longest edge
+      real(rk) :: edge(2, 3), double_area
+      integer(ik) :: cell
+      character(len=80) :: place
+
+      do cell = 1, fine%n_cells
+         edge(:, 1) = fine%xy(:, fine%cell_nodes(2, cell)) - fine%xy(:, fine%cell_nodes(1, cell))
+         edge(:, 2) = fine%xy(:, fine%cell_nodes(3, cell)) - fine%xy(:, fine%cell_nodes(2, cell))
+         edge(:, 3) = -edge(:, 1) - edge(:, 2)
+         double_area = edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2)
+         if (double_area > flattest*maxval(sum(edge**2, dim=1))) cycle
+         write (place, '(a,i0,a,2(es12.5,a))') "element ", cell, " at (", fine%xy(1, fine%cell_nodes(1, cell)), &
+            ", ", fine%xy(2, fine%cell_nodes(1, cell)), ")"
+         call raise_error(error, "build_fine_mesh", trim(place)//" is inverted or flat")
+         return
+      end do
+   end subroutine check_cells
+
+   !> Nodes and elements on both sides of every fracture cell, in the fracture's direction.
+   subroutine number_fracture_faces(mesh, fine, error)
+      type(mesh_t), intent(in) :: mesh
+      type(fine_mesh_t), intent(inout) :: fine
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: match = 1.0e-9_rk  ! of the cell's length
+      real(rk) :: chord(2), along(2), middle
+      integer(ik) :: cell, side, face, ends(2)
+      character(len=16) :: number
+
+      fine%fracture = mesh%fracture
+      associate (n => fine%fracture%n_cells)
+         allocate (fine%face_nodes(3, 2, n), fine%face_cells(2, n), fine%face_s(3, n))
+         allocate (fine%face_tangent(2, n), fine%face_length(n))
+      end associate
+      do cell = 1, fine%fracture%n_cells
+         associate (points => fine%fracture%point_xy(:, fine%fracture%cell_points(:, cell)))
+            chord = points(:, 2) - points(:, 1)
+            middle = 0.5_rk*dot_product(chord, points(:, 1) + points(:, 2))
+         end associate
+         fine%face_length(cell) = norm2(chord)
+         write (number, '(i0)') cell
+         if (.not. fine%face_length(cell) > 0.0_rk) then
+            call raise_error(error, "build_fine_mesh", "fracture cell "//trim(number)//" has no length")
+            return
+         end if
+         fine%face_tangent(:, cell) = chord/fine%face_length(cell)
+         do side = 1, 2
+            face = mesh%fracture%cell_faces(side, cell)
+            ends = mesh%face_nodes(:, face)
+            along = matmul(chord, mesh%xy(:, ends)) - middle
+            if (along(1) > along(2)) ends = ends([2, 1])
+            fine%face_nodes(:, side, cell) = [ends, mesh%n_nodes + face]
+            fine%face_cells(side, cell) = mesh%face_cells(1, face)
+            if (any(abs(mesh%xy(:, ends) - fine%fracture%point_xy(:, fine%fracture%cell_points(:, cell))) &
+                    > match*fine%face_length(cell)) .or. mesh%face_cells(2, face) /= 0) then
+               call raise_error(error, "build_fine_mesh", "fracture cell "//trim(number)//" does not match its mesh faces")
+               return
+            end if
+         end do
+      end do
+   end subroutine number_fracture_faces
+
+end module fine_mesh

@@ -1,0 +1,216 @@
+!> The fine problem: elasticity on six-node triangles, factorized once and solved for many loads.
+module fine_model
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_mumps, only: mumps_definite, mumps_t
+   use fine_elasticity, only: check_elasticity, elasticity_t
+   use fine_element, only: evaluate_element, stiffness_matrix
+   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, prescribe_jumps
+   use fine_loads, only: add_face_forces, add_pore_pressure_forces, check_loads, fine_loads_t
+   use fine_mesh, only: build_fine_mesh, fine_mesh_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: fine_model_t
+
+   !> A window with its matrix. Not to be copied: the factors belong to the original.
+   type :: fine_model_t
+      type(fine_mesh_t) :: mesh
+      type(elasticity_t) :: elasticity
+      type(face_conditions_t) :: conditions
+      type(constraints_t) :: constraints
+      real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
+      logical :: ready = .false.
+      type(mumps_t), private :: solver
+   contains
+      procedure :: set_mesh
+      procedure :: prepare
+      procedure :: solve
+      procedure :: displacement_gradient
+      procedure :: pore_pressure_at
+   end type fine_model_t
+
+contains
+
+   !> Number the nodes, so that conditions and loads can be set up for them, and form the element matrices.
+   subroutine set_mesh(self, mesh, elasticity, error)
+      class(fine_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(elasticity_t), intent(in) :: elasticity
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: cell
+      real(rk) :: lame_lambda, shear_modulus
+
+      self%ready = .false.
+      call check_elasticity(elasticity, error)
+      if (.not. allocated(error)) call build_fine_mesh(mesh, self%mesh, error)
+      if (allocated(error)) return
+      self%elasticity = elasticity
+      if (allocated(self%stiffness)) deallocate (self%stiffness)
+      allocate (self%stiffness(12, 12, self%mesh%n_cells))
+      lame_lambda = elasticity%lame_lambda()
+      shear_modulus = elasticity%shear_modulus()
+      do cell = 1, self%mesh%n_cells
+         call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), self%mesh%tip_corner(cell), &
+                               lame_lambda, shear_modulus, self%stiffness(:, :, cell))
+      end do
+   end subroutine set_mesh
+
+   !> Assemble and factorize for the given face conditions; may be called again when they change.
+   subroutine prepare(self, conditions, error)
+      class(fine_model_t), intent(inout) :: self
+      type(face_conditions_t), intent(in) :: conditions
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: row(:), col(:)
+      real(rk), allocatable :: values(:)
+
+      self%ready = .false.
+      if (.not. allocated(self%stiffness)) then
+         call raise_error(error, "fine_model_t%prepare", "set_mesh has to come first")
+         return
+      end if
+      call check_conditions(self%mesh, conditions, error)
+      if (allocated(error)) return
+      self%conditions = conditions
+      call build_constraints(self%mesh, conditions, self%constraints)
+      if (self%constraints%n_dofs > 0) then
+         call assemble(self, row, col, values)
+         call self%solver%analyse(self%constraints%n_dofs, row, col, mumps_definite, error)
+         if (.not. allocated(error)) call self%solver%factorize(values, error)
+         if (allocated(error)) return
+      end if
+      self%ready = .true.
+   end subroutine prepare
+
+   !> One triangle of T' K T as triplets.
+   subroutine assemble(self, row, col, values)
+      class(fine_model_t), intent(in) :: self
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+      real(rk), allocatable, intent(out) :: values(:)
+      real(rk) :: tie(12, 18), tied(12, 18), reduced(18, 18)
+      integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(18)
+
+      n_entries = 0
+      do cell = 1, self%mesh%n_cells
+         n_columns = sum(self%constraints%n_columns(self%mesh%cell_nodes(:, cell)))
+         n_entries = n_entries + (n_columns*(n_columns + 1))/2
+      end do
+      allocate (row(n_entries), col(n_entries), values(n_entries))
+
+      n_entries = 0
+      do cell = 1, self%mesh%n_cells
+         associate (nodes => self%mesh%cell_nodes(:, cell), constraints => self%constraints)
+            n_columns = 0
+            tie = 0.0_rk
+            do k = 1, 6
+               do column = 1, constraints%n_columns(nodes(k))
+                  n_columns = n_columns + 1
+                  dofs(n_columns) = constraints%dof(column, nodes(k))
+                  tie(2*k - 1:2*k, n_columns) = constraints%basis(:, column, nodes(k))
+               end do
+            end do
+            if (all(constraints%n_columns(nodes) == 2)) then
+               reduced(1:12, 1:12) = self%stiffness(:, :, cell)
+            else
+               tied(:, :n_columns) = matmul(self%stiffness(:, :, cell), tie(:, :n_columns))
+               reduced(:n_columns, :n_columns) = matmul(transpose(tie(:, :n_columns)), tied(:, :n_columns))
+            end if
+         end associate
+         do j = 1, n_columns
+            do i = j, n_columns
+               n_entries = n_entries + 1
+               row(n_entries) = max(dofs(i), dofs(j))
+               col(n_entries) = min(dofs(i), dofs(j))
+               values(n_entries) = reduced(i, j)
+            end do
+         end do
+      end do
+   end subroutine assemble
+
+   !> Displacements under the given loads.
+   subroutine solve(self, loads, displacement, error)
+      class(fine_model_t), intent(inout) :: self
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), allocatable, intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: force(:, :), x(:, :)
+      integer(ik) :: node, column, cell
+
+      if (.not. self%ready) then
+         call raise_error(error, "fine_model_t%solve", "prepare has to come first")
+         return
+      end if
+      call check_loads(self%mesh, loads, error)
+      if (allocated(error)) return
+
+      ! The given part of the displacements.
+      allocate (displacement(2, self%mesh%n_nodes), source=0.0_rk)
+      do node = 1, self%mesh%n_nodes
+         if (self%mesh%on_boundary(node)) displacement(:, node) = loads%boundary_displacement(:, node)
+      end do
+      call prescribe_jumps(self%mesh, self%conditions, self%constraints, loads%jump, displacement)
+
+      ! Forces, less those that the given displacements take.
+      allocate (force(2, self%mesh%n_nodes), source=0.0_rk)
+      call add_face_forces(self%mesh, loads%traction, loads%fluid_pressure, force)
+      call add_pore_pressure_forces(self%mesh, self%elasticity%biot, loads%pore_pressure, force)
+      do cell = 1, self%mesh%n_cells
+         associate (nodes => self%mesh%cell_nodes(:, cell))
+            if (.not. any(self%constraints%prescribed(nodes))) cycle
+            force(:, nodes) = force(:, nodes) &
+                              - reshape(matmul(self%stiffness(:, :, cell), &
+                                               reshape(displacement(:, nodes), [12])), [2, 6])
+         end associate
+      end do
+
+      if (self%constraints%n_dofs > 0) then
+         allocate (x(self%constraints%n_dofs, 1), source=0.0_rk)
+         do node = 1, self%mesh%n_nodes
+            do column = 1, self%constraints%n_columns(node)
+               associate (dof => self%constraints%dof(column, node))
+                  x(dof, 1) = x(dof, 1) + dot_product(self%constraints%basis(:, column, node), force(:, node))
+               end associate
+            end do
+         end do
+         call self%solver%solve(x, error)
+         if (allocated(error)) return
+         do node = 1, self%mesh%n_nodes
+            do column = 1, self%constraints%n_columns(node)
+               displacement(:, node) = displacement(:, node) + x(self%constraints%dof(column, node), 1) &
+                                       *self%constraints%basis(:, column, node)
+            end do
+         end do
+      end if
+      if (.not. sum(abs(displacement)) <= huge(1.0_rk)) then
+         call raise_error(error, "fine_model_t%solve", "a displacement is not a finite number")
+      end if
+   end subroutine solve
+
+   !> Displacement gradient d u_i / d x_j at a point of an element.
+   pure function displacement_gradient(self, displacement, cell, lambda) result(gradient)
+      class(fine_model_t), intent(in) :: self
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle; not the tip itself
+      real(rk) :: gradient(2, 2)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
+
+      associate (nodes => self%mesh%cell_nodes(:, cell))
+         call evaluate_element(self%mesh%xy(:, nodes), self%mesh%tip_corner(cell), lambda, values, gradients, &
+                               area_coordinates, determinant)
+         gradient = matmul(displacement(:, nodes), transpose(gradients))
+      end associate
+   end function displacement_gradient
+
+   !> Pore pressure [Pa] at a point of an element.
+   pure real(rk) function pore_pressure_at(self, pressure, cell, area_coordinates)
+      class(fine_model_t), intent(in) :: self
+      real(rk), intent(in) :: pressure(:)  !< (n_vertices) [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: area_coordinates(3)  !< barycentric coordinates in space
+
+      pore_pressure_at = dot_product(area_coordinates, pressure(self%mesh%cell_nodes(1:3, cell)))
+   end function pore_pressure_at
+
+end module fine_model

@@ -1,0 +1,49 @@
+!> The field of unit stress intensity, in the axes of the tip (Muskhelishvili's functions).
+!!
+!! With Phi(z) = Omega(z) = (K_I - i K_II)/(2 sqrt(2 pi z)), z = x + i y and ' = d/dz,
+!!    s22 - i s12 = Phi(z) + Omega(conj z) + (z - conj z) conj(Phi'(z)),   s11 + s22 = 4 Re Phi(z),
+!!    2 mu d(u1 + i u2)/dx1 = kappa Phi(z) - Omega(conj z) - (z - conj z) conj(Phi'(z)).
+module tips_auxiliary
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: auxiliary_field, auxiliary_field_t
+
+   real(rk), parameter :: pi = acos(-1.0_rk)
+
+   !> The field at one point.
+   type :: auxiliary_field_t
+      real(rk) :: stress(2, 2)  !< [Pa per Pa m^1/2]
+      real(rk) :: slope(2)  !< du/dx1 [1 per Pa m^1/2]
+      real(rk) :: dilation_slope  !< derivative by x1 of the in-plane strain trace [1/m per Pa m^1/2]
+   end type auxiliary_field_t
+
+contains
+
+   !> The field of mode 1 or 2 at z = root_z**2. The branch of the root decides on which side of the
+   !! crack a point lies: the upper face has root_z = i*sqrt(r), the lower one -i*sqrt(r).
+   elemental function auxiliary_field(mode, root_z, kolosov, shear_modulus) result(field)
+      integer(ik), intent(in) :: mode  !< 1 or 2
+      complex(rk), intent(in) :: root_z  !< [m^1/2]
+      real(rk), intent(in) :: kolosov  !< [-]
+      real(rk), intent(in) :: shear_modulus  !< [Pa]
+      type(auxiliary_field_t) :: field
+      complex(rk) :: factor, phi, phi_slope, omega, bent, traction, slope
+
+      factor = merge(cmplx(1.0_rk, 0.0_rk, rk), cmplx(0.0_rk, -1.0_rk, rk), mode == 1)/(2.0_rk*sqrt(2.0_rk*pi))
+      phi = factor/root_z
+      phi_slope = -0.5_rk*phi/root_z**2
+      omega = factor/conjg(root_z)
+      bent = cmplx(0.0_rk, 2.0_rk*aimag(root_z**2), rk)*conjg(phi_slope)
+      traction = phi + omega + bent
+      slope = (kolosov*phi - omega - bent)/(2.0_rk*shear_modulus)
+      field%stress(2, 2) = real(traction, rk)
+      field%stress(1, 2) = -aimag(traction)
+      field%stress(2, 1) = field%stress(1, 2)
+      field%stress(1, 1) = 4.0_rk*real(phi, rk) - field%stress(2, 2)
+      field%slope = [real(slope, rk), aimag(slope)]
+      field%dilation_slope = (kolosov - 1.0_rk)/shear_modulus*real(phi_slope, rk)
+   end function auxiliary_field
+
+end module tips_auxiliary

@@ -1,0 +1,48 @@
+!> What a tip is to the procedures of this room, and what they find there.
+module tips_types
+   use base_kinds, only: ik, rk
+   use fine_mesh, only: fine_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: frame_of_tip, intensity_t, tip_frame_t
+
+   !> Stress intensity factors of a tip [Pa m^1/2]. k1 > 0 opens; k2 > 0 where the shear stress ahead of the
+   !! tip is positive in the tip's own axes (x ahead, y to its left).
+   type :: intensity_t
+      real(rk) :: k1 = 0.0_rk, k2 = 0.0_rk  !< interaction integral, larger domain
+      real(rk) :: k1_inner = 0.0_rk, k2_inner = 0.0_rk  !< interaction integral, smaller domain
+      real(rk) :: k1_dc = 0.0_rk, k2_dc = 0.0_rk  !< displacement correlation
+      real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
+   end type intensity_t
+
+   !> A free tip with its own axes.
+   type :: tip_frame_t
+      real(rk) :: origin(2)  !< [m]
+      real(rk) :: axes(2, 2)  !< row 1: unit vector ahead; row 2: to its left, so that axes*v is v in tip axes
+      real(rk) :: upper  !< +1 if side - of the fracture is the upper one in these axes (end 2), else -1
+      integer(ik) :: node  !< mesh node
+      integer(ik) :: fracture  !< index in the network
+      integer(ik) :: face  !< fracture cell that ends at the tip
+   end type tip_frame_t
+
+contains
+
+   !> The axes of a free tip.
+   pure function frame_of_tip(fine, tip) result(frame)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
+      type(tip_frame_t) :: frame
+
+      associate (fracture => fine%fracture)
+         frame%node = fracture%tip_node(tip)
+         frame%fracture = fracture%tip_fracture(tip)
+         frame%face = fracture%point_cells(fracture%point_first(fracture%tip_point(tip)))
+         frame%origin = fine%xy(:, frame%node)
+         frame%axes(1, :) = fracture%tip_direction(:, tip)
+         frame%axes(2, :) = [-frame%axes(1, 2), frame%axes(1, 1)]
+         frame%upper = merge(1.0_rk, -1.0_rk, fracture%tip_end(tip) == 2)
+      end associate
+   end function frame_of_tip
+
+end module tips_types
