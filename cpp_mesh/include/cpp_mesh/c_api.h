@@ -24,7 +24,8 @@ typedef struct {
 } cm_network;
 
 /* What to mesh: a rectangle, cut by the part of the network that lies in it. Cell sizes grow linearly
-   from size_fracture at the fractures to size_boundary at the point of the rectangle farthest from them.
+   from size_fracture at the fractures to size_boundary, reached at half the distance to the point of the
+   rectangle farthest from them, so that most of the boundary has it.
    With is_window, fractures may be cut by the edges (those ends become boundary points), and every free
    tip gets a rosette of `rosette_sectors` triangles with radius `rosette_radius` (made smaller where another
    fracture, tip, kink or edge is near); without it a fracture that leaves the rectangle is refused. */

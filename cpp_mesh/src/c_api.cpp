@@ -1,0 +1,194 @@
+// The C functions: they copy in and out, and turn exceptions into codes.
+#include "cpp_mesh/c_api.h"
+
+#include "errors.hpp"
+#include "locate.hpp"
+#include "mesh.hpp"
+
+#include <memory>
+#include <numeric>
+#include <string>
+
+struct cm_mesh {
+    cpp_mesh::Mesh mesh;
+};
+
+namespace {
+
+using namespace cpp_mesh;
+
+constexpr int success = 0, failure = 1;
+
+std::string& last_error() {
+    thread_local std::string text;
+    return text;
+}
+
+// Run an action at the border.
+template <typename Action> int guarded(Action&& action) {
+    try {
+        last_error().clear();
+        action();
+        return success;
+    } catch (const std::bad_alloc&) {
+        last_error() = "there is not enough memory for the mesh";
+    } catch (const std::exception& error) {
+        last_error() = error.what();
+    } catch (...) {
+        last_error() = "an unknown error happened in the mesh library";
+    }
+    return failure;
+}
+
+void require(bool condition, const char* message) {
+    if (!condition)
+        throw MeshError(message);
+}
+
+Network network_from(const cm_network* given) {
+    require(given != nullptr, "no network was given");
+    Network network;
+    network.first.assign(given->first, given->first + given->n_fractures + 1);
+    for (int v = 0; v < network.first.back(); ++v)
+        network.xy.push_back({given->xy[2 * v], given->xy[2 * v + 1]});
+    network.s_start.assign(given->s_start, given->s_start + given->n_fractures);
+    return network;
+}
+
+Specification specification_from(const cm_spec* given) {
+    require(given != nullptr, "no specification was given");
+    Specification spec;
+    spec.rectangle = {given->x_min, given->x_max, given->y_min, given->y_max};
+    spec.size_fracture = given->size_fracture;
+    spec.size_boundary = given->size_boundary;
+    spec.is_window = given->is_window != 0;
+    spec.rosette_sectors = given->rosette_sectors;
+    spec.rosette_radius = given->rosette_radius;
+    return spec;
+}
+
+void copy_points(const std::vector<Vec2>& points, double* target) {
+    for (const Vec2& p : points) {
+        *target++ = p.x;
+        *target++ = p.y;
+    }
+}
+
+void copy_matrix(const SplitMesh& mesh, const cm_arrays& to) {
+    copy_points(mesh.xy, to.xy);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (int k = 0; k < 3; ++k) {
+            to.cell_nodes[3 * c + k] = mesh.cells[c][k];
+            to.cell_faces[3 * c + k] = mesh.cell_faces[c][k];
+        }
+    }
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        const Face& face = mesh.faces[f];
+        for (int k = 0; k < 2; ++k) {
+            to.face_nodes[2 * f + k] = face.node[k];
+            to.face_cells[2 * f + k] = face.cell[k];
+        }
+        to.face_side[f] = face.side;
+        to.face_fracture_cell[f] = face.fracture_cell;
+    }
+}
+
+void copy_fractures(const SplitMesh& mesh, const cm_arrays& to) {
+    for (std::size_t i = 0; i < mesh.fracture_cells.size(); ++i) {
+        to.fcell_fracture[i] = mesh.fracture_cells[i].fracture;
+        for (int k = 0; k < 2; ++k) {
+            to.fcell_points[2 * i + k] = mesh.fracture_cell_points[i][k];
+            to.fcell_faces[2 * i + k] = mesh.fracture_cell_faces[i][k];
+            to.fcell_s[2 * i + k] = mesh.fracture_cells[i].s[k];
+        }
+    }
+    int next = 0;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const FracturePoint& point = mesh.points[p];
+        to.point_xy[2 * p] = point.xy.x;
+        to.point_xy[2 * p + 1] = point.xy.y;
+        to.point_kind[p] = static_cast<int32_t>(point.kind);
+        to.point_first[p] = next;
+        for (int cell : point.cells)
+            to.point_cells[next++] = cell;
+    }
+    to.point_first[mesh.points.size()] = next;
+    for (std::size_t t = 0; t < mesh.tips.size(); ++t) {
+        const Tip& tip = mesh.tips[t];
+        to.tip_point[t] = tip.point;
+        to.tip_node[t] = tip.node;
+        to.tip_fracture[t] = tip.fracture;
+        to.tip_end[t] = tip.end;
+        to.tip_direction[2 * t] = tip.direction.x;
+        to.tip_direction[2 * t + 1] = tip.direction.y;
+        to.tip_radius[t] = tip.radius;
+    }
+}
+
+} // namespace
+
+const char* cm_last_error(void) {
+    return last_error().c_str();
+}
+
+int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh) {
+    return guarded([&] {
+        require(mesh != nullptr, "no place was given for the mesh");
+        *mesh = nullptr;
+        *mesh = new cm_mesh{create_mesh(specification_from(spec), network_from(network))};
+    });
+}
+
+int cm_sizes(const cm_mesh* mesh, cm_counts* counts) {
+    return guarded([&] {
+        require(mesh != nullptr && counts != nullptr, "no mesh was given");
+        const SplitMesh& split = mesh->mesh.split;
+        counts->n_nodes = static_cast<int32_t>(split.xy.size());
+        counts->n_cells = static_cast<int32_t>(split.cells.size());
+        counts->n_faces = static_cast<int32_t>(split.faces.size());
+        counts->n_fracture_cells = static_cast<int32_t>(split.fracture_cells.size());
+        counts->n_fracture_points = static_cast<int32_t>(split.points.size());
+        counts->n_point_cells = 2 * counts->n_fracture_cells;
+        counts->n_tips = static_cast<int32_t>(split.tips.size());
+    });
+}
+
+int cm_copy(const cm_mesh* mesh, const cm_arrays* arrays) {
+    return guarded([&] {
+        require(mesh != nullptr && arrays != nullptr, "no mesh was given");
+        copy_matrix(mesh->mesh.split, *arrays);
+        copy_fractures(mesh->mesh.split, *arrays);
+    });
+}
+
+int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy, int32_t* cells) {
+    return guarded([&] {
+        require(mesh != nullptr, "no mesh was given");
+        const PlaneMesh& plane = mesh->mesh.plane;
+        std::vector<int> all(plane.cells.size());
+        std::iota(all.begin(), all.end(), 0);
+        const CellBins bins(plane.xy, plane.cells, std::move(all));
+        for (int32_t p = 0; p < n_points; ++p)
+            cells[p] = bins.locate({xy[2 * p], xy[2 * p + 1]});
+    });
+}
+
+int cm_remesh(const cm_mesh*, const cm_network*, int32_t, const double*, double, double,
+              cm_mesh**) {
+    return guarded([] { throw MeshError("remeshing is not available in this version"); });
+}
+
+int cm_map_sizes(const cm_mesh*, int32_t*) {
+    return guarded([] { throw MeshError("the mesh was not made by remeshing"); });
+}
+
+int cm_map_copy(const cm_mesh*, int32_t*, int32_t*, int32_t*, double*, int32_t*) {
+    return guarded([] { throw MeshError("the mesh was not made by remeshing"); });
+}
+
+void cm_destroy(cm_mesh** mesh) {
+    if (mesh != nullptr) {
+        delete *mesh;
+        *mesh = nullptr;
+    }
+}

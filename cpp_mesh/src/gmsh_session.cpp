@@ -1,0 +1,183 @@
+#include "gmsh_session.hpp"
+
+#include "errors.hpp"
+
+#include <gmsh.h>
+
+#include <unordered_map>
+
+namespace cpp_mesh {
+
+namespace {
+
+constexpr int algorithm_frontal_delaunay = 6;
+
+// Coordinates for gmsh: the region's box becomes about the unit square, so that gmsh's own absolute
+// tolerances mean the same for a laboratory sample and for a reservoir.
+struct Scaling {
+    Vec2 centre;
+    double factor = 1.0;
+
+    Vec2 scaled(Vec2 p) const { return factor * (p - centre); }
+    Vec2 original(Vec2 p) const { return centre + (1.0 / factor) * p; }
+};
+
+Scaling scaling_of(const std::vector<int>& loop, const std::vector<Vec2>& xy) {
+    Vec2 low = xy[loop[0]], high = low;
+    for (int node : loop) {
+        low = {std::min(low.x, xy[node].x), std::min(low.y, xy[node].y)};
+        high = {std::max(high.x, xy[node].x), std::max(high.y, xy[node].y)};
+    }
+    return {0.5 * (low + high), 1.0 / std::max(high.x - low.x, high.y - low.y)};
+}
+
+// One gmsh model, removed at the end whatever happens.
+class Model {
+public:
+    Model() { gmsh::model::add("region"); }
+    ~Model() {
+        try {
+            gmsh::model::mesh::removeSizeCallback();
+            gmsh::model::remove();
+        } catch (...) { // a destructor must not throw; the next model starts from nothing anyway
+        }
+    }
+    Model(const Model&) = delete;
+    Model& operator=(const Model&) = delete;
+};
+
+class RegionMesher {
+public:
+    RegionMesher(const Region& region, const SizeField& size, std::vector<Vec2>& xy)
+        : region_(region), size_(size), xy_(xy), scaling_(scaling_of(region.loops.at(0), xy)) {}
+
+    std::vector<Triangle> run() {
+        build_model();
+        gmsh::model::mesh::setSizeCallback([this](int, int, double x, double y, double, double) {
+            return size_(scaling_.original({x, y})) * scaling_.factor;
+        });
+        gmsh::model::mesh::generate(2);
+        collect_nodes();
+        return collect_triangles();
+    }
+
+private:
+    int point(int node) {
+        const auto [entry, is_new] = point_of_node_.try_emplace(node, 0);
+        if (is_new) {
+            const Vec2 p = scaling_.scaled(xy_[node]);
+            entry->second = gmsh::model::geo::addPoint(p.x, p.y, 0.0);
+            node_of_point_.push_back(node);
+        }
+        return entry->second;
+    }
+
+    int line(int a, int b) {
+        const int tag = gmsh::model::geo::addLine(point(a), point(b));
+        gmsh::model::geo::mesh::setTransfiniteCurve(tag, 2); // one element: no nodes are added
+        return tag;
+    }
+
+    void build_model() {
+        std::vector<int> loops;
+        for (const std::vector<int>& loop : region_.loops) {
+            std::vector<int> lines;
+            for (std::size_t k = 0; k < loop.size(); ++k)
+                lines.push_back(line(loop[k], loop[(k + 1) % loop.size()]));
+            loops.push_back(gmsh::model::geo::addCurveLoop(lines));
+        }
+        surface_ = gmsh::model::geo::addPlaneSurface(loops);
+        std::vector<int> embedded;
+        for (const auto& edge : region_.embedded)
+            embedded.push_back(line(edge[0], edge[1]));
+        gmsh::model::geo::synchronize();
+        if (!embedded.empty())
+            gmsh::model::mesh::embed(1, embedded, 2, surface_);
+    }
+
+    void collect_nodes() {
+        std::vector<std::size_t> tags;
+        std::vector<double> coordinates, parameters;
+        for (std::size_t k = 0; k < node_of_point_.size(); ++k) {
+            const int node = node_of_point_[k];
+            gmsh::model::mesh::getNodes(tags, coordinates, parameters, 0, point_of_node_.at(node));
+            if (tags.size() != 1)
+                throw MeshError("gmsh did not mesh a given point");
+            node_of_tag_[tags[0]] = node;
+        }
+        gmsh::model::mesh::getNodes(tags, coordinates, parameters, 1);
+        if (!tags.empty())
+            throw MeshError("gmsh added nodes on given edges");
+        gmsh::model::mesh::getNodes(tags, coordinates, parameters, 2, surface_);
+        for (std::size_t k = 0; k < tags.size(); ++k) {
+            node_of_tag_[tags[k]] = static_cast<int>(xy_.size());
+            xy_.push_back(scaling_.original({coordinates[3 * k], coordinates[3 * k + 1]}));
+        }
+    }
+
+    std::vector<Triangle> collect_triangles() const {
+        constexpr int triangle_type = 2;
+        std::vector<std::size_t> element_tags, node_tags;
+        gmsh::model::mesh::getElementsByType(triangle_type, element_tags, node_tags, surface_);
+        std::vector<Triangle> triangles(element_tags.size());
+        for (std::size_t c = 0; c < triangles.size(); ++c) {
+            for (int k = 0; k < 3; ++k)
+                triangles[c][k] = node_of_tag_.at(node_tags[3 * c + k]);
+            if (twice_area(xy_[triangles[c][0]], xy_[triangles[c][1]], xy_[triangles[c][2]]) < 0.0)
+                std::swap(triangles[c][1], triangles[c][2]);
+        }
+        if (triangles.empty())
+            throw MeshError("gmsh made no triangles");
+        return triangles;
+    }
+
+    const Region& region_;
+    const SizeField& size_;
+    std::vector<Vec2>& xy_;
+    const Scaling scaling_;
+    std::unordered_map<int, int> point_of_node_;
+    std::vector<int> node_of_point_;
+    std::unordered_map<std::size_t, int> node_of_tag_;
+    int surface_ = 0;
+};
+
+} // namespace
+
+std::shared_ptr<GmshSession> GmshSession::shared() {
+    static const std::shared_ptr<GmshSession> session = std::make_shared<GmshSession>();
+    return session;
+}
+
+GmshSession::GmshSession() {
+    const bool read_configuration = false, run = false;
+    gmsh::initialize(0, nullptr, read_configuration, run);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("General.NumThreads", 1);
+    gmsh::option::setNumber("Mesh.Algorithm", algorithm_frontal_delaunay);
+    gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
+    gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
+    gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
+}
+
+GmshSession::~GmshSession() {
+    try {
+        gmsh::finalize();
+    } catch (...) { // nothing can be done about it at the end of the process
+    }
+}
+
+std::vector<Triangle> GmshSession::triangulate(const Region& region, const SizeField& size,
+                                               std::vector<Vec2>& xy) {
+    try {
+        const Model model;
+        return RegionMesher(region, size, xy).run();
+    } catch (const MeshError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw MeshError(std::string("gmsh could not mesh the region: ") + error.what());
+    } catch (const std::string& error) { // gmsh's own kind of exception
+        throw MeshError("gmsh could not mesh the region: " + error);
+    }
+}
+
+} // namespace cpp_mesh

@@ -1,0 +1,46 @@
+// What a handle of the C API stands for.
+#ifndef CPP_MESH_MESH_HPP
+#define CPP_MESH_MESH_HPP
+
+#include "network.hpp"
+#include "plane_mesh.hpp"
+#include "size_field.hpp"
+#include "split_mesh.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace cpp_mesh {
+
+struct Specification {
+    Rectangle rectangle;
+    double size_fracture = 0.0;
+    double size_boundary = 0.0;
+    bool is_window = false;
+    int rosette_sectors = 0;
+    double rosette_radius = 0.0;
+};
+
+// How a remeshed mesh covers the one before.
+struct PatchMap {
+    std::vector<int> cell_old;      // -1 in the patch
+    std::vector<int> overlap_first; // by new cell
+    std::vector<int> overlap_cell;
+    std::vector<double> overlap_area; // [m2]
+};
+
+struct Mesh {
+    Specification specification;
+    Network network;
+    SizeField size;
+    PlaneMesh plane;
+    SplitMesh split;
+    std::optional<PatchMap> map; // only of a remeshed mesh
+};
+
+// A new mesh of the rectangle and the part of the network in it.
+Mesh create_mesh(const Specification& specification, const Network& network);
+
+} // namespace cpp_mesh
+
+#endif

@@ -1,0 +1,86 @@
+#include "size_field.hpp"
+
+#include <limits>
+
+namespace cpp_mesh {
+
+namespace {
+
+// Growth of cell sizes per distance outside a rosette, whose elements are smaller than those
+// around.
+constexpr double disc_slope = 0.3;
+
+// Share of the distance to the farthest point at which cells have grown to their full size: the
+// farthest point is a corner, and most of the boundary, which is nearer, should have cells of full
+// size too.
+constexpr double reach = 0.5;
+
+// The farthest point is looked for on a grid: sizes depend on it only weakly.
+constexpr int search_intervals = 32;
+
+} // namespace
+
+SizeField::SizeField(std::vector<SizeSource> sources, const Rectangle& rectangle, double size_far)
+    : sources_(std::move(sources)), largest_(size_far) {
+    if (sources_.empty())
+        return;
+    double farthest = 0.0;
+    for (int i = 0; i <= search_intervals; ++i) {
+        for (int j = 0; j <= search_intervals; ++j) {
+            const Vec2 p = {rectangle.x_min + rectangle.width() * i / search_intervals,
+                            rectangle.y_min + rectangle.height() * j / search_intervals};
+            double nearest = std::numeric_limits<double>::max();
+            for (const SizeSource& source : sources_)
+                nearest = std::min(nearest, distance_to_segment(p, source.a, source.b));
+            farthest = std::max(farthest, nearest);
+        }
+    }
+    double smallest = size_far;
+    for (const SizeSource& source : sources_)
+        smallest = std::min(smallest, source.size);
+    slope_ = (size_far - smallest) / (reach * farthest);
+}
+
+double SizeField::operator()(Vec2 p) const {
+    double size = largest_;
+    for (const SizeSource& source : sources_)
+        size = std::min(size, source.size + slope_ * distance_to_segment(p, source.a, source.b));
+    for (const SizeDisc& disc : discs_)
+        size = std::min(
+            size, disc.size + disc_slope * std::max(0.0, distance(p, disc.centre) - disc.radius));
+    return size;
+}
+
+std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
+    const double whole = distance(a, b);
+    double smallest_seen = size(a);
+    for (int k = 1; k <= 8; ++k)
+        smallest_seen = std::min(smallest_seen, size(along(a, b, 0.125 * k)));
+    const int n_samples =
+        static_cast<int>(std::clamp(std::ceil(4.0 * whole / smallest_seen), 16.0, 1024.0));
+    std::vector<double> count(n_samples + 1, 0.0); // cells from the start to the sample
+    double previous = size(a), smallest = previous, largest = previous;
+    for (int k = 1; k <= n_samples; ++k) {
+        const double here = size(along(a, b, static_cast<double>(k) / n_samples));
+        count[k] = count[k - 1] + 0.5 * (1.0 / previous + 1.0 / here) * whole / n_samples;
+        smallest = std::min(smallest, here);
+        largest = std::max(largest, here);
+        previous = here;
+    }
+    const int n = std::max(1, static_cast<int>(std::lround(count[n_samples])));
+    std::vector<double> t(n + 1);
+    const bool is_uniform = largest - smallest <= 1e-9 * largest;
+    int k = 0;
+    for (int i = 0; i <= n; ++i) {
+        t[i] = static_cast<double>(i) / n;
+        if (is_uniform || i == 0 || i == n)
+            continue;
+        const double wanted = t[i] * count[n_samples];
+        while (count[k + 1] < wanted)
+            ++k;
+        t[i] = (k + (wanted - count[k]) / (count[k + 1] - count[k])) / n_samples;
+    }
+    return t;
+}
+
+} // namespace cpp_mesh

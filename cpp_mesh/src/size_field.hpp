@@ -1,0 +1,46 @@
+// How large cells should be, as a function of place.
+#ifndef CPP_MESH_SIZE_FIELD_HPP
+#define CPP_MESH_SIZE_FIELD_HPP
+
+#include "geometry.hpp"
+
+#include <vector>
+
+namespace cpp_mesh {
+
+// Cells have `size` on the segment and grow linearly away from it.
+struct SizeSource {
+    Vec2 a, b;
+    double size = 0.0;
+};
+
+// Cells have `size` within `radius` of the centre (a rosette) and grow away from it.
+struct SizeDisc {
+    Vec2 centre;
+    double radius = 0.0;
+    double size = 0.0;
+};
+
+class SizeField {
+public:
+    SizeField() = default;
+    // Grows from the sources to size_far at half the distance to the rectangle's farthest point.
+    SizeField(std::vector<SizeSource> sources, const Rectangle& rectangle, double size_far);
+
+    double operator()(Vec2 p) const;
+    void add(const SizeSource& source) { sources_.push_back(source); }
+    void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
+
+private:
+    std::vector<SizeSource> sources_;
+    std::vector<SizeDisc> discs_;
+    double slope_ = 0.0;
+    double largest_ = 0.0;
+};
+
+// Parameters 0 = t0 < ... < tn = 1 that divide the segment a-b into cells of the wanted size.
+std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size);
+
+} // namespace cpp_mesh
+
+#endif

@@ -1,0 +1,40 @@
+#include "smooth.hpp"
+
+namespace cpp_mesh {
+
+namespace {
+
+constexpr int sweeps = 3;
+
+double smallest_angle_around(const PlaneMesh& mesh, const EdgeTable& edges, int node) {
+    double smallest = 4.0;
+    for (const int* c = edges.begin(node); c != edges.end(node); ++c) {
+        const Triangle& cell = mesh.cells[*c];
+        smallest = std::min(smallest,
+                            smallest_angle(mesh.xy[cell[0]], mesh.xy[cell[1]], mesh.xy[cell[2]]));
+    }
+    return smallest;
+}
+
+} // namespace
+
+void smooth(PlaneMesh& mesh, int first_free) {
+    const EdgeTable edges(mesh.cells, static_cast<int>(mesh.xy.size()));
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        for (int node = first_free; node < static_cast<int>(mesh.xy.size()); ++node) {
+            Vec2 sum;
+            int n_cells = 0;
+            for (const int* c = edges.begin(node); c != edges.end(node); ++c, ++n_cells)
+                for (int other : mesh.cells[*c])
+                    if (other != node)
+                        sum = sum + mesh.xy[other];
+            const Vec2 before = mesh.xy[node];
+            const double quality = smallest_angle_around(mesh, edges, node);
+            mesh.xy[node] = (0.5 / n_cells) * sum; // each neighbour is in two cells
+            if (!(smallest_angle_around(mesh, edges, node) > quality))
+                mesh.xy[node] = before;
+        }
+    }
+}
+
+} // namespace cpp_mesh

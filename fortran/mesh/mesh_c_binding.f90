@@ -1,0 +1,140 @@
+!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only mesh_builder uses this.
+module mesh_c_binding
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_int32_t, c_ptr
+   implicit none(type, external)
+   private
+
+   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t
+   public :: cm_copy, cm_create, cm_destroy, cm_last_error, cm_locate, cm_map_copy, cm_map_sizes
+   public :: cm_remesh, cm_sizes, c_string_length
+
+   !> Fracture polylines.
+   type, bind(C) :: cm_network_t
+      integer(c_int32_t) :: n_fractures
+      type(c_ptr) :: first
+      type(c_ptr) :: xy
+      type(c_ptr) :: s_start
+   end type cm_network_t
+
+   !> What to mesh.
+   type, bind(C) :: cm_spec_t
+      real(c_double) :: x_min, x_max, y_min, y_max
+      real(c_double) :: size_fracture, size_boundary
+      integer(c_int32_t) :: is_window
+      integer(c_int32_t) :: rosette_sectors
+      real(c_double) :: rosette_radius
+   end type cm_spec_t
+
+   !> Sizes of the arrays below.
+   type, bind(C) :: cm_counts_t
+      integer(c_int32_t) :: n_nodes, n_cells, n_faces
+      integer(c_int32_t) :: n_fracture_cells, n_fracture_points, n_point_cells, n_tips
+   end type cm_counts_t
+
+   !> Arrays of the caller that cm_copy fills.
+   type, bind(C) :: cm_arrays_t
+      type(c_ptr) :: xy
+      type(c_ptr) :: cell_nodes
+      type(c_ptr) :: cell_faces
+      type(c_ptr) :: face_nodes
+      type(c_ptr) :: face_cells
+      type(c_ptr) :: face_side
+      type(c_ptr) :: face_fracture_cell
+      type(c_ptr) :: fcell_fracture
+      type(c_ptr) :: fcell_points
+      type(c_ptr) :: fcell_faces
+      type(c_ptr) :: fcell_s
+      type(c_ptr) :: point_xy
+      type(c_ptr) :: point_kind
+      type(c_ptr) :: point_first
+      type(c_ptr) :: point_cells
+      type(c_ptr) :: tip_point
+      type(c_ptr) :: tip_node
+      type(c_ptr) :: tip_fracture
+      type(c_ptr) :: tip_end
+      type(c_ptr) :: tip_direction
+      type(c_ptr) :: tip_radius
+   end type cm_arrays_t
+
+   interface
+      !> Why the last call of this thread failed, ended by a null character.
+      function cm_last_error() result(text) bind(C, name="cm_last_error")
+         import :: c_ptr
+         type(c_ptr) :: text
+      end function cm_last_error
+
+      function cm_create(spec, network, mesh) result(status) bind(C, name="cm_create")
+         import :: c_int, c_ptr, cm_network_t, cm_spec_t
+         type(cm_spec_t), intent(in) :: spec
+         type(cm_network_t), intent(in) :: network
+         type(c_ptr), intent(out) :: mesh
+         integer(c_int) :: status
+      end function cm_create
+
+      function cm_remesh(old_mesh, network, n_centres, centres, radius, size, new_mesh) &
+         result(status) bind(C, name="cm_remesh")
+         import :: c_double, c_int, c_int32_t, c_ptr, cm_network_t
+         type(c_ptr), value :: old_mesh
+         type(cm_network_t), intent(in) :: network
+         integer(c_int32_t), value :: n_centres
+         real(c_double), intent(in) :: centres(2, *)
+         real(c_double), value :: radius, size
+         type(c_ptr), intent(out) :: new_mesh
+         integer(c_int) :: status
+      end function cm_remesh
+
+      function cm_sizes(mesh, counts) result(status) bind(C, name="cm_sizes")
+         import :: c_int, c_ptr, cm_counts_t
+         type(c_ptr), value :: mesh
+         type(cm_counts_t), intent(out) :: counts
+         integer(c_int) :: status
+      end function cm_sizes
+
+      function cm_copy(mesh, arrays) result(status) bind(C, name="cm_copy")
+         import :: c_int, c_ptr, cm_arrays_t
+         type(c_ptr), value :: mesh
+         type(cm_arrays_t), intent(in) :: arrays
+         integer(c_int) :: status
+      end function cm_copy
+
+      function cm_map_sizes(new_mesh, n_overlaps) result(status) bind(C, name="cm_map_sizes")
+         import :: c_int, c_int32_t, c_ptr
+         type(c_ptr), value :: new_mesh
+         integer(c_int32_t), intent(out) :: n_overlaps
+         integer(c_int) :: status
+      end function cm_map_sizes
+
+      function cm_map_copy(new_mesh, cell_old, overlap_first, overlap_cell, overlap_area, &
+                           fcell_old) result(status) bind(C, name="cm_map_copy")
+         import :: c_double, c_int, c_int32_t, c_ptr
+         type(c_ptr), value :: new_mesh
+         integer(c_int32_t), intent(out) :: cell_old(*), overlap_first(*), overlap_cell(*)
+         real(c_double), intent(out) :: overlap_area(*)
+         integer(c_int32_t), intent(out) :: fcell_old(*)
+         integer(c_int) :: status
+      end function cm_map_copy
+
+      function cm_locate(mesh, n_points, xy, cells) result(status) bind(C, name="cm_locate")
+         import :: c_double, c_int, c_int32_t, c_ptr
+         type(c_ptr), value :: mesh
+         integer(c_int32_t), value :: n_points
+         real(c_double), intent(in) :: xy(2, *)
+         integer(c_int32_t), intent(out) :: cells(*)
+         integer(c_int) :: status
+      end function cm_locate
+
+      subroutine cm_destroy(mesh) bind(C, name="cm_destroy")
+         import :: c_ptr
+         type(c_ptr), intent(inout) :: mesh
+      end subroutine cm_destroy
+
+      !> strlen of the C library.
+      function c_string_length(text) result(n) bind(C, name="strlen")
+         use, intrinsic :: iso_c_binding, only: c_size_t
+         import :: c_ptr
+         type(c_ptr), value :: text
+         integer(c_size_t) :: n
+      end function c_string_length
+   end interface
+
+end module mesh_c_binding
