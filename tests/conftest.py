@@ -1,0 +1,42 @@
+"""Trees for the tests of the launcher."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from launcher_tree import Tree, make_tree
+
+
+@pytest.fixture
+def bare_tree(tmp_path: Path) -> Tree:
+    """A tree where nothing has been set up."""
+    return make_tree(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def shared_tree(tmp_path_factory: pytest.TempPathFactory) -> Tree:
+    """A tree that the first call has set up; a test must leave it as it is."""
+    tree = make_tree(tmp_path_factory.mktemp("launcher"))
+    done = tree.call("check", tree.scene())
+    assert done.returncode == 0, done.stderr
+    return tree
+
+
+@pytest.fixture
+def ready_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
+    """The tree that is set up, called from an empty folder."""
+    return Tree(shared_tree.root, tmp_path)
+
+
+@pytest.fixture
+def own_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
+    """A tree that is set up and free to be changed: a copy, so it has noticed being elsewhere."""
+    root = tmp_path / "tree"
+    shutil.copytree(shared_tree.root, root, symlinks=True)
+    place = tmp_path / "place"
+    place.mkdir()
+    tree = Tree(root, place)
+    assert tree.call("check", tree.scene()).returncode == 0
+    return tree

@@ -1,0 +1,120 @@
+"""A small tree with the real launcher and everything behind it replaced, to see what it calls."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+
+_PROJECT = """\
+cmake_minimum_required(VERSION 3.22)
+project(wingcrack VERSION 9.8.7 LANGUAGES NONE)
+file(GLOB parts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fortran/*.sh)
+set(program ${PROJECT_BINARY_DIR}/fortran/app/wingcrack-solver)
+add_custom_command(
+  OUTPUT ${program}
+  COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/assemble.sh ${program} ${parts}
+  DEPENDS ${parts}
+)
+add_custom_target(wingcrack-solver ALL DEPENDS ${program})
+"""
+
+_ASSEMBLE = """\
+program=$1
+shift
+mkdir -p "${program%/*}" && cat "$@" >"$program" && chmod +x "$program"
+"""
+
+# The stand-in for the solver tells how it was called; then the scene file, as a shell script, says
+# what happens and with which status it ends.
+_SOLVER = """\
+#!/usr/bin/env bash
+printf 'solver %s\\n' "$*"
+printf 'threads %s\\n' "$OPENBLAS_NUM_THREADS"
+source "$2"
+"""
+
+_POST = """\
+import os
+import sys
+
+print("post", *sys.argv[1:])
+sys.exit(int(os.environ.get("POST_STATUS", "0")))
+"""
+
+
+def _heed_interrupts() -> None:
+    """Undo an ignored SIGINT, which a shell would inherit and could not undo."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@dataclass
+class Tree:
+    """A folder with the launcher, and a place to call it from."""
+
+    root: Path
+    place: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def log(self) -> str:
+        """What the set-up ran so far."""
+        file = self.root / "build" / "setup.log"
+        return file.read_text() if file.exists() else ""
+
+    def scene(self, text: str = "", name: str = "scene.nml") -> Path:
+        """Write a scene file whose text is what the stand-in solver does."""
+        file = self.place / name
+        file.write_text(text)
+        return file
+
+    def start(self, *arguments: str | Path, **variables: str) -> subprocess.Popen[str]:
+        """Start the launcher, and leave it running."""
+        return subprocess.Popen(
+            [self.root / "wingcrack", *arguments],
+            cwd=self.place,
+            env={**os.environ, **self.environment, **variables},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=_heed_interrupts,
+        )
+
+    def call(self, *arguments: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
+        """Run the launcher to its end."""
+        with self.start(*arguments, **variables) as process:
+            out, error = process.communicate(timeout=300)
+        return subprocess.CompletedProcess(process.args, process.returncode, out, error)
+
+
+def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
+    """Make a tree in a new folder, with its own lists of system and Python packages."""
+    root = folder / "tree"
+    for name in ("fortran", "cpp_mesh", "cmake", "post/wingcrack_post"):
+        (root / name).mkdir(parents=True)
+    shutil.copy(TOP / "wingcrack", root)
+    shutil.copy(TOP / "CMakePresets.json", root)
+    shutil.copytree(TOP / "tools", root / "tools")
+    (root / "tools" / "system_packages.txt").write_text(packages)
+    (root / "requirements.txt").write_text(requirements)
+    (root / "CMakeLists.txt").write_text(_PROJECT)
+    (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
+    (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
+    (root / "post" / "wingcrack_post" / "__main__.py").write_text(_POST)
+    place = folder / "place"
+    place.mkdir()
+    return Tree(root, place)
+
+
+def add_program(folder: Path, name: str, text: str) -> None:
+    """Put a shell script into a folder that is to stand on PATH."""
+    folder.mkdir(exist_ok=True)
+    program = folder / name
+    program.write_text(f"#!/bin/bash\n{text}\n")
+    program.chmod(0o755)

@@ -1,0 +1,98 @@
+"""The launcher's words: help, version, and the refusal of what it does not understand."""
+
+from __future__ import annotations
+
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+from launcher_tree import TOP
+
+LAUNCHER = TOP / "wingcrack"
+
+
+def call(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [LAUNCHER, *arguments],
+        cwd=place,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_version_is_that_of_the_python_package(tmp_path: Path) -> None:
+    expected = tomllib.loads((TOP / "pyproject.toml").read_text())["project"]["version"]
+    done = call(tmp_path, "--version")
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"wingcrack {expected}\n", "")
+
+
+@pytest.mark.parametrize("command", ["run", "check", "plot", "test"])
+def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str) -> None:
+    done = call(tmp_path, command, "--help")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert "example:" in done.stdout.lower()
+    assert f"wingcrack {command}" in done.stdout
+
+
+def test_help_names_every_subcommand(tmp_path: Path) -> None:
+    done = call(tmp_path, "--help")
+    assert done.returncode == 0
+    for command in ("run", "check", "plot", "test", "--version"):
+        assert command in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ([], "a subcommand is missing"),
+        (["simulate"], "unknown subcommand simulate"),
+        (["--out", "here"], "unknown subcommand --out"),
+        (["run"], "run needs a scene file"),
+        (["run", "--quiet"], "run needs a scene file"),
+        (["run", "nowhere.nml"], "there is no scene file nowhere.nml"),
+        (["run", "."], "there is no scene file ."),
+        (["run", "nowhere.nml", "other.nml"], "run takes one scene file, and other.nml"),
+        (["run", "nowhere.nml", "--fast"], "unknown option --fast"),
+        (["run", "nowhere.nml", "--out"], "--out needs a value"),
+        (["run", "nowhere.nml", "--out", ""], "--out needs a value"),
+        (["run", "nowhere.nml", "--out="], "unknown option --out="),
+        (["run", "nowhere.nml", "--threads", "0"], "--threads needs a whole number"),
+        (["run", "nowhere.nml", "--threads", "two"], "--threads needs a whole number"),
+        (["run", "nowhere.nml", "--threads=1.5"], "--threads needs a whole number"),
+        (["check"], "check needs a scene file"),
+        (["check", "nowhere.nml"], "there is no scene file nowhere.nml"),
+        (["check", "nowhere.nml", "--out", "here"], "unknown option --out"),
+        (["check", "nowhere.nml", "other.nml"], "check takes one scene file"),
+        (["plot"], "plot needs the directory of a run"),
+        (["plot", "nowhere"], "there is no directory nowhere"),
+        (["test", "everything"], "test takes no arguments"),
+    ],
+)
+def test_wrong_usage_gives_one_sentence_and_writes_nothing(
+    tmp_path: Path, arguments: list[str], reason: str
+) -> None:
+    done = call(tmp_path, *arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert reason in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["run", "--help"], ["run", "a.nml", "-h"], ["-h"]])
+def test_help_wins_over_what_else_is_said(tmp_path: Path, arguments: list[str]) -> None:
+    done = call(tmp_path, *arguments)
+    assert done.returncode == 0
+    assert "./wingcrack run" in done.stdout
+
+
+def test_works_through_a_symbolic_link(tmp_path: Path) -> None:
+    link = tmp_path / "wc"
+    link.symlink_to(LAUNCHER)
+    done = subprocess.run([link, "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("wingcrack ")
