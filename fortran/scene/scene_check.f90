@@ -1,0 +1,292 @@
+!> Checks values against each other: first those that a sheet tells by what it gives and what not,
+!> then those that need the numbers.
+module scene_check
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
+   use scene_parameters, only: groups
+   use scene_sheet, only: sheet_t
+   use scene_types, only: name_length, scene_t
+   use scene_values, only: nearest_word, value_t
+   use scene_words, only: integer_text, real_text
+   implicit none(type, external)
+   private
+
+   public :: check_scene, check_sheet
+
+contains
+
+   !> What is given must go together.
+   pure subroutine check_sheet(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_names(sheet, error)
+      if (.not. allocated(error)) call check_permeability(sheet, error)
+      if (.not. allocated(error)) call check_sides(sheet, error)
+      if (.not. allocated(error)) call check_fluid(sheet, error)
+      if (.not. allocated(error)) call check_injections(sheet, error)
+   end subroutine check_sheet
+
+   !> The numbers must go together.
+   pure subroutine check_scene(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet  !< where the scene comes from, for the messages
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_domain(sheet, scene, error)
+      if (.not. allocated(error)) call check_material(sheet, scene, error)
+      if (.not. allocated(error)) call check_support(sheet, scene, error)
+      if (.not. allocated(error)) call check_times(sheet, scene, error)
+      if (.not. allocated(error)) call check_fractures(sheet, scene, error)
+      if (.not. allocated(error)) call check_wells(sheet, scene, error)
+      if (.not. allocated(error)) call check_probes(sheet, scene, error)
+      if (.not. allocated(error)) call check_levels(sheet, scene, error)
+   end subroutine check_scene
+
+   !> No two fractures, sides or probes have the same name.
+   pure subroutine check_names(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: name, other
+      integer :: i, j
+
+      do i = 1, sheet%length
+         select case (groups(sheet%records(i)%group)%name)
+         case ("fracture", "side", "probe")
+            name = sheet%records(i)%value("name")
+         case default
+            cycle
+         end select
+         do j = 1, i - 1
+            if (sheet%records(j)%group /= sheet%records(i)%group) cycle
+            other = sheet%records(j)%value("name")
+            if (name%text /= other%text) cycle
+            call raise_error(error, "", sheet%blame(i, "name", "'"//name%text//"' is already taken on line "// &
+                                                    integer_text(other%line)//" but must be unique"))
+            return
+         end do
+      end do
+   end subroutine check_names
+
+   !> Permeability is a scalar or a tensor.
+   pure subroutine check_permeability(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      logical :: scalar, xx, yy, xy
+      integer :: i
+
+      i = sheet%find("material")
+      scalar = sheet%records(i)%is_given("permeability")
+      xx = sheet%records(i)%is_given("permeability_xx")
+      yy = sheet%records(i)%is_given("permeability_yy")
+      xy = sheet%records(i)%is_given("permeability_xy")
+      if (scalar .and. (xx .or. yy .or. xy)) then
+         call raise_error(error, "", sheet%blame(i, "permeability", &
+                                                 "is given beside components of the tensor but must be "// &
+                                                 "given alone or not at all"))
+      else if ((xx .neqv. yy) .or. (xy .and. .not. xx)) then
+         call raise_error(error, "", sheet%blame(i, merge("permeability_yy", "permeability_xx", xx), &
+                                                 "is missing but must be given with the other "// &
+                                                 "components of the tensor"))
+      else if (sheet%has("fluid") .and. .not. (scalar .or. xx)) then
+         call raise_error(error, "", sheet%blame(i, "permeability", &
+                                                 "[m2], which a scene with &fluid needs, is missing"))
+      end if
+   end subroutine check_permeability
+
+   !> Per component displacement or traction, not both.
+   pure subroutine check_sides(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=1), parameter :: axes(2) = ["x", "y"]
+      integer :: i, axis
+
+      do i = 1, sheet%length
+         if (groups(sheet%records(i)%group)%name /= "side") cycle
+         do axis = 1, 2
+            if (sheet%records(i)%is_given(axes(axis)//"_displacement") .and. &
+                sheet%records(i)%is_given(axes(axis)//"_traction")) then
+               call raise_error(error, "", &
+                                sheet%blame(i, axes(axis)//"_traction", "is given beside "//axes(axis)// &
+                                            "_displacement but only one of them can be prescribed"))
+               return
+            end if
+         end do
+      end do
+   end subroutine check_sides
+
+   !> Without a fluid nothing can be injected and no pressure be prescribed.
+   pure subroutine check_fluid(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (sheet%has("fluid")) return
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            select case (groups(record%group)%name)
+            case ("injection")
+               call raise_error(error, "", sheet%blame(i, "", "needs a fluid, but the group &fluid is missing"))
+            case ("side", "initial")
+               if (record%is_given("pressure")) &
+                  call raise_error(error, "", sheet%blame(i, "pressure", &
+                                                          "needs a fluid, but the group &fluid is missing"))
+            end select
+         end associate
+         if (allocated(error)) return
+      end do
+   end subroutine check_fluid
+
+   !> Wells belong to a fracture, and have both coordinates or none.
+   pure subroutine check_injections(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: value, wanted
+      character(len=name_length), allocatable :: names(:)
+      integer :: i, k
+
+      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, sheet%length)])))
+      do k = 1, size(names)
+         value = sheet%records(sheet%find("fracture", k))%value("name")
+         names(k) = value%text
+      end do
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (groups(record%group)%name /= "injection") cycle
+            wanted = record%value("fracture")
+            if (size(names) == 0) then
+               call raise_error(error, "", sheet%blame(i, "fracture", "is '"//wanted%text// &
+                                                       "', but the scene has no fracture"))
+            else if (.not. any(names == wanted%text)) then
+               call raise_error(error, "", sheet%blame(i, "fracture", "is '"//wanted%text// &
+                                                       "', which is no fracture of the scene; the nearest "// &
+                                                       "is '"//nearest_word(wanted%text, names)//"'"))
+            else if (record%is_given("x") .neqv. record%is_given("y")) then
+               call raise_error(error, "", sheet%blame(i, merge("y", "x", record%is_given("x")), &
+                                                       "is missing but must be given with the other "// &
+                                                       "coordinate"))
+            end if
+         end associate
+         if (allocated(error)) return
+      end do
+   end subroutine check_injections
+
+   !> The storage coefficient is positive and the permeability positive definite.
+   pure subroutine check_material(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: bulk_modulus, solid_part
+      integer :: i
+
+      if (.not. sheet%has("fluid")) return
+      i = sheet%find("material")
+      associate (m => scene%material)
+         bulk_modulus = m%young/(3.0_rk*(1.0_rk - 2.0_rk*m%poisson))
+         solid_part = (m%biot - m%porosity)/bulk_modulus
+         if (m%storage == "textbook") solid_part = solid_part*(1.0_rk - m%biot)
+         if (m%biot < m%porosity) then
+            call raise_error(error, "", sheet%blame(i, "biot", "is "//real_text(m%biot)// &
+                                                    " but must be at least the porosity, "// &
+                                                    real_text(m%porosity)))
+         else if (.not. m%porosity*scene%fluid%compressibility + solid_part > 0.0_rk) then
+            call raise_error(error, "", sheet%blame(i, "biot", "and porosity give no storage: phi c_p and "// &
+                                                    "the part of the solid are both zero, but their sum "// &
+                                                    "must be positive"))
+         else if (.not. abs(m%permeability_xy) < &
+                  sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then  ! as a product it would underflow
+            call raise_error(error, "", sheet%blame(i, "permeability_xy", "is "// &
+                                                    real_text(m%permeability_xy)//" but must be smaller "// &
+                                                    "than sqrt(permeability_xx permeability_yy), for the "// &
+                                                    "tensor must be positive definite"))
+         end if
+      end associate
+   end subroutine check_material
+
+   !> The sides hold the body against its three rigid motions.
+   !>
+   !> With u = (a - w y, b + w x): a side held along its own direction fixes a - w y or b + w x at one y or
+   !> x, a side held in the direction of its normal fixes a and w, or b and w, at once.
+   pure subroutine check_support(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      logical :: x_held(4), y_held(4), rotation_held
+
+      x_held = scene%sides%displacement_given(1)
+      y_held = scene%sides%displacement_given(2)
+      rotation_held = any(x_held(1:2)) .or. all(x_held(3:4)) .or. any(y_held(3:4)) .or. all(y_held(1:2))
+      if (.not. any(x_held)) then
+         call raise_error(error, "", sheet%path//": &side: no side has an x_displacement, but one must "// &
+                          "hold the body against moving in x (see docs/input.md)")
+      else if (.not. any(y_held)) then
+         call raise_error(error, "", sheet%path//": &side: no side has a y_displacement, but one must "// &
+                          "hold the body against moving in y (see docs/input.md)")
+      else if (.not. rotation_held) then
+         call raise_error(error, "", sheet%path//": &side: the body can rotate, but a side must hold it: "// &
+                          "left or right an x_displacement, or bottom or top a y_displacement "// &
+                          "(see docs/input.md)")
+      end if
+   end subroutine check_support
+
+   pure subroutine check_times(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      record = sheet%find("time")
+      if (scene%time%step > scene%time%end) then
+         call raise_error(error, "", sheet%blame(record, "step", "is "//real_text(scene%time%step)// &
+                                                 " but must be at most end, "//real_text(scene%time%end)))
+         return
+      else if (scene%time%smallest_factor > scene%time%growth_factor) then
+         call raise_error(error, "", sheet%blame(record, "smallest_factor", &
+                                                 "is "//real_text(scene%time%smallest_factor)// &
+                                                 " but must be at most growth_factor, "// &
+                                                 real_text(scene%time%growth_factor)))
+         return
+      end if
+      do i = 1, size(scene%injections)
+         if (scene%injections(i)%end > scene%injections(i)%start) cycle
+         call raise_error(error, "", sheet%blame(sheet%find("injection", i), "end", &
+                                                 "is "//real_text(scene%injections(i)%end)// &
+                                                 " but must be after start, "// &
+                                                 real_text(scene%injections(i)%start)))
+         return
+      end do
+   end subroutine check_times
+
+   !> Fine level and growth go with the fractures and the coarse level.
+   pure subroutine check_levels(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: switch
+      real(rk) :: fine_size
+
+      if (.not. scene%growth%intensities) return
+      switch = "intensities"
+      if (scene%growth%enabled) switch = "enabled"
+      if (size(scene%fractures) == 0) then
+         call raise_error(error, "", sheet%blame(sheet%find("growth"), switch, &
+                                                 "is .true. but must be .false., for the scene has no "// &
+                                                 "fracture"))
+         return
+      end if
+      fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
+      if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
+         call raise_error(error, "", sheet%blame(sheet%find("fine"), "window", &
+                                                 "is "//real_text(scene%discretization%window)// &
+                                                 " but must be larger than twice the fine mesh size, "// &
+                                                 real_text(fine_size)))
+      else if (scene%growth%increment > 0.5_rk*scene%discretization%window) then
+         call raise_error(error, "", sheet%blame(sheet%find("growth"), "increment", &
+                                                 "is "//real_text(scene%growth%increment)// &
+                                                 " but must be at most half the window, "// &
+                                                 real_text(0.5_rk*scene%discretization%window)))
+      end if
+   end subroutine check_levels
+
+end module scene_check

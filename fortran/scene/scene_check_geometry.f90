@@ -1,0 +1,217 @@
+!> Checks where things are: domain, fractures, wells, probes, cell sizes.
+module scene_check_geometry
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use scene_sheet, only: sheet_t
+   use scene_types, only: domain_t, fracture_t, scene_t
+   use scene_words, only: integer_text, real_text
+   implicit none(type, external)
+   private
+
+   public :: check_domain, check_fractures, check_probes, check_wells
+
+contains
+
+   !> The rectangle has an area, and the cells fit into it.
+   pure subroutine check_domain(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: shorter_edge
+
+      associate (d => scene%domain, size_boundary => scene%discretization%size_boundary)
+         if (.not. d%x_max > d%x_min) then
+            call raise_error(error, "", sheet%blame(sheet%find("domain"), "x_max", "is "//real_text(d%x_max)// &
+                                                    " but must be greater than x_min, "//real_text(d%x_min)))
+            return
+         else if (.not. d%y_max > d%y_min) then
+            call raise_error(error, "", sheet%blame(sheet%find("domain"), "y_max", "is "//real_text(d%y_max)// &
+                                                    " but must be greater than y_min, "//real_text(d%y_min)))
+            return
+         end if
+         shorter_edge = min(d%x_max - d%x_min, d%y_max - d%y_min)
+         if (size_boundary > shorter_edge) then
+            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_boundary", &
+                                                    "is "//real_text(size_boundary)// &
+                                                    " but must be at most the shorter edge of the domain, "// &
+                                                    real_text(shorter_edge)))
+         else if (scene%discretization%size_fracture > size_boundary) then
+            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_fracture", &
+                                                    "is "//real_text(scene%discretization%size_fracture)// &
+                                                    " but must be at most size_boundary, "// &
+                                                    real_text(size_boundary)))
+         end if
+      end associate
+   end subroutine check_domain
+
+   !> Fractures are polylines inside the domain.
+   pure subroutine check_fractures(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(scene%fractures)
+         call check_vertices(sheet, i, scene%fractures(i), scene%domain, error)
+         if (allocated(error)) return
+         if (scene%discretization%size_fracture > total_length(scene%fractures(i))) then
+            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_fracture", &
+                                                    "is "//real_text(scene%discretization%size_fracture)// &
+                                                    " but must be at most the length of fracture '"// &
+                                                    trim(scene%fractures(i)%name)//"', "// &
+                                                    real_text(total_length(scene%fractures(i)))))
+            return
+         end if
+      end do
+   end subroutine check_fractures
+
+   pure subroutine check_vertices(sheet, i, fracture, domain, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: i  !< index of the fracture
+      type(fracture_t), intent(in) :: fracture
+      type(domain_t), intent(in) :: domain
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: whose
+      integer :: record, k, n
+
+      record = sheet%find("fracture", i)
+      whose = "of fracture '"//trim(fracture%name)//"' "
+      n = size(fracture%x)
+      if (size(fracture%y) /= n) then
+         call raise_error(error, "", sheet%blame(record, "y", whose//"has "// &
+                                                 integer_text(size(fracture%y, kind=ik))// &
+                                                 " values but must have as many as x, "// &
+                                                 integer_text(int(n, ik))))
+         return
+      else if (n < 2) then
+         call raise_error(error, "", sheet%blame(record, "x", whose//"has one value but must have at "// &
+                                                 "least two, the ends of the fracture"))
+         return
+      end if
+      do k = 1, n
+         if (.not. contains_point(domain, fracture%x(k), fracture%y(k))) then
+            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the vertex "// &
+                                                    point_text(fracture%x(k), fracture%y(k))// &
+                                                    " outside of the domain but must lie within it"))
+            return
+         end if
+      end do
+      do k = 2, n
+         if (.not. hypot(fracture%x(k) - fracture%x(k - 1), fracture%y(k) - fracture%y(k - 1)) > 0.0_rk) then
+            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the vertex "// &
+                                                    point_text(fracture%x(k), fracture%y(k))// &
+                                                    " twice in a row but must have it once"))
+            return
+         else if (along_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
+            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"run along the boundary to "// &
+                                                    point_text(fracture%x(k), fracture%y(k))// &
+                                                    " but must touch it with its ends only"))
+            return
+         else if (k < n .and. on_boundary(domain, fracture%x(k), fracture%y(k))) then
+            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the inner vertex "// &
+                                                    point_text(fracture%x(k), fracture%y(k))// &
+                                                    " on the boundary but must touch it with its ends only"))
+            return
+         end if
+      end do
+   end subroutine check_vertices
+
+   !> A point of injection lies on its fracture, within a cell.
+   pure subroutine check_wells(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: distance
+      integer :: i
+
+      do i = 1, size(scene%injections)
+         associate (well => scene%injections(i))
+            if (.not. well%at_point) cycle
+            distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
+            if (distance <= scene%discretization%size_fracture) cycle
+            call raise_error(error, "", sheet%blame(sheet%find("injection", i), "x", &
+                                                    "and y are "//point_text(well%x, well%y)//", "// &
+                                                    real_text(distance)//" m away from fracture '"// &
+                                                    trim(scene%fractures(well%fracture)%name)// &
+                                                    "', but must be within size_fracture, "// &
+                                                    real_text(scene%discretization%size_fracture)//" m"))
+         end associate
+         return
+      end do
+   end subroutine check_wells
+
+   pure subroutine check_probes(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(scene%probes)
+         associate (probe => scene%probes(i))
+            if (contains_point(scene%domain, probe%x, probe%y)) cycle
+            call raise_error(error, "", sheet%blame(sheet%find("probe", i), "x", "and y of probe '"// &
+                                                    trim(probe%name)//"' are "//point_text(probe%x, probe%y)// &
+                                                    " but must lie within the domain"))
+         end associate
+         return
+      end do
+   end subroutine check_probes
+
+   !> Inside or on the boundary.
+   pure logical function contains_point(domain, x, y)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: x, y
+
+      contains_point = x >= domain%x_min .and. x <= domain%x_max .and. &
+                       y >= domain%y_min .and. y <= domain%y_max
+   end function contains_point
+
+   !> A point of the domain lies on its boundary.
+   pure logical function on_boundary(domain, x, y)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: x, y
+
+      on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. y >= domain%y_max
+   end function on_boundary
+
+   !> Both ends of a segment of the domain lie on the same side.
+   pure logical function along_boundary(domain, x, y)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: x(2), y(2)
+
+      along_boundary = all(x <= domain%x_min) .or. all(x >= domain%x_max) .or. &
+                       all(y <= domain%y_min) .or. all(y >= domain%y_max)
+   end function along_boundary
+
+   pure real(rk) function total_length(fracture) result(length)
+      type(fracture_t), intent(in) :: fracture
+      integer :: n
+
+      n = size(fracture%x)
+      length = sum(hypot(fracture%x(2:) - fracture%x(:n - 1), fracture%y(2:) - fracture%y(:n - 1)))
+   end function total_length
+
+   !> Distance of a point from the nearest point of a polyline [m].
+   pure real(rk) function distance_to(fracture, x, y) result(distance)
+      type(fracture_t), intent(in) :: fracture
+      real(rk), intent(in) :: x, y
+      real(rk) :: along(2), to_point(2), share
+      integer :: k
+
+      distance = huge(1.0_rk)
+      do k = 2, size(fracture%x)
+         along = [fracture%x(k) - fracture%x(k - 1), fracture%y(k) - fracture%y(k - 1)]
+         to_point = [x - fracture%x(k - 1), y - fracture%y(k - 1)]
+         share = min(1.0_rk, max(0.0_rk, dot_product(along, to_point)/dot_product(along, along)))
+         distance = min(distance, norm2(to_point - share*along))
+      end do
+   end function distance_to
+
+   pure function point_text(x, y) result(text)
+      real(rk), intent(in) :: x, y
+      character(len=:), allocatable :: text
+
+      text = "("//real_text(x)//", "//real_text(y)//")"
+   end function point_text
+
+end module scene_check_geometry

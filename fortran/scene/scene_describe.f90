@@ -1,0 +1,144 @@
+!> docs/input.md, written from the table of parameters.
+module scene_describe
+   use scene_intervals, only: in_words
+   use scene_parameters, only: group_t, groups, kind_choice, kind_integer, kind_logical, kind_name, &
+                               kind_real, kind_reals, need_always, need_fluid, need_fracture, &
+                               need_growth, need_tips, parameter_t, parameters
+   implicit none(type, external)
+   private
+
+   public :: describe_input
+
+   character(len=*), parameter :: introduction(*) = [character(len=128) :: &
+      "# Scene files", &
+      "", &
+      "This page is written by `wingcrack-solver --describe-input` from the table that the reading follows;", &
+      "a test holds it against the code.", &
+      "", &
+      "A scene file is a text of Fortran namelist groups, in any order:", &
+      "", &
+      "```fortran", &
+      "! a comment, to the end of the line", &
+      "&fracture", &
+      "  name = 'main'                      ! texts in single or double quotes; '' within '...' is one quote", &
+      "  x = 0.9, 1.0, 1.1                  ! lists with commas or blanks; 3*1.0 is short for 1.0, 1.0, 1.0", &
+      "  y = 1.0 1.0 1.05", &
+      "  friction = 0.5, dilation_deg = 1   ! several names may share a line", &
+      "  aperture = 1.0e-3                  ! or 1d-3", &
+      "/                                    ! ends the group", &
+      "```", &
+      "", &
+      "* All numbers are in SI units; angles are in degrees and carry `_deg` in their name.", &
+      "* Compressive stress is negative, fluid pressure is positive. Rates are per metre of thickness.", &
+      "* Groups and names may be in upper or lower case. Texts are taken as they are.", &
+      "* A group is given once, unless it says `repeated`: then once per item.", &
+      "* Unknown groups and names, values of the wrong kind, values out of range and values that contradict", &
+      "  each other are errors; nothing is run or written then.", &
+      "* Every run writes `scene.nml`, the scene as understood with every default written out."]
+
+contains
+
+   !> Write the page to an open unit.
+   subroutine describe_input(unit)
+      integer, intent(in) :: unit  !< connected for formatted writing
+      integer :: i
+
+      do i = 1, size(introduction)
+         write (unit, '(a)') trim(introduction(i))
+      end do
+      do i = 1, size(groups)
+         call describe_group(unit, groups(i))
+      end do
+   end subroutine describe_input
+
+   subroutine describe_group(unit, group)
+      integer, intent(in) :: unit
+      type(group_t), intent(in) :: group
+      integer :: i
+
+      write (unit, '(a)') ""
+      if (group%repeated) then
+         write (unit, '(a)') "## &"//trim(group%name)//" (repeated)"
+      else
+         write (unit, '(a)') "## &"//trim(group%name)
+      end if
+      write (unit, '(a)') "", trim(group%meaning), ""
+      write (unit, '(a)') "| name | kind | unit | default | allowed | meaning |", "|---|---|---|---|---|---|"
+      do i = 1, size(parameters)
+         if (parameters(i)%group /= group%name) cycle
+         write (unit, '(a)') "| `"//trim(parameters(i)%name)//"` | "//kind_words(parameters(i))//" | "// &
+            trim(parameters(i)%unit)//" | "//default_words(parameters(i))//" | "// &
+            allowed_words(parameters(i))//" | "//trim(parameters(i)%meaning)//" |"
+      end do
+   end subroutine describe_group
+
+   pure function kind_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: words
+
+      select case (parameter%kind)
+      case (kind_real)
+         words = "number"
+      case (kind_reals)
+         words = "list of numbers"
+      case (kind_integer)
+         words = "whole number"
+      case (kind_logical)
+         words = "logical"
+      case default
+         words = "text"
+      end select
+   end function kind_words
+
+   pure function default_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: words
+
+      if (parameter%default /= "") then
+         words = "`"//trim(parameter%default)//"`"
+         return
+      end if
+      select case (parameter%need)
+      case (need_always)
+         words = "required"
+      case (need_fluid)
+         words = "required with &fluid"
+      case (need_fracture)
+         words = "required with &fracture"
+      case (need_tips)
+         words = "required with growth or intensities"
+      case (need_growth)
+         words = "required with growth"
+      case default
+         words = "none: "//trim(parameter%absent)
+      end select
+   end function default_words
+
+   pure function allowed_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: words
+      character(len=*), parameter :: separator = "`, `"
+      integer :: bar
+
+      select case (parameter%kind)
+      case (kind_choice)
+         words = trim(parameter%choices)
+         bar = index(words, "|")
+         do while (bar > 0)
+            words = words(1:bar - 1)//separator//words(bar + 1:)
+            bar = index(words, "|")
+         end do
+         words = "`"//words//"`"
+      case (kind_logical)
+         words = "`.true.`, `.false.`"
+      case (kind_name)
+         words = "at most 64 letters, digits, `_`, `-`, `.`"
+      case (kind_integer, kind_real, kind_reals)
+         words = in_words(parameter%range)
+         if (words == "") words = "any finite"
+      case default
+         words = "at most 256 bytes of UTF-8"
+      end select
+   end function allowed_words
+
+end module scene_describe

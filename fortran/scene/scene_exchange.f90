@@ -1,0 +1,409 @@
+!> Carries values between a sheet, which is what a file says, and a scene, which the program uses.
+!>
+!> One list serves both directions, so that what is read and what is written cannot drift apart.
+module scene_exchange
+   use base_kinds, only: ik, lk, rk
+   use scene_parameters, only: groups, parameters, side_names
+   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, sheet_t
+   use scene_types, only: boundary_side_t, discretization_t, fluid_t, fracture_t, growth_t, initial_t
+   use scene_types, only: injection_t, material_t, name_length, output_t, probe_t, scene_t, time_t
+   use scene_values, only: value_t
+   implicit none(type, external)
+   private
+
+   public :: scene_to_sheet, sheet_to_scene
+
+   !> Copy one value: into the scene if `reading` and the sheet has it, else into the sheet.
+   !> A component that equals `nothing` stays out of the sheet.
+   interface exchange
+      module procedure exchange_real
+      module procedure exchange_reals
+      module procedure exchange_integer
+      module procedure exchange_logical
+      module procedure exchange_text
+   end interface exchange
+
+   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  !< [rad/degree]
+   real(rk), parameter :: unlimited = huge(1.0_rk)
+
+contains
+
+   !> Fill a scene from a sheet that has passed the checks of scene_parse.
+   pure subroutine sheet_to_scene(sheet, scene)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(out) :: scene
+      type(record_t) :: record
+      type(value_t) :: value
+      integer :: i, n_fractures, n_injections, n_probes, side
+
+      allocate (scene%fractures(count_of(sheet, "fracture")))
+      allocate (scene%injections(count_of(sheet, "injection")))
+      allocate (scene%probes(count_of(sheet, "probe")))
+      n_fractures = 0
+      n_injections = 0
+      n_probes = 0
+      do i = 1, sheet%length
+         record = sheet%records(i)
+         select case (groups(record%group)%name)
+         case ("fracture")
+            n_fractures = n_fractures + 1
+            call exchange_fracture(record, scene%fractures(n_fractures), .true.)
+         case ("side")
+            value = record%value("name")
+            side = findloc(side_names == value%text, .true., dim=1)
+            scene%sides(side)%displacement_given = [record%is_set("x_displacement"), &
+                                                    record%is_set("y_displacement")]
+            scene%sides(side)%pressure_given = record%is_set("pressure")
+            call exchange_side(record, scene%sides(side), .true.)
+         case ("injection")
+            n_injections = n_injections + 1
+            scene%injections(n_injections)%at_point = record%is_set("x")
+            call exchange_injection(record, scene%injections(n_injections), .true.)
+         case ("probe")
+            n_probes = n_probes + 1
+            call exchange_probe(record, scene%probes(n_probes), .true.)
+         case default
+            call exchange_single(record, scene, .true.)
+         end select
+      end do
+      do i = 1, size(scene%injections)  ! the fractures may come after the wells
+         value = sheet%records(sheet%find("injection", i))%value("fracture")
+         do n_fractures = 1, size(scene%fractures)
+            if (scene%fractures(n_fractures)%name == value%text) &
+               scene%injections(i)%fracture = int(n_fractures, ik)
+         end do
+      end do
+      scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
+   end subroutine sheet_to_scene
+
+   !> A sheet that says all there is in a scene.
+   pure subroutine scene_to_sheet(scene, sheet)
+      type(scene_t), intent(in) :: scene
+      type(sheet_t), intent(out) :: sheet
+      type(scene_t) :: source
+      type(record_t) :: record
+      integer :: group, i
+
+      source = scene  ! exchange takes what it may write to
+      sheet%path = ""
+      do group = 1, size(groups)
+         select case (groups(group)%name)
+         case ("fracture")
+            do i = 1, size(source%fractures)
+               record = empty_record(group, 0_ik)
+               call exchange_fracture(record, source%fractures(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case ("side")
+            do i = 1, size(source%sides)
+               record = empty_record(group, 0_ik)
+               call set_text(record, "name", trim(side_names(i)))
+               call exchange_side(record, source%sides(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case ("injection")
+            do i = 1, size(source%injections)
+               record = empty_record(group, 0_ik)
+               call set_text(record, "fracture", trim(source%fractures(source%injections(i)%fracture)%name))
+               call exchange_injection(record, source%injections(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case ("probe")
+            do i = 1, size(source%probes)
+               record = empty_record(group, 0_ik)
+               call exchange_probe(record, source%probes(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case default
+            if (groups(group)%name == "fluid" .and. .not. source%fluid%viscosity > 0.0_rk) cycle
+            record = empty_record(group, 0_ik)
+            call exchange_single(record, source, .false.)
+            call add_record(sheet, record)
+         end select
+      end do
+   end subroutine scene_to_sheet
+
+   !> The groups that a scene has once.
+   pure subroutine exchange_single(record, scene, reading)
+      type(record_t), intent(inout) :: record
+      type(scene_t), intent(inout) :: scene
+      logical, intent(in) :: reading
+
+      select case (groups(record%group)%name)
+      case ("scene")
+         call exchange(record, "name", scene%name, reading)
+         call exchange(record, "title", scene%title, reading)
+      case ("domain")
+         call exchange(record, "x_min", scene%domain%x_min, reading)
+         call exchange(record, "x_max", scene%domain%x_max, reading)
+         call exchange(record, "y_min", scene%domain%y_min, reading)
+         call exchange(record, "y_max", scene%domain%y_max, reading)
+      case ("material")
+         call exchange_material(record, scene%material, reading)
+      case ("fluid")
+         call exchange(record, "compressibility", scene%fluid%compressibility, reading)
+         call exchange(record, "viscosity", scene%fluid%viscosity, reading)
+      case ("initial")
+         call exchange(record, "fracture_pressure", scene%initial%fracture_pressure, reading)
+         call exchange(record, "pressure", scene%initial%pressure, reading)
+      case ("time")
+         call exchange(record, "end", scene%time%end, reading)
+         call exchange(record, "step", scene%time%step, reading)
+         call exchange(record, "growth_factor", scene%time%growth_factor, reading)
+         call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
+      case ("coarse", "fine")
+         call exchange_discretization(record, scene%discretization, reading)
+      case ("growth")
+         call exchange_growth(record, scene%growth, reading)
+      case ("output")
+         call exchange(record, "vtu", scene%output%vtu, reading)
+         call exchange(record, "interval", scene%output%interval, reading)
+      end select
+   end subroutine exchange_single
+
+   pure subroutine exchange_material(record, material, reading)
+      type(record_t), intent(inout) :: record
+      type(material_t), intent(inout) :: material
+      logical, intent(in) :: reading
+      character(len=name_length) :: plane
+
+      call exchange(record, "young", material%young, reading)
+      call exchange(record, "poisson", material%poisson, reading)
+      call exchange(record, "biot", material%biot, reading)
+      call exchange(record, "porosity", material%porosity, reading)
+      if (reading .and. record%is_set("permeability")) then
+         call exchange(record, "permeability", material%permeability_xx, reading)
+         material%permeability_yy = material%permeability_xx
+      end if
+      call exchange(record, "permeability_xx", material%permeability_xx, reading, nothing=0.0_rk)
+      call exchange(record, "permeability_yy", material%permeability_yy, reading, nothing=0.0_rk)
+      call exchange(record, "permeability_xy", material%permeability_xy, reading)
+      call exchange(record, "toughness", material%toughness, reading, nothing=unlimited)
+      plane = merge("stress", "strain", material%plane_stress)
+      call exchange(record, "plane", plane, reading)
+      material%plane_stress = plane == "stress"
+      call exchange(record, "storage", material%storage, reading)
+   end subroutine exchange_material
+
+   pure subroutine exchange_fracture(record, fracture, reading)
+      type(record_t), intent(inout) :: record
+      type(fracture_t), intent(inout) :: fracture
+      logical, intent(in) :: reading
+      real(rk) :: dilation_deg
+
+      call exchange(record, "name", fracture%name, reading)
+      call exchange(record, "x", fracture%x, reading)
+      call exchange(record, "y", fracture%y, reading)
+      call exchange(record, "friction", fracture%friction, reading)
+      dilation_deg = to_degrees(fracture%dilation)
+      call exchange(record, "dilation_deg", dilation_deg, reading)
+      fracture%dilation = dilation_deg*radians
+      call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)
+   end subroutine exchange_fracture
+
+   !> Without the side's name, which its place in scene_t%sides tells.
+   pure subroutine exchange_side(record, side, reading)
+      type(record_t), intent(inout) :: record
+      type(boundary_side_t), intent(inout) :: side
+      logical, intent(in) :: reading
+
+      if (side%displacement_given(1)) then
+         call exchange(record, "x_displacement", side%displacement(1), reading)
+      else
+         call exchange(record, "x_traction", side%traction(1), reading)
+      end if
+      if (side%displacement_given(2)) then
+         call exchange(record, "y_displacement", side%displacement(2), reading)
+      else
+         call exchange(record, "y_traction", side%traction(2), reading)
+      end if
+      if (side%pressure_given) call exchange(record, "pressure", side%pressure, reading)
+   end subroutine exchange_side
+
+   !> Without the fracture, which the scene knows by index and the sheet by name.
+   pure subroutine exchange_injection(record, injection, reading)
+      type(record_t), intent(inout) :: record
+      type(injection_t), intent(inout) :: injection
+      logical, intent(in) :: reading
+
+      call exchange(record, "rate", injection%rate, reading)
+      call exchange(record, "start", injection%start, reading)
+      call exchange(record, "end", injection%end, reading, nothing=unlimited)
+      if (injection%at_point) then
+         call exchange(record, "x", injection%x, reading)
+         call exchange(record, "y", injection%y, reading)
+      end if
+   end subroutine exchange_injection
+
+   pure subroutine exchange_discretization(record, discretization, reading)
+      type(record_t), intent(inout) :: record
+      type(discretization_t), intent(inout) :: discretization
+      logical, intent(in) :: reading
+
+      if (groups(record%group)%name == "coarse") then
+         call exchange(record, "size_fracture", discretization%size_fracture, reading, nothing=0.0_rk)
+         call exchange(record, "size_boundary", discretization%size_boundary, reading)
+         call exchange(record, "newton_max", discretization%newton_max, reading)
+         call exchange(record, "newton_tolerance", discretization%newton_tolerance, reading)
+      else
+         call exchange(record, "window", discretization%window, reading, nothing=0.0_rk)
+         call exchange(record, "size_ratio", discretization%fine_ratio, reading)
+         call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
+         call exchange(record, "face_condition", discretization%face_condition, reading)
+      end if
+   end subroutine exchange_discretization
+
+   pure subroutine exchange_growth(record, growth, reading)
+      type(record_t), intent(inout) :: record
+      type(growth_t), intent(inout) :: growth
+      logical, intent(in) :: reading
+
+      call exchange(record, "enabled", growth%enabled, reading)
+      call exchange(record, "intensities", growth%intensities, reading)
+      call exchange(record, "increment", growth%increment, reading)
+      call exchange(record, "exponent", growth%exponent, reading)
+      call exchange(record, "threshold", growth%threshold, reading)
+      call exchange(record, "new_aperture", growth%new_aperture, reading)
+      call exchange(record, "new_volume", growth%new_volume, reading)
+      call exchange(record, "stop_gain", growth%stop_gain, reading, nothing=unlimited)
+   end subroutine exchange_growth
+
+   pure subroutine exchange_probe(record, probe, reading)
+      type(record_t), intent(inout) :: record
+      type(probe_t), intent(inout) :: probe
+      logical, intent(in) :: reading
+
+      call exchange(record, "name", probe%name, reading)
+      call exchange(record, "x", probe%x, reading)
+      call exchange(record, "y", probe%y, reading)
+   end subroutine exchange_probe
+
+   pure subroutine exchange_real(record, name, component, reading, nothing)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      real(rk), intent(inout) :: component
+      logical, intent(in) :: reading
+      real(rk), intent(in), optional :: nothing
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (reading) then
+            if (value%is_set) component = value%reals(1)
+         else
+            value%is_set = .true.
+            if (present(nothing)) value%is_set = abs(component - nothing) > 0.0_rk
+            value%reals = [component]
+         end if
+      end associate
+   end subroutine exchange_real
+
+   pure subroutine exchange_reals(record, name, component, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout) :: component(:)
+      logical, intent(in) :: reading
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (reading) then
+            if (value%is_set) component = value%reals
+         else
+            value%is_set = .true.
+            value%reals = component
+         end if
+      end associate
+   end subroutine exchange_reals
+
+   pure subroutine exchange_integer(record, name, component, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      integer(ik), intent(inout) :: component
+      logical, intent(in) :: reading
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (reading) then
+            if (value%is_set) component = value%whole
+         else
+            value%is_set = .true.
+            value%whole = component
+         end if
+      end associate
+   end subroutine exchange_integer
+
+   pure subroutine exchange_logical(record, name, component, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      logical, intent(inout) :: component
+      logical, intent(in) :: reading
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (reading) then
+            if (value%is_set) component = value%flag
+         else
+            value%is_set = .true.
+            value%flag = component
+         end if
+      end associate
+   end subroutine exchange_logical
+
+   pure subroutine exchange_text(record, name, component, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      character(len=*), intent(inout) :: component
+      logical, intent(in) :: reading
+      type(value_t) :: value
+
+      if (reading) then
+         value = record%value(name)
+         if (value%is_set) component = value%text
+      else
+         call set_text(record, name, trim(component))
+      end if
+   end subroutine exchange_text
+
+   pure subroutine set_text(record, name, text)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name, text
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         value%is_set = .true.
+         value%text = text
+      end associate
+   end subroutine set_text
+
+   !> The simplest angle in degrees from which the same bits in radians follow.
+   pure real(rk) function to_degrees(angle) result(degrees)
+      real(rk), intent(in) :: angle  !< [rad]
+      character(len=32) :: style, buffer
+      real(rk) :: candidate
+      integer :: n_digits, neighbour
+
+      degrees = angle/radians
+      do n_digits = 1, 17
+         write (style, '(a,i0,a)') "(es32.", n_digits - 1, "e3)"
+         write (buffer, style) angle/radians
+         read (buffer, '(f32.0)') candidate
+         if (same_bits(candidate*radians, angle)) then
+            degrees = candidate
+            return
+         end if
+      end do
+      do neighbour = -4, 4  ! rounding of the product hits the angle from a neighbour of the quotient
+         candidate = angle/radians + real(neighbour, rk)*spacing(angle/radians)
+         if (same_bits(candidate*radians, angle)) degrees = candidate
+      end do
+   end function to_degrees
+
+   pure logical function same_bits(a, b)
+      real(rk), intent(in) :: a, b
+
+      same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
+   end function same_bits
+
+   pure integer function count_of(sheet, name) result(n)
+      type(sheet_t), intent(in) :: sheet
+      character(len=*), intent(in) :: name
+      integer :: i
+
+      n = count([(groups(sheet%records(i)%group)%name == name, i=1, sheet%length)])
+   end function count_of
+
+end module scene_exchange

@@ -1,0 +1,218 @@
+!> The one table of everything a scene file can say.
+!>
+!> Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
+!> A new parameter is one entry here and one line in scene_exchange.
+module scene_parameters
+   use base_kinds, only: rk
+   use scene_intervals, only: at_least_zero, biot_range, dilation_range, interval_t, newton_range, &
+                              poisson_range, porosity_range, positive, rosette_range, share, &
+                              tolerance_range
+   implicit none(type, external)
+   private
+
+   public :: group_t, parameter_t
+   public :: groups, parameters, side_names, text_length
+   public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
+   public :: need_always, need_fluid, need_fracture, need_growth, need_never, need_tips
+
+   integer, parameter :: kind_real = 1
+   integer, parameter :: kind_reals = 2  !< a list of any length
+   integer, parameter :: kind_integer = 3
+   integer, parameter :: kind_logical = 4
+   integer, parameter :: kind_text = 5
+   integer, parameter :: kind_name = 6  !< a text that is safe as a file name
+   integer, parameter :: kind_choice = 7  !< a text out of `choices`
+
+   integer, parameter :: need_never = 0
+   integer, parameter :: need_always = 1  !< in every such group
+   integer, parameter :: need_fluid = 2  !< where there is a fluid
+   integer, parameter :: need_fracture = 3  !< where there is a fracture
+   integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
+   integer, parameter :: need_growth = 5  !< where fractures grow
+
+   integer, parameter :: text_length = 256  !< longest text; names are shorter (scene_types)
+
+   !> Sides of the body in the order of scene_t%sides.
+   character(len=6), parameter :: side_names(4) = ["left  ", "right ", "bottom", "top   "]
+
+   !> A namelist group.
+   type :: group_t
+      character(len=12) :: name = ""
+      logical :: repeated = .false.  !< one group per item
+      logical :: implied = .false.  !< an absent group stands for one that holds the defaults
+      character(len=400) :: meaning = ""
+   end type group_t
+
+   !> A name within a group.
+   type :: parameter_t
+      character(len=12) :: group = ""
+      character(len=20) :: name = ""
+      integer :: kind = kind_real
+      character(len=8) :: unit = "-"
+      integer :: need = need_never
+      character(len=16) :: default = ""  !< as a file would give it; empty: none
+      character(len=40) :: absent = ""  !< what it means if neither given nor defaulted
+      type(interval_t) :: range = interval_t()
+      character(len=32) :: choices = ""  !< separated by `|`
+      character(len=160) :: meaning = ""
+   end type parameter_t
+
+   type(group_t), parameter :: groups(*) = [ &
+      group_t("scene", implied=.true., meaning="What the scene is called."), &
+      group_t("domain", implied=.true., meaning="The body: a rectangle of unit thickness."), &
+      group_t("material", implied=.true., meaning="The rock, linear elastic and porous. The storage "// &
+              "coefficient that follows from it must be positive, and `biot` at least `porosity`. "// &
+              "Permeability is either isotropic or a positive definite tensor."), &
+      group_t("fluid", meaning="The fluid in pores and fractures. A scene without this group is "// &
+              "mechanics only, and can have neither injections nor pressures."), &
+      group_t("fracture", repeated=.true., meaning="A fracture: a polyline inside the domain. Its "// &
+              "ends may lie on the boundary; it must not run along the boundary."), &
+      group_t("side", repeated=.true., meaning="A side of the body. Per component either the "// &
+              "displacement or the total traction is prescribed; what is not given is free of "// &
+              "traction. The displacements must hold the body against translation and rotation."), &
+      group_t("injection", repeated=.true., meaning="A well: fluid injected into a fracture, spread "// &
+              "over the fracture as it is at the start, or into its cell nearest to a point. That "// &
+              "point must lie within `size_fracture` of the fracture."), &
+      group_t("initial", implied=.true., meaning="State before the first step."), &
+      group_t("time", implied=.true., meaning="Time steps."), &
+      group_t("coarse", implied=.true., meaning="The coarse level: finite volumes on the whole body."), &
+      group_t("fine", implied=.true., meaning="The fine level: finite elements in a window around each "// &
+              "fracture tip. Used where growth or stress intensity factors are asked for."), &
+      group_t("growth", implied=.true., meaning="Fracture growth."), &
+      group_t("probe", repeated=.true., meaning="A point of the rock where the state is recorded in "// &
+              "probes.csv."), &
+      group_t("output", implied=.true., meaning="What is written, and how often.")]
+
+   type(parameter_t), parameter :: body_parameters(*) = [ &
+      parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
+                  meaning="Short name; results go to out/<name> unless told otherwise"), &
+      parameter_t("scene", "title", kind_text, default="''", meaning="What the scene shows, in a line"), &
+      parameter_t("domain", "x_min", unit="m", need=need_always, meaning="Left side"), &
+      parameter_t("domain", "x_max", unit="m", need=need_always, meaning="Right side, above x_min"), &
+      parameter_t("domain", "y_min", unit="m", need=need_always, meaning="Bottom side"), &
+      parameter_t("domain", "y_max", unit="m", need=need_always, meaning="Top side, above y_min"), &
+      parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
+                  meaning="Young's modulus E"), &
+      parameter_t("material", "poisson", need=need_always, range=poisson_range, &
+                  meaning="Poisson's ratio nu (drained)"), &
+      parameter_t("material", "biot", need=need_fluid, range=biot_range, &
+                  meaning="Biot's coefficient alpha"), &
+      parameter_t("material", "porosity", need=need_fluid, range=porosity_range, &
+                  meaning="Porosity phi"), &
+      parameter_t("material", "permeability", unit="m2", range=positive, &
+                  absent="see permeability_xx", &
+                  meaning="Isotropic permeability; with a fluid either this or the tensor is required"), &
+      parameter_t("material", "permeability_xx", unit="m2", range=positive, &
+                  absent="see permeability", meaning="Component xx of the permeability tensor"), &
+      parameter_t("material", "permeability_yy", unit="m2", range=positive, &
+                  absent="see permeability", meaning="Component yy of the permeability tensor"), &
+      parameter_t("material", "permeability_xy", unit="m2", absent="0", &
+                  meaning="Component xy of the permeability tensor"), &
+      parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, absent="unlimited", &
+                  range=positive, meaning="Fracture toughness K_IC"), &
+      parameter_t("material", "plane", kind_choice, default="'strain'", choices="strain|stress", &
+                  meaning="Plane strain or plane stress"), &
+      parameter_t("material", "storage", kind_choice, default="'thesis'", choices="thesis|textbook", &
+                  meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second term times "// &
+                  "(1 - alpha)"), &
+      parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
+                  meaning="Compressibility c_p"), &
+      parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
+                  meaning="Dynamic viscosity mu"), &
+      parameter_t("fracture", "name", kind_name, need=need_always, &
+                  meaning="Name, different from that of every other fracture"), &
+      parameter_t("fracture", "x", kind_reals, "m", need_always, &
+                  meaning="x of the vertices, from one end to the other"), &
+      parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
+      parameter_t("fracture", "friction", need=need_always, range=at_least_zero, &
+                  meaning="Coefficient of friction mu_s; 0: frictionless"), &
+      parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
+                  meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
+      parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
+                  meaning="Residual hydraulic aperture a_0 of the closed fracture"), &
+      parameter_t("side", "name", kind_choice, need=need_always, choices="left|right|bottom|top", &
+                  meaning="Which side"), &
+      parameter_t("side", "x_displacement", unit="m", absent="traction is given", &
+                  meaning="Prescribed displacement in x"), &
+      parameter_t("side", "y_displacement", unit="m", absent="traction is given", &
+                  meaning="Prescribed displacement in y"), &
+      parameter_t("side", "x_traction", unit="Pa", absent="0, or displacement is given", &
+                  meaning="Total traction in x: on the right side, compression is negative"), &
+      parameter_t("side", "y_traction", unit="Pa", absent="0, or displacement is given", &
+                  meaning="Total traction in y: on the top side, compression is negative"), &
+      parameter_t("side", "pressure", unit="Pa", absent="no flow", meaning="Prescribed pore pressure")]
+
+   type(parameter_t), parameter :: process_parameters(*) = [ &
+      parameter_t("injection", "fracture", kind_name, need=need_always, &
+                  meaning="Name of the fracture"), &
+      parameter_t("injection", "rate", unit="m2/s", need=need_always, &
+                  meaning="Volume per time and per metre of thickness, over the whole well; "// &
+                  "negative: extraction"), &
+      parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
+                  meaning="Time when it begins"), &
+      parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
+                  meaning="Time when it ends, after start"), &
+      parameter_t("injection", "x", unit="m", absent="over the whole fracture", &
+                  meaning="x of the point of injection, given together with y"), &
+      parameter_t("injection", "y", unit="m", absent="over the whole fracture", &
+                  meaning="y of the point of injection, given together with x"), &
+      parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
+                  choices="equilibrated|undrained", &
+                  meaning="After loading: that of the matrix around the fracture, or what the load "// &
+                  "produces in the fracture when nothing has flowed yet"), &
+      parameter_t("initial", "pressure", unit="Pa", default="0.0", &
+                  meaning="Pore pressure before the load acts"), &
+      parameter_t("time", "end", unit="s", need=need_always, range=positive, meaning="End of the run"), &
+      parameter_t("time", "step", unit="s", need=need_always, range=positive, &
+                  meaning="Regular time step, at most end"), &
+      parameter_t("time", "growth_factor", default="0.01", range=share, &
+                  meaning="Share of the regular step that follows growth"), &
+      parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
+                  meaning="Share of the regular step below which a cut step ends the run, at most "// &
+                  "growth_factor"), &
+      parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
+                  absent="no fracture", &
+                  meaning="Cell size dH at the fractures, at most size_boundary and the length of each "// &
+                  "fracture"), &
+      parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
+                  meaning="Cell size far from the fractures, at most the shorter edge of the domain"), &
+      parameter_t("coarse", "newton_max", kind_integer, default="30", range=newton_range, &
+                  meaning="Newton iterations before a step is cut"), &
+      parameter_t("coarse", "newton_tolerance", default="1.0e-9", range=tolerance_range, &
+                  meaning="Relative residual at which a step has converged"), &
+      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, absent="no fine level", &
+                  meaning="Edge l of the square window around a tip, more than 2 size_ratio dH"), &
+      parameter_t("fine", "size_ratio", default="0.5", range=share, &
+                  meaning="Fine mesh size at the tip as a share eps_m of dH"), &
+      parameter_t("fine", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
+                  meaning="Quarter-point elements around a tip"), &
+      parameter_t("fine", "face_condition", kind_choice, default="'contact'", &
+                  choices="contact|jump|traction", &
+                  meaning="On old fracture faces: contact solved again, or the coarse jump or traction"), &
+      parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
+      parameter_t("growth", "intensities", kind_logical, default=".false.", &
+                  meaning="Compute stress intensity factors; always done with growth"), &
+      parameter_t("growth", "increment", unit="m", default="0.0", range=at_least_zero, &
+                  meaning="Largest advance l_max of a tip at a time; 0: the fine mesh size"), &
+      parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
+                  meaning="Exponent m of advance = l_max (G/G_max)^m"), &
+      parameter_t("growth", "threshold", default="0.5", range=positive, &
+                  meaning="Growth is handed to the coarse level at this share eps_p of dH"), &
+      parameter_t("growth", "new_aperture", unit="m", default="1.0e-5", range=positive, &
+                  meaning="Residual aperture of new fracture cells"), &
+      parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
+                  choices="conserved|prefilled", &
+                  meaning="Fluid of new cells: drawn from the connected cells, or appearing with them"), &
+      parameter_t("growth", "stop_gain", unit="m", range=positive, absent="no limit", &
+                  meaning="The run ends when any fracture end has grown by this"), &
+      parameter_t("probe", "name", kind_name, need=need_always, &
+                  meaning="Name, different from that of every other probe"), &
+      parameter_t("probe", "x", unit="m", need=need_always, meaning="x, within the domain"), &
+      parameter_t("probe", "y", unit="m", need=need_always, meaning="y, within the domain"), &
+      parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
+      parameter_t("output", "interval", unit="s", default="0.0", range=at_least_zero, &
+                  meaning="Time between written fields; 0: every regular step")]
+
+   type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]
+
+end module scene_parameters

@@ -1,0 +1,321 @@
+!> Reads a scene file into a sheet: syntax, names, kinds and ranges are checked here, one by one.
+module scene_parse
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, lk
+   use scene_parameters, only: groups, need_always, need_fluid, need_fracture, need_growth, &
+                               need_tips, parameters
+   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, sheet_t
+   use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
+                           token_slash, token_text, token_word, tokenize
+   use scene_types, only: name_length
+   use scene_values, only: default_value, nearest_word, read_value, shortened, value_t
+   use scene_words, only: integer_text, is_identifier, lower_case
+   implicit none(type, external)
+   private
+
+   public :: parse_scene
+
+   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; a guard against reading what is no scene
+   integer, parameter :: most_groups = 10000
+
+contains
+
+   !> Read and parse a file.
+   subroutine parse_scene(path, sheet, error)
+      character(len=*), intent(in) :: path
+      type(sheet_t), intent(out) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: source, fault
+      type(token_list_t) :: tokens
+      integer(ik) :: fault_line
+
+      sheet%path = trim(path)
+      call load(sheet%path, source, error)
+      if (allocated(error)) return
+      call tokenize(source, tokens, fault, fault_line)
+      if (allocated(fault)) then
+         call raise_error(error, "", sheet%path//":"//integer_text(fault_line)//": "//fault)
+         return
+      end if
+      call parse_groups(source, tokens, sheet, error)
+      if (allocated(error)) return
+      call complete(sheet, error)
+   end subroutine parse_scene
+
+   !> The bytes of a file.
+   subroutine load(path, source, error)
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: source
+      type(error_t), allocatable, intent(out) :: error
+      character(len=256) :: reason
+      integer(lk) :: n_bytes
+      integer :: unit, status
+
+      reason = ""
+      open (newunit=unit, file=path, action="read", status="old", access="stream", &
+            form="unformatted", iostat=status, iomsg=reason)
+      if (status /= 0) then
+         call raise_error(error, "", path//": cannot be opened as a scene file: "//trim(reason))
+         return
+      end if
+      inquire (unit=unit, size=n_bytes)
+      if (n_bytes < 0 .or. n_bytes > largest_file) then
+         call raise_error(error, "", path//": is no scene file, which is a text of at most 4 MB")
+      else
+         allocate (character(len=n_bytes) :: source)
+         read (unit, iostat=status, iomsg=reason) source
+         if (status /= 0) call raise_error(error, "", path//": cannot be read: "//trim(reason))
+      end if
+      close (unit, iostat=status)
+   end subroutine load
+
+   !> All groups of a file.
+   pure subroutine parse_groups(source, tokens, sheet, error)
+      character(len=*), intent(in) :: source
+      type(token_list_t), intent(in) :: tokens
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(record_t) :: record
+      integer :: next, group, earlier
+
+      next = 1
+      do while (tokens%items(next)%kind /= token_end)
+         associate (token => tokens%items(next))
+            if (token%kind /= token_group) then
+               call raise_error(error, "", place(sheet, token%line)//"'"// &
+                                shortened(source(token%first:token%last))// &
+                                "' stands outside of a group, where only comments may stand")
+               return
+            end if
+            group = group_index(lower_case(source(token%first:token%last)))
+            if (group == 0) then
+               call raise_error(error, "", place(sheet, token%line)//"unknown group &"// &
+                                shortened(source(token%first:token%last))//", the nearest is &"// &
+                                nearest_word(source(token%first:token%last), groups%name)// &
+                                " (see docs/input.md)")
+               return
+            end if
+            earlier = 0
+            if (.not. groups(group)%repeated) earlier = sheet%find(trim(groups(group)%name))
+            record = empty_record(group, token%line)
+         end associate
+         call add_record(sheet, record)
+         if (sheet%length > most_groups) then
+            call raise_error(error, "", sheet%blame(sheet%length, "", "is one more than the "// &
+                                                    integer_text(int(most_groups, ik))// &
+                                                    " groups that a scene may have"))
+            return
+         else if (earlier > 0) then
+            call raise_error(error, "", sheet%blame(sheet%length, "", "is given twice, first on line "// &
+                                                    integer_text(sheet%records(earlier)%line)// &
+                                                    ", but must be given once"))
+            return
+         end if
+         next = next + 1
+         call parse_values(source, tokens, next, sheet, error)
+         if (allocated(error)) return
+      end do
+   end subroutine parse_groups
+
+   !> What stands between `&group` and `/`, into the last record.
+   pure subroutine parse_values(source, tokens, next, sheet, error)
+      character(len=*), intent(in) :: source
+      type(token_list_t), intent(in) :: tokens
+      integer, intent(inout) :: next
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason, word
+      integer :: first, item
+
+      associate (record => sheet%records(sheet%length), items => tokens%items)
+         do while (items(next)%kind /= token_slash)
+            word = source(items(next)%first:items(next)%last)
+            if (items(next)%kind == token_end .or. items(next)%kind == token_group) then
+               call raise_error(error, "", sheet%blame(sheet%length, "", &
+                                                       "is not ended by '/' as it must be"))
+               return
+            else if (.not. begins_value(items(next)%kind, items(next + 1)%kind)) then
+               call raise_error(error, "", place(sheet, items(next)%line)//"&"// &
+                                trim(groups(record%group)%name)//": '"//shortened(word)// &
+                                "' stands where 'name = value' or the closing '/' must stand")
+               return
+            end if
+            item = parameter_index(record%group, lower_case(word))
+            if (item == 0) then
+               call raise_error(error, "", place(sheet, items(next)%line)// &
+                                unknown_name(record%group, word))
+               return
+            else if (record%values(item)%line > 0) then
+               call raise_error(error, "", place(sheet, items(next)%line)//"&"// &
+                                trim(groups(record%group)%name)//": "// &
+                                trim(parameters(item)%name)//" is given twice, first on line "// &
+                                integer_text(record%values(item)%line)//", but must be given once")
+               return
+            end if
+            record%values(item)%line = items(next)%line
+            first = next + 2
+            next = first
+            do while (any(items(next)%kind == [token_word, token_text, token_comma]))
+               if (begins_value(items(next)%kind, items(next + 1)%kind)) exit
+               next = next + 1
+            end do
+            call read_value(parameters(item), source, items(first:next - 1), record%values(item), reason)
+            if (allocated(reason)) then
+               call raise_error(error, "", &
+                                sheet%blame(sheet%length, trim(parameters(item)%name), reason))
+               return
+            end if
+         end do
+      end associate
+      next = next + 1
+   end subroutine parse_values
+
+   !> A word with `=` behind it; the last token, token_end, is never one.
+   pure logical function begins_value(kind, next_kind)
+      integer, intent(in) :: kind, next_kind
+
+      begins_value = kind == token_word .and. next_kind == token_equals
+   end function begins_value
+
+   !> Message for a name that the group does not have.
+   pure function unknown_name(group, word) result(message)
+      integer, intent(in) :: group
+      character(len=*), intent(in) :: word
+      character(len=:), allocatable :: message
+      integer :: i
+
+      message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)//", the nearest is "// &
+                nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
+      do i = 1, size(parameters)
+         if (parameters(i)%name == lower_case(word)) then
+            message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)// &
+                      ", which belongs to &"//trim(parameters(i)%group)//"; the nearest here is "// &
+                      nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
+            exit
+         end if
+      end do
+      if (index(word, "(") > 0) message = message//", whose values are given as one list without indices"
+      message = message//" (see docs/input.md)"
+   end function unknown_name
+
+   !> Fill in the defaults, and refuse what lacks a required value.
+   pure subroutine complete(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: enabled, intensities
+      integer :: i, item, growth
+
+      do i = 1, size(groups)
+         if (groups(i)%implied .and. .not. sheet%has(trim(groups(i)%name))) &
+            call add_record(sheet, empty_record(i, 0_ik))
+      end do
+      do i = 1, sheet%length
+            do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
+               if (.not. sheet%records(i)%values(item)%is_set) &
+                  call default_value(parameters(item), sheet%records(i)%values(item))
+            end do
+      end do
+      call name_by_file(sheet, error)
+      if (allocated(error)) return
+      growth = sheet%find("growth")
+      enabled = sheet%records(growth)%value("enabled")
+      intensities = sheet%records(growth)%value("intensities")
+      do i = 1, sheet%length
+         call refuse_missing(sheet, i, enabled%flag, enabled%flag .or. intensities%flag, error)
+         if (allocated(error)) return
+      end do
+   end subroutine complete
+
+   !> A scene without a name is called as its file.
+   pure subroutine name_by_file(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: stem
+      integer :: dot, record
+
+      record = sheet%find("scene")
+      if (sheet%records(record)%is_set("name")) return
+      stem = sheet%path(index(sheet%path, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) stem = stem(1:dot - 1)
+      if (len(stem) > name_length .or. .not. is_identifier(stem)) then
+         call raise_error(error, "", sheet%blame(record, "name", "is missing, and '"//shortened(stem)// &
+                                                 "', as the file is called, cannot serve for it: a name "// &
+                                                 "has at most 64 letters, digits, '_', '-' and '.'"))
+         return
+      end if
+      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), "name")))
+         value%is_set = .true.
+         value%text = stem
+      end associate
+   end subroutine name_by_file
+
+   !> Refuse a group that lacks a value which this scene needs.
+   pure subroutine refuse_missing(sheet, record, has_growth, has_tips, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      logical, intent(in) :: has_growth, has_tips
+      type(error_t), allocatable, intent(out) :: error
+      logical :: needed
+      integer :: item
+
+      associate (group => groups(sheet%records(record)%group))
+         do item = lbound(sheet%records(record)%values, 1), ubound(sheet%records(record)%values, 1)
+            if (sheet%records(record)%values(item)%is_set) cycle
+            select case (parameters(item)%need)
+            case (need_always)
+               needed = .true.
+            case (need_fluid)
+               needed = sheet%has("fluid")
+            case (need_fracture)
+               needed = sheet%has("fracture")
+            case (need_tips)
+               needed = has_tips
+            case (need_growth)
+               needed = has_growth
+            case default
+               needed = .false.
+            end select
+            if (.not. needed) cycle
+            if (sheet%records(record)%line == 0) then
+               call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
+                                " is missing, and with it "//described(item)//" (see docs/input.md)")
+            else
+               call raise_error(error, "", sheet%blame(record, "", trim(described(item))//", is missing"))
+            end if
+            return
+         end do
+      end associate
+   end subroutine refuse_missing
+
+   !> Name, unit and reason of a needed parameter.
+   pure function described(item) result(words)
+      integer, intent(in) :: item
+      character(len=:), allocatable :: words
+
+      words = trim(parameters(item)%name)
+      if (parameters(item)%unit /= "-") words = words//" ["//trim(parameters(item)%unit)//"]"
+      select case (parameters(item)%need)
+      case (need_fluid)
+         words = words//", which a scene with &fluid needs"
+      case (need_fracture)
+         words = words//", which a scene with a fracture needs"
+      case (need_tips)
+         words = words//", which growth and stress intensity factors need"
+      case (need_growth)
+         words = words//", which growth needs"
+      case default
+         words = words//", which is always needed"
+      end select
+   end function described
+
+   !> File and line for messages about the syntax.
+   pure function place(sheet, line) result(words)
+      type(sheet_t), intent(in) :: sheet
+      integer(ik), intent(in) :: line
+      character(len=:), allocatable :: words
+
+      words = sheet%path//":"//integer_text(line)//": "
+   end function place
+
+end module scene_parse

@@ -1,0 +1,167 @@
+!> A scene file as it stands: its groups in order, each with its values and lines.
+module scene_sheet
+   use base_kinds, only: ik
+   use scene_parameters, only: groups, parameters
+   use scene_values, only: value_t
+   use scene_words, only: integer_text
+   implicit none(type, external)
+   private
+
+   public :: record_t, sheet_t
+   public :: add_record, empty_record, group_index, parameter_index
+
+   character(len=*), parameter :: read_about_it = "(see docs/input.md)"
+
+   !> One group.
+   type :: record_t
+      integer :: group = 0  !< index into groups
+      integer(ik) :: line = 0  !< of `&group`; 0: not in the file, all values are defaults
+      type(value_t), allocatable :: values(:)  !< indexed as parameters, from the group's first to its last
+   contains
+      procedure :: value => value_of
+      procedure :: is_set
+      procedure :: is_given
+   end type record_t
+
+   !> A whole file.
+   type :: sheet_t
+      character(len=:), allocatable :: path
+      type(record_t), allocatable :: records(:)
+      integer :: length = 0  !< records in use
+   contains
+      procedure :: find
+      procedure :: has
+      procedure :: blame
+   end type sheet_t
+
+contains
+
+   !> Index of a group by name in lower case; 0: there is none.
+   pure integer function group_index(name) result(group)
+      character(len=*), intent(in) :: name
+
+      do group = size(groups), 1, -1
+         if (groups(group)%name == name) return
+      end do
+      group = 0
+   end function group_index
+
+   !> Index of a parameter by its group and its name in lower case; 0: there is none.
+   pure integer function parameter_index(group, name) result(item)
+      integer, intent(in) :: group
+      character(len=*), intent(in) :: name
+
+      do item = size(parameters), 1, -1
+         if (parameters(item)%group == groups(group)%name .and. parameters(item)%name == name) return
+      end do
+      item = 0
+   end function parameter_index
+
+   !> A group without any values.
+   pure function empty_record(group, line) result(record)
+      integer, intent(in) :: group
+      integer(ik), intent(in) :: line
+      type(record_t) :: record
+
+      integer :: first, last
+
+      record%group = group
+      record%line = line
+      first = findloc(parameters%group == groups(group)%name, .true., dim=1)
+      last = findloc(parameters%group == groups(group)%name, .true., dim=1, back=.true.)
+      allocate (record%values(first:last))
+   end function empty_record
+
+   !> Append a group.
+   pure subroutine add_record(sheet, record)
+      type(sheet_t), intent(inout) :: sheet
+      type(record_t), intent(in) :: record
+      type(record_t), allocatable :: larger(:)
+      integer :: i
+
+      if (.not. allocated(sheet%records)) allocate (sheet%records(16))
+      if (sheet%length == size(sheet%records)) then
+         allocate (larger(2*sheet%length))
+         do i = 1, sheet%length
+            larger(i)%group = sheet%records(i)%group
+            larger(i)%line = sheet%records(i)%line
+            call move_alloc(sheet%records(i)%values, larger(i)%values)
+         end do
+         call move_alloc(larger, sheet%records)
+      end if
+      sheet%length = sheet%length + 1
+      sheet%records(sheet%length) = record
+   end subroutine add_record
+
+   !> The value of a parameter of this group.
+   pure function value_of(self, name) result(value)
+      class(record_t), intent(in) :: self
+      character(len=*), intent(in) :: name
+      type(value_t) :: value
+
+      value = self%values(parameter_index(self%group, name))
+   end function value_of
+
+   !> A parameter has a value, given or by default.
+   pure logical function is_set(self, name)
+      class(record_t), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      is_set = self%values(parameter_index(self%group, name))%is_set
+   end function is_set
+
+   !> The file gives a value for a parameter.
+   pure logical function is_given(self, name)
+      class(record_t), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      is_given = self%values(parameter_index(self%group, name))%line > 0
+   end function is_given
+
+   !> Index of the n-th group of a name; 0: there are fewer.
+   pure integer function find(self, name, n) result(record)
+      class(sheet_t), intent(in) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(in), optional :: n  !< default 1
+      integer :: seen, wanted
+
+      wanted = 1
+      if (present(n)) wanted = n
+      seen = 0
+      do record = 1, self%length
+         if (groups(self%records(record)%group)%name == name) seen = seen + 1
+         if (seen == wanted) return
+      end do
+      record = 0
+   end function find
+
+   !> There is such a group.
+   pure logical function has(self, name)
+      class(sheet_t), intent(in) :: self
+      character(len=*), intent(in) :: name
+
+      has = self%find(name) > 0
+   end function has
+
+   !> A message about a parameter: file, line, group, name, what is wrong, where to read about it.
+   pure function blame(self, record, name, reason) result(message)
+      class(sheet_t), intent(in) :: self
+      integer, intent(in) :: record
+      character(len=*), intent(in) :: name  !< empty: about the group
+      character(len=*), intent(in) :: reason
+      character(len=:), allocatable :: message
+      integer(ik) :: line
+
+      line = self%records(record)%line
+      if (name /= "") then
+         if (self%records(record)%is_given(name)) &
+            line = self%records(record)%values(parameter_index(self%records(record)%group, name))%line
+      end if
+      message = self%path
+      if (line > 0) message = message//":"//integer_text(line)
+      message = message//": &"//trim(groups(self%records(record)%group)%name)//": "
+      if (name /= "") message = message//name//" "
+      message = message//reason//" "//read_about_it
+   end function blame
+
+end module scene_sheet
