@@ -1,0 +1,224 @@
+"""The set-up: what it installs and builds, what it refuses, and that it does nothing twice."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+from launcher_tree import Tree, add_program, make_tree
+
+PACKAGES = """\
+# a remark
+alpha-tool | command alpha-tool | first thing
+beta-lib-5* | command beta-tool | second thing
+always     | command sh | here anyway
+"""
+
+# A stand-in for apt-get: it writes down what it is asked, and what it "installs" appears on PATH.
+APT_GET = """\
+here=${0%/*}
+case " $* " in
+    *' update '*) echo update >>"$here/asked"; touch "$here/updated" ;;
+    *' install '*)
+        echo "install ${*#*--no-install-recommends }" >>"$here/asked"
+        if [[ -e $here/stale && ! -e $here/updated ]]; then exit 100; fi
+        if [[ -e $here/broken ]]; then echo 'E: no such package' >&2; exit 100; fi
+        ln -sf "$(type -P true)" "$here/alpha-tool"
+        ln -sf "$(type -P true)" "$here/beta-tool" ;;
+esac
+"""
+APT_CACHE = "printf '%s\\n' beta-lib-5.10 beta-lib-5.7 beta-lib-5.9"
+SUDO = 'exec "$@"'
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A folder for PATH that holds a package manager."""
+    folder = tmp_path / "machine"
+    add_program(folder, "apt-get", APT_GET)
+    add_program(folder, "apt-cache", APT_CACHE)
+    add_program(folder, "sudo", SUDO)
+    return folder
+
+
+@pytest.fixture
+def lacking_tree(tmp_path: Path, machine: Path) -> Tree:
+    """A tree whose system packages are not there."""
+    tree = make_tree(tmp_path, PACKAGES)
+    tree.environment["PATH"] = f"{machine}:{os.environ['PATH']}"
+    return tree
+
+
+def asked(machine: Path) -> list[str]:
+    file = machine / "asked"
+    return file.read_text().splitlines() if file.exists() else []
+
+
+def test_forbidden_to_install_it_names_all_that_is_missing(tmp_path: Path, machine: Path) -> None:
+    tree = make_tree(tmp_path, PACKAGES, "numpy==0.0.1\n# a remark\nno-such-thing==2.0\n")
+    tree.environment["PATH"] = f"{machine}:{os.environ['PATH']}"
+    done = tree.call("check", tree.scene(), WINGCRACK_NO_INSTALL="1")
+    assert done.returncode == 3
+    assert done.stdout == ""
+    for name in ("alpha-tool", "beta-lib-5*", "numpy==0.0.1", "no-such-thing==2.0"):
+        assert name in done.stderr
+    assert "always" not in done.stderr
+    assert asked(machine) == []
+    assert not (tree.root / ".venv").exists()
+
+
+def test_forbidden_to_install_it_still_builds_and_runs(own_tree: Tree) -> None:
+    (own_tree.root / "fortran" / "b_more.sh").write_text("echo rebuilt\n")
+    done = own_tree.call("check", own_tree.scene(), WINGCRACK_NO_INSTALL="1")
+    assert done.returncode == 0
+    assert "rebuilt" in done.stdout
+
+
+def test_missing_packages_are_named_with_their_purpose_and_installed(
+    lacking_tree: Tree, machine: Path
+) -> None:
+    done = lacking_tree.call("check", lacking_tree.scene())
+    assert done.returncode == 0, done.stderr
+    assert "solver check" in done.stdout
+    assert "first thing" in done.stderr
+    assert "second thing" in done.stderr
+    # The newest of the versions on offer, in the order of versions, not of letters.
+    assert asked(machine)[-1] == "install alpha-tool beta-lib-5.10"
+
+
+def test_stale_package_lists_are_updated_once(lacking_tree: Tree, machine: Path) -> None:
+    (machine / "stale").touch()
+    done = lacking_tree.call("check", lacking_tree.scene())
+    assert done.returncode == 0, done.stderr
+    assert asked(machine)[-2:] == ["update", "install alpha-tool beta-lib-5.10"]
+
+
+def test_a_failed_installation_says_why(lacking_tree: Tree, machine: Path) -> None:
+    (machine / "broken").touch()
+    done = lacking_tree.call("check", lacking_tree.scene())
+    assert done.returncode == 3
+    assert "E: no such package" in done.stderr
+    assert "apt could not install the packages" in done.stderr.splitlines()[-1]
+
+
+def test_a_python_package_that_cannot_be_had_is_an_error(tmp_path: Path) -> None:
+    tree = make_tree(tmp_path, requirements="no-such-thing==2.0\n")
+    done = tree.call("check", tree.scene(), PIP_NO_INDEX="1", PIP_FIND_LINKS="")
+    assert done.returncode == 3
+    assert "installing the Python packages failed" in done.stderr.splitlines()[-1]
+    # The next call does not take the half-made environment for a complete one.
+    again = tree.call("check", tree.scene(), WINGCRACK_NO_INSTALL="1")
+    assert again.returncode == 3
+    assert "no-such-thing==2.0" in again.stderr
+
+
+def test_an_old_python_is_refused(bare_tree: Tree, tmp_path: Path) -> None:
+    old = tmp_path / "old"
+    for name in ("python3", "python3.11", "python3.12", "python3.13", "python3.14"):
+        add_program(old, name, '[[ $1 == --version ]] && echo "Python 3.9.2" || exit 1')
+    done = bare_tree.call("check", bare_tree.scene(), PATH=f"{old}:{os.environ['PATH']}")
+    assert done.returncode == 3
+    assert "Python 3.11 or newer is needed, and here is Python 3.9.2" in done.stderr
+
+
+def test_a_build_that_fails_shows_the_compiler_and_is_tried_again(own_tree: Tree) -> None:
+    script = own_tree.root / "cmake" / "assemble.sh"
+    good = script.read_text()
+    script.write_text("echo 'error: what the compiler says' >&2; exit 1\n")
+    (own_tree.root / "fortran" / "a_solver.sh").touch()
+    done = own_tree.call("check", own_tree.scene())
+    assert done.returncode == 3
+    assert "error: what the compiler says" in done.stderr
+    assert "building wingcrack-solver failed" in done.stderr.splitlines()[-1]
+    assert own_tree.call("check", own_tree.scene()).returncode == 3
+    script.write_text(good)
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+
+
+def test_later_calls_do_nothing_and_are_quick(own_tree: Tree) -> None:
+    before = own_tree.log
+    durations = []
+    for _ in range(5):
+        start = time.perf_counter()
+        done = own_tree.call("check", own_tree.scene())
+        durations.append(time.perf_counter() - start)
+        assert (done.returncode, done.stderr) == (0, "")
+    assert own_tree.log == before
+    assert min(durations) < 0.5
+
+
+def test_later_calls_need_no_writing(own_tree: Tree) -> None:
+    shutil.rmtree(own_tree.root / "build" / "release" / "CMakeFiles")
+    (own_tree.root / "build" / "setup.lock").unlink()
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    assert not (own_tree.root / "build" / "setup.lock").exists()
+
+
+def test_changed_new_and_removed_sources_are_built(own_tree: Tree) -> None:
+    def words() -> str:
+        done = own_tree.call("check", own_tree.scene())
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    part = own_tree.root / "fortran" / "b_more.sh"
+    assert "more" not in words()
+    part.write_text("echo more of it\n")
+    assert "more of it" in words()
+    part.write_text("echo more and more\n")
+    assert "more and more" in words()
+    part.unlink()
+    assert "more" not in words()
+
+
+def test_a_changed_requirement_is_installed(own_tree: Tree) -> None:
+    before = own_tree.log
+    with (own_tree.root / "requirements.txt").open("a") as file:
+        file.write("# nothing, but another list\n")
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    # The environment holds all the new list asks for, so nothing is installed.
+    assert "pip" not in own_tree.log.removeprefix(before)
+    with (own_tree.root / "requirements.txt").open("a") as file:
+        file.write("no-such-thing==2.0\n")
+    done = own_tree.call("check", own_tree.scene(), WINGCRACK_NO_INSTALL="1")
+    assert done.returncode == 3
+    assert "no-such-thing==2.0" in done.stderr
+
+
+def test_a_moved_tree_is_built_anew(own_tree: Tree, tmp_path: Path) -> None:
+    new = tmp_path / "elsewhere"
+    own_tree.root.rename(new)
+    moved = Tree(new, own_tree.place)
+    done = moved.call("check", moved.scene())
+    assert done.returncode == 0, done.stderr
+    cache = (new / "build" / "release" / "CMakeCache.txt").read_text()
+    assert f"CMAKE_HOME_DIRECTORY:INTERNAL={new}\n" in cache
+
+
+def test_an_environment_without_its_python_is_made_anew(own_tree: Tree) -> None:
+    python = own_tree.root / ".venv" / "bin" / "python"
+    python.unlink()
+    python.symlink_to("/nowhere/python3")
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    assert python.resolve().exists()
+
+
+def test_two_first_calls_share_one_set_up(bare_tree: Tree) -> None:
+    scene = bare_tree.scene()
+    calls = [bare_tree.start("check", scene) for _ in range(2)]
+    for process in calls:
+        with process:
+            out, error = process.communicate(timeout=300)
+        assert process.returncode == 0, error
+        assert "solver check" in out
+    assert bare_tree.log.count("-m venv") == 1
+    assert bare_tree.log.count("cmake --build") == 1
+
+
+def test_plot_does_not_wait_for_the_build(bare_tree: Tree) -> None:
+    (bare_tree.root / "CMakeLists.txt").write_text("nonsense\n")
+    done = bare_tree.call("plot", bare_tree.place)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"post plot {bare_tree.place}\n"
