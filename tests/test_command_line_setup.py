@@ -20,10 +20,11 @@ always     | command sh | here anyway
 # A stand-in for apt-get: it writes down what it is asked, and what it "installs" appears on PATH.
 APT_GET = """\
 here=${0%/*}
-case " $* " in
+words=$*
+case " $words " in
     *' update '*) echo update >>"$here/asked"; touch "$here/updated" ;;
     *' install '*)
-        echo "install ${*#*--no-install-recommends }" >>"$here/asked"
+        echo "install ${words#*--no-install-recommends }" >>"$here/asked"
         if [[ -e $here/stale && ! -e $here/updated ]]; then exit 100; fi
         if [[ -e $here/broken ]]; then echo 'E: no such package' >&2; exit 100; fi
         ln -sf "$(type -P true)" "$here/alpha-tool"
