@@ -10,13 +10,20 @@ from launcher_tree import Tree
 
 
 def test_run_solves_and_then_draws(ready_tree: Tree) -> None:
-    done = ready_tree.call("run", ready_tree.scene(name="wing_crack.nml"))
+    scene = ready_tree.scene("# name wing_crack")
+    done = ready_tree.call("run", scene)
     assert done.returncode == 0
     assert done.stdout.splitlines() == [
-        f"solver run {ready_tree.place}/wing_crack.nml --out out/wing_crack",
+        f"solver run {scene} --out out/wing_crack",
         "threads 1",
         "post plot out/wing_crack",
     ]
+
+
+def test_a_scene_without_a_readable_name_is_bad_input(ready_tree: Tree) -> None:
+    done = ready_tree.call("run", ready_tree.scene("# bad scene"))
+    assert done.returncode == 2
+    assert (done.stdout, done.stderr) == ("", "what is bad about it\n")
 
 
 @pytest.mark.parametrize(
