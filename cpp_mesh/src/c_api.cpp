@@ -67,6 +67,12 @@ Specification specification_from(const cm_spec* given) {
     return spec;
 }
 
+const PatchMap& map_of(const cm_mesh* mesh) {
+    require(mesh != nullptr, "no mesh was given");
+    require(mesh->mesh.map.has_value(), "the mesh was not made by remeshing");
+    return *mesh->mesh.map;
+}
+
 void copy_points(const std::vector<Vec2>& points, double* target) {
     for (const Vec2& p : points) {
         *target++ = p.x;
@@ -173,17 +179,36 @@ int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy, int32_t* 
     });
 }
 
-int cm_remesh(const cm_mesh*, const cm_network*, int32_t, const double*, double, double,
-              cm_mesh**) {
-    return guarded([] { throw MeshError("remeshing is not available in this version"); });
+int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_centres,
+              const double* centres, double radius, double size, cm_mesh** new_mesh) {
+    return guarded([&] {
+        require(new_mesh != nullptr, "no place was given for the mesh");
+        *new_mesh = nullptr;
+        require(old_mesh != nullptr, "no mesh was given");
+        std::vector<Vec2> points;
+        for (int32_t i = 0; i < n_centres; ++i)
+            points.push_back({centres[2 * i], centres[2 * i + 1]});
+        *new_mesh =
+            new cm_mesh{remesh(old_mesh->mesh, network_from(network), points, radius, size)};
+    });
 }
 
-int cm_map_sizes(const cm_mesh*, int32_t*) {
-    return guarded([] { throw MeshError("the mesh was not made by remeshing"); });
+int cm_map_sizes(const cm_mesh* new_mesh, int32_t* n_overlaps) {
+    return guarded(
+        [&] { *n_overlaps = static_cast<int32_t>(map_of(new_mesh).overlap_cell.size()); });
 }
 
-int cm_map_copy(const cm_mesh*, int32_t*, int32_t*, int32_t*, double*, int32_t*) {
-    return guarded([] { throw MeshError("the mesh was not made by remeshing"); });
+int cm_map_copy(const cm_mesh* new_mesh, int32_t* cell_old, int32_t* overlap_first,
+                int32_t* overlap_cell, double* overlap_area, int32_t* fcell_old) {
+    return guarded([&] {
+        const PatchMap& map = map_of(new_mesh);
+        std::copy(map.cell_old.begin(), map.cell_old.end(), cell_old);
+        std::copy(map.overlap_first.begin(), map.overlap_first.end(), overlap_first);
+        std::copy(map.overlap_cell.begin(), map.overlap_cell.end(), overlap_cell);
+        std::copy(map.overlap_area.begin(), map.overlap_area.end(), overlap_area);
+        for (const FractureCell& cell : new_mesh->mesh.split.fracture_cells)
+            *fcell_old++ = cell.old_cell;
+    });
 }
 
 void cm_destroy(cm_mesh** mesh) {

@@ -41,6 +41,11 @@ struct Mesh {
 // A new mesh of the rectangle and the part of the network in it.
 Mesh create_mesh(const Specification& specification, const Network& network);
 
+// A mesh that differs from an old one only near the centres, where fractures have grown; new
+// fracture cells have about the given size [m].
+Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,
+            double radius, double size);
+
 } // namespace cpp_mesh
 
 #endif

@@ -47,6 +47,7 @@ struct GraphEdge {
 struct Graph {
     std::vector<GraphPoint> points;
     std::vector<GraphEdge> edges;
+    std::vector<std::array<int, 2>> segment_points; // ends of each segment; -1 if it was dropped
 };
 
 // Points nearer than `same` are one point; nearer than `near_miss` but not the same cannot be
@@ -60,6 +61,9 @@ struct Tolerances {
 Tolerances tolerances_for(const Rectangle& rectangle, double size);
 
 std::vector<Segment> segments_of(const Network& network);
+
+// What has been added at the ends of fractures; everything else must be as it was.
+std::vector<Segment> grown_segments(const Network& before, const Network& after);
 
 // With `clip`, what lies outside the rectangle is dropped; else it is refused.
 Graph build_graph(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,

@@ -1,0 +1,328 @@
+#include "network.hpp"
+
+#include "errors.hpp"
+
+#include <utility>
+
+namespace cpp_mesh {
+
+namespace {
+
+// A point on a segment, by its distance from the segment's first end.
+struct Cut {
+    double distance;
+    int point;
+};
+
+class GraphBuilder {
+public:
+    GraphBuilder(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,
+                 const Tolerances& tolerances)
+        : segments_(segments), rectangle_(rectangle), clip_(clip), tolerances_(tolerances),
+          cuts_(segments.size()) {}
+
+    Graph build() {
+        for (int i = 0; i < count(); ++i)
+            place(i);
+        for (int j = 0; j < count(); ++j)
+            for (int i = 0; i < j; ++i)
+                intersect(i, j);
+        for (int i = 0; i < count(); ++i)
+            divide(i);
+        for (const std::vector<Cut>& cuts : cuts_)
+            graph_.segment_points.push_back(cuts.empty()
+                                                ? std::array<int, 2>{-1, -1}
+                                                : std::array<int, 2>{cuts[0].point, cuts[1].point});
+        check_angles();
+        check_boundary();
+        return std::move(graph_);
+    }
+
+private:
+    int count() const { return static_cast<int>(segments_.size()); }
+    bool is_placed(int i) const { return !cuts_[i].empty(); }
+    Vec2 at(int point) const { return graph_.points[point].xy; }
+    Vec2 start(int i) const { return at(cuts_[i][0].point); }
+    Vec2 stop(int i) const { return at(cuts_[i][1].point); }
+
+    std::string pair_name(int i, int j) const {
+        const int a = segments_[i].fracture, b = segments_[j].fracture;
+        if (a == b)
+            return fracture_name(a) + " (with itself)";
+        return "fractures " + std::to_string(std::min(a, b) + 1) + " and " +
+               std::to_string(std::max(a, b) + 1);
+    }
+
+    static std::string place_text(Vec2 p) {
+        return " at (" + number_text(p.x) + ", " + number_text(p.y) + ")";
+    }
+
+    // The graph point at p, which is made if there is none within the tolerance.
+    int point_at(Vec2 p) {
+        for (int k = 0; k < static_cast<int>(graph_.points.size()); ++k)
+            if (distance(at(k), p) <= tolerances_.same)
+                return k;
+        bool on_boundary = false;
+        const auto snap = [&](double& coordinate, double side) {
+            if (std::abs(coordinate - side) <= tolerances_.same) {
+                coordinate = side;
+                on_boundary = true;
+            }
+        };
+        snap(p.x, rectangle_.x_min);
+        snap(p.x, rectangle_.x_max);
+        snap(p.y, rectangle_.y_min);
+        snap(p.y, rectangle_.y_max);
+        graph_.points.push_back({p, on_boundary});
+        return static_cast<int>(graph_.points.size()) - 1;
+    }
+
+    // Put the ends of a segment into the graph, cut at the rectangle's sides (Liang and Barsky
+    // 1984).
+    void place(int i) {
+        const Segment& segment = segments_[i];
+        const Vec2 a = segment.end[0], b = segment.end[1];
+        if (!(distance(a, b) > tolerances_.near_miss) && segment.old_cell < 0)
+            throw MeshError(fracture_name(segment.fracture) + " has a segment of length " +
+                            number_text(distance(a, b)) + " m" + place_text(a) +
+                            ", which is too short to be meshed; remove a vertex");
+        double t_in = 0.0, t_out = 1.0;
+        if (clip_) {
+            const auto cut = [&](double speed, double room) {
+                if (speed == 0.0) {
+                    if (room < 0.0)
+                        t_out = -1.0;
+                } else if (speed < 0.0) {
+                    t_in = std::max(t_in, room / speed);
+                } else {
+                    t_out = std::min(t_out, room / speed);
+                }
+            };
+            const double slack = tolerances_.same;
+            cut(a.x - b.x, a.x - rectangle_.x_min + slack);
+            cut(b.x - a.x, rectangle_.x_max - a.x + slack);
+            cut(a.y - b.y, a.y - rectangle_.y_min + slack);
+            cut(b.y - a.y, rectangle_.y_max - a.y + slack);
+            if ((t_out - t_in) * distance(a, b) <= 4.0 * slack)
+                return;
+        } else if (rectangle_.depth(a) < -tolerances_.same ||
+                   rectangle_.depth(b) < -tolerances_.same) {
+            const Vec2 outside = rectangle_.depth(a) < rectangle_.depth(b) ? a : b;
+            throw MeshError(fracture_name(segment.fracture) + " leaves the domain" +
+                            place_text(outside) + "; shorten it or enlarge the domain");
+        }
+        const Vec2 p = t_in > 0.0 ? onto_side(along(a, b, t_in)) : a;
+        const Vec2 q = t_out < 1.0 ? onto_side(along(a, b, t_out)) : b;
+        const int k = point_at(p), l = point_at(q);
+        check_depth(segment, k);
+        check_depth(segment, l);
+        if (k == l)
+            return;
+        if (rectangle_.common_side(at(k), at(l)) != 0)
+            throw MeshError(fracture_name(segment.fracture) + " runs along the boundary" +
+                            place_text(at(k)) + "; a fracture may only end there");
+        cuts_[i] = {{0.0, k}, {distance(at(k), at(l)), l}};
+    }
+
+    // Clipping leaves the tolerance as a rest, which would be mistaken for a near miss.
+    Vec2 onto_side(Vec2 p) const {
+        const double slack = 4.0 * tolerances_.same;
+        const auto snap = [slack](double& coordinate, double side) {
+            if (std::abs(coordinate - side) <= slack)
+                coordinate = side;
+        };
+        snap(p.x, rectangle_.x_min);
+        snap(p.x, rectangle_.x_max);
+        snap(p.y, rectangle_.y_min);
+        snap(p.y, rectangle_.y_max);
+        return p;
+    }
+
+    void check_depth(const Segment& segment, int point) const {
+        if (segment.old_cell < 0 && !graph_.points[point].on_boundary &&
+            rectangle_.depth(at(point)) < tolerances_.near_miss)
+            throw MeshError(fracture_name(segment.fracture) + " comes within " +
+                            number_text(rectangle_.depth(at(point))) + " m of the boundary" +
+                            place_text(at(point)) +
+                            "; let it end on the boundary or farther away from it");
+    }
+
+    bool boxes_apart(int i, int j) const {
+        const double gap = tolerances_.near_miss;
+        const Vec2 a = start(i), b = stop(i), c = start(j), d = stop(j);
+        return std::max(a.x, b.x) + gap < std::min(c.x, d.x) ||
+               std::max(c.x, d.x) + gap < std::min(a.x, b.x) ||
+               std::max(a.y, b.y) + gap < std::min(c.y, d.y) ||
+               std::max(c.y, d.y) + gap < std::min(a.y, b.y);
+    }
+
+    void intersect(int i, int j) {
+        if (!is_placed(i) || !is_placed(j) || boxes_apart(i, j))
+            return;
+        if (segments_[i].old_cell >= 0 && segments_[j].old_cell >= 0)
+            return; // they were meshed before
+        const std::array<int, 2> p = {cuts_[i][0].point, cuts_[i][1].point};
+        const std::array<int, 2> q = {cuts_[j][0].point, cuts_[j][1].point};
+        if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1])
+            return; // an angle between them is checked for all edges at a point
+        int touches = 0;
+        for (int k = 0; k < 2; ++k) {
+            touches += touch(i, p[k], j);
+            touches += touch(j, q[k], i);
+        }
+        if (touches > 1)
+            throw MeshError(pair_name(i, j) + " overlap" + place_text(at(p[0])) +
+                            "; leave one of them out or move it");
+        if (touches == 1 || !segments_cross(start(i), stop(i), start(j), stop(j)))
+            return;
+        const Vec2 di = stop(i) - start(i), dj = stop(j) - start(j);
+        const double t = cross(start(j) - start(i), dj) / cross(di, dj);
+        const int point = point_at(along(start(i), stop(i), t));
+        add_cut(i, point);
+        add_cut(j, point);
+    }
+
+    // Does an end of segment i lie on segment j? Then it cuts j.
+    int touch(int i, int point, int j) {
+        const double gap = distance_to_segment(at(point), start(j), stop(j));
+        if (gap <= tolerances_.same) {
+            add_cut(j, point);
+            return 1;
+        }
+        if (gap < tolerances_.near_miss)
+            throw MeshError(pair_name(i, j) + " come within " + number_text(gap) + " m" +
+                            place_text(at(point)) +
+                            " without meeting; let them meet or move them apart");
+        return 0;
+    }
+
+    void add_cut(int i, int point) {
+        for (const Cut& cut : cuts_[i])
+            if (cut.point == point)
+                return;
+        cuts_[i].push_back({distance(start(i), at(point)), point});
+    }
+
+    // Make the edges of a segment, with arc lengths measured on the whole segment.
+    void divide(int i) {
+        if (!is_placed(i))
+            return;
+        const Segment& segment = segments_[i];
+        const double whole = distance(segment.end[0], segment.end[1]);
+        const auto arc_length = [&](int point) {
+            const double share = distance(segment.end[0], at(point)) / whole;
+            return segment.s[0] + share * (segment.s[1] - segment.s[0]);
+        };
+        std::vector<Cut> cuts = cuts_[i];
+        std::sort(cuts.begin(), cuts.end(),
+                  [](const Cut& a, const Cut& b) { return a.distance < b.distance; });
+        for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+            const int p = cuts[k].point, q = cuts[k + 1].point;
+            if (cuts.size() > 2 && distance(at(p), at(q)) < tolerances_.near_miss)
+                throw MeshError(fracture_name(segment.fracture) + " meets others at points only " +
+                                number_text(distance(at(p), at(q))) + " m apart" +
+                                place_text(at(p)) + "; move one of them");
+            GraphEdge edge;
+            edge.fracture = segment.fracture;
+            edge.point = {p, q};
+            edge.s = {arc_length(p), arc_length(q)};
+            if (k == 0 && at(p) == segment.end[0])
+                edge.s[0] = segment.s[0];
+            if (k + 2 == cuts.size() && at(q) == segment.end[1])
+                edge.s[1] = segment.s[1];
+            edge.segment = i;
+            edge.old_cell = segment.old_cell;
+            graph_.edges.push_back(edge);
+        }
+    }
+
+    // Edges at a point must be far enough apart to fit triangles between them.
+    void check_angles() const {
+        std::vector<std::vector<int>> star(graph_.points.size());
+        for (int e = 0; e < static_cast<int>(graph_.edges.size()); ++e)
+            for (int p : graph_.edges[e].point)
+                star[p].push_back(e);
+        const auto direction = [&](int e, int p) {
+            const GraphEdge& edge = graph_.edges[e];
+            return at(edge.point[0] == p ? edge.point[1] : edge.point[0]) - at(p);
+        };
+        for (int p = 0; p < static_cast<int>(star.size()); ++p) {
+            for (std::size_t k = 0; k < star[p].size(); ++k) {
+                const int e = star[p][k];
+                check_angle_with_boundary(e, p, direction(e, p));
+                for (std::size_t l = 0; l < k; ++l) {
+                    const int f = star[p][l];
+                    if (graph_.edges[e].old_cell >= 0 && graph_.edges[f].old_cell >= 0)
+                        continue;
+                    const double angle = angle_between(direction(e, p), direction(f, p));
+                    if (angle < tolerances_.angle)
+                        throw MeshError(
+                            pair_name(graph_.edges[f].segment, graph_.edges[e].segment) +
+                            (angle < 1e-6 ? " overlap" : " meet at too small an angle") +
+                            place_text(at(p)) + "; at least " +
+                            number_text(degrees(tolerances_.angle)) + " degrees are needed");
+                }
+            }
+        }
+    }
+
+    static double degrees(double angle) { return angle * 180.0 / 3.14159265358979323846; }
+
+    void check_angle_with_boundary(int e, int p, Vec2 direction) const {
+        const GraphEdge& edge = graph_.edges[e];
+        if (!graph_.points[p].on_boundary || edge.old_cell >= 0)
+            return;
+        const Vec2 d = unit(direction);
+        const double limit = std::sin(tolerances_.angle);
+        const Vec2 at_p = at(p);
+        const bool on_vertical = at_p.x == rectangle_.x_min || at_p.x == rectangle_.x_max;
+        const bool on_horizontal = at_p.y == rectangle_.y_min || at_p.y == rectangle_.y_max;
+        if ((on_vertical && std::abs(d.x) < limit) || (on_horizontal && std::abs(d.y) < limit))
+            throw MeshError(fracture_name(edge.fracture) +
+                            " meets the boundary at too small an angle" + place_text(at_p) +
+                            "; at least " + number_text(degrees(tolerances_.angle)) +
+                            " degrees are needed");
+    }
+
+    // Points on the boundary must be apart from each other and from the corners.
+    void check_boundary() const {
+        std::vector<Vec2> on_boundary;
+        for (const Vec2& corner : rectangle_.corners())
+            on_boundary.push_back(corner);
+        for (int p = 0; p < static_cast<int>(graph_.points.size()); ++p) {
+            if (!graph_.points[p].on_boundary)
+                continue;
+            for (const Vec2& other : on_boundary) {
+                const double gap = distance(other, at(p));
+                if (gap > 0.0 && gap < tolerances_.near_miss)
+                    throw MeshError(fracture_name(fracture_at(p)) + " meets the boundary only " +
+                                    number_text(gap) + " m from a corner or another fracture" +
+                                    place_text(at(p)) + "; move its end");
+            }
+            on_boundary.push_back(at(p));
+        }
+    }
+
+    int fracture_at(int point) const {
+        for (const GraphEdge& edge : graph_.edges)
+            if (edge.point[0] == point || edge.point[1] == point)
+                return edge.fracture;
+        return -1;
+    }
+
+    const std::vector<Segment>& segments_;
+    const Rectangle rectangle_;
+    const bool clip_;
+    const Tolerances tolerances_;
+    std::vector<std::vector<Cut>> cuts_; // by segment; the first two are its ends
+    Graph graph_;
+};
+
+} // namespace
+
+Graph build_graph(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,
+                  const Tolerances& tolerances) {
+    return GraphBuilder(segments, rectangle, clip, tolerances).build();
+}
+
+} // namespace cpp_mesh
