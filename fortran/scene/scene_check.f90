@@ -8,7 +8,7 @@ module scene_check
    use scene_sheet, only: sheet_t
    use scene_types, only: name_length, scene_t
    use scene_values, only: nearest_word, value_t
-   use scene_words, only: integer_text, real_text
+   use scene_words, only: integer_text, real_text, rounded_text
    implicit none(type, external)
    private
 
@@ -126,9 +126,11 @@ contains
       do i = 1, sheet%length
          associate (record => sheet%records(i))
             select case (groups(record%group)%name)
-            case ("injection")
-               call raise_error(error, "", sheet%blame(i, "", "needs a fluid, but the group &fluid is missing"))
-            case ("side", "initial")
+            case ("injection", "initial")
+               if (record%line > 0) &
+                  call raise_error(error, "", sheet%blame(i, "", &
+                                                          "needs a fluid, but the group &fluid is missing"))
+            case ("side")
                if (record%is_given("pressure")) &
                   call raise_error(error, "", sheet%blame(i, "pressure", &
                                                           "needs a fluid, but the group &fluid is missing"))
@@ -280,12 +282,12 @@ contains
          call raise_error(error, "", sheet%blame(sheet%find("fine"), "window", &
                                                  "is "//real_text(scene%discretization%window)// &
                                                  " but must be larger than twice the fine mesh size, "// &
-                                                 real_text(fine_size)))
+                                                 rounded_text(fine_size)))
       else if (scene%growth%increment > 0.5_rk*scene%discretization%window) then
          call raise_error(error, "", sheet%blame(sheet%find("growth"), "increment", &
                                                  "is "//real_text(scene%growth%increment)// &
                                                  " but must be at most half the window, "// &
-                                                 real_text(0.5_rk*scene%discretization%window)))
+                                                 rounded_text(0.5_rk*scene%discretization%window)))
       end if
    end subroutine check_levels
 

@@ -4,7 +4,7 @@ module scene_check_geometry
    use base_kinds, only: ik, rk
    use scene_sheet, only: sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
-   use scene_words, only: integer_text, real_text
+   use scene_words, only: integer_text, real_text, rounded_text
    implicit none(type, external)
    private
 
@@ -34,7 +34,7 @@ contains
             call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_boundary", &
                                                     "is "//real_text(size_boundary)// &
                                                     " but must be at most the shorter edge of the domain, "// &
-                                                    real_text(shorter_edge)))
+                                                    rounded_text(shorter_edge)))
          else if (scene%discretization%size_fracture > size_boundary) then
             call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_fracture", &
                                                     "is "//real_text(scene%discretization%size_fracture)// &
@@ -59,7 +59,7 @@ contains
                                                     "is "//real_text(scene%discretization%size_fracture)// &
                                                     " but must be at most the length of fracture '"// &
                                                     trim(scene%fractures(i)%name)//"', "// &
-                                                    real_text(total_length(scene%fractures(i)))))
+                                                    rounded_text(total_length(scene%fractures(i)))))
             return
          end if
       end do
@@ -100,17 +100,17 @@ contains
          if (.not. hypot(fracture%x(k) - fracture%x(k - 1), fracture%y(k) - fracture%y(k - 1)) > 0.0_rk) then
             call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the vertex "// &
                                                     point_text(fracture%x(k), fracture%y(k))// &
-                                                    " twice in a row but must have it once"))
+                                                    " twice in a row but must give it once"))
             return
          else if (along_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
             call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"run along the boundary to "// &
                                                     point_text(fracture%x(k), fracture%y(k))// &
-                                                    " but must touch it with its ends only"))
+                                                    " but must touch it with the ends only"))
             return
          else if (k < n .and. on_boundary(domain, fracture%x(k), fracture%y(k))) then
             call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the inner vertex "// &
                                                     point_text(fracture%x(k), fracture%y(k))// &
-                                                    " on the boundary but must touch it with its ends only"))
+                                                    " on the boundary but must touch it with the ends only"))
             return
          end if
       end do
@@ -131,7 +131,7 @@ contains
             if (distance <= scene%discretization%size_fracture) cycle
             call raise_error(error, "", sheet%blame(sheet%find("injection", i), "x", &
                                                     "and y are "//point_text(well%x, well%y)//", "// &
-                                                    real_text(distance)//" m away from fracture '"// &
+                                                    rounded_text(distance)//" m away from fracture '"// &
                                                     trim(scene%fractures(well%fracture)%name)// &
                                                     "', but must be within size_fracture, "// &
                                                     real_text(scene%discretization%size_fracture)//" m"))

@@ -134,7 +134,7 @@ contains
       case (kind_name)
          words = "at most 64 letters, digits, `_`, `-`, `.`"
       case (kind_integer, kind_real, kind_reals)
-         words = in_words(parameter%range)
+         words = in_words(parameter%range, whole=parameter%kind == kind_integer)
          if (words == "") words = "any finite"
       case default
          words = "at most 256 bytes of UTF-8"

@@ -115,7 +115,8 @@ contains
                call add_record(sheet, record)
             end do
          case default
-            if (groups(group)%name == "fluid" .and. .not. source%fluid%viscosity > 0.0_rk) cycle
+            if (any(groups(group)%name == [character(len=12) :: "fluid", "initial"]) .and. &
+                .not. source%fluid%viscosity > 0.0_rk) cycle  ! a scene without fluid has neither
             record = empty_record(group, 0_ik)
             call exchange_single(record, source, .false.)
             call add_record(sheet, record)
@@ -177,7 +178,7 @@ contains
       end if
       call exchange(record, "permeability_xx", material%permeability_xx, reading, nothing=0.0_rk)
       call exchange(record, "permeability_yy", material%permeability_yy, reading, nothing=0.0_rk)
-      call exchange(record, "permeability_xy", material%permeability_xy, reading)
+      call exchange(record, "permeability_xy", material%permeability_xy, reading, nothing=0.0_rk)
       call exchange(record, "toughness", material%toughness, reading, nothing=unlimited)
       plane = merge("stress", "strain", material%plane_stress)
       call exchange(record, "plane", plane, reading)
@@ -290,7 +291,7 @@ contains
             if (value%is_set) component = value%reals(1)
          else
             value%is_set = .true.
-            if (present(nothing)) value%is_set = abs(component - nothing) > 0.0_rk
+            if (present(nothing)) value%is_set = .not. same_bits(component, nothing)
             value%reals = [component]
          end if
       end associate

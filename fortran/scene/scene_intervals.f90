@@ -1,7 +1,7 @@
 !> Ranges of allowed values, and how to say them in words.
 module scene_intervals
-   use base_kinds, only: rk
-   use scene_words, only: real_text
+   use base_kinds, only: ik, rk
+   use scene_words, only: integer_text, real_text
    implicit none(type, external)
    private
 
@@ -46,21 +46,39 @@ contains
    end function holds
 
    !> For instance `at least 0.0 and less than 0.5`; empty for all finite numbers.
-   pure function in_words(interval) result(words)
+   pure function in_words(interval, whole) result(words)
       type(interval_t), intent(in) :: interval
+      logical, intent(in) :: whole  !< the values are whole numbers
       character(len=:), allocatable :: words
       logical :: bounded_below, bounded_above
 
       bounded_below = interval%lowest > -huge(1.0_rk)
       bounded_above = interval%highest < huge(1.0_rk)
       words = ""
-      if (bounded_below .and. interval%open_below) words = "greater than "//real_text(interval%lowest)
-      if (bounded_below .and. .not. interval%open_below) words = "at least "//real_text(interval%lowest)
+      if (bounded_below) then
+         words = "at least "//bound_text(interval%lowest, whole)
+         if (interval%open_below) words = "greater than "//bound_text(interval%lowest, whole)
+      end if
       if (bounded_below .and. bounded_above) words = words//" and "
-      if (bounded_above .and. interval%open_above) &
-         words = words//"less than "//real_text(interval%highest)
-      if (bounded_above .and. .not. interval%open_above) &
-         words = words//"at most "//real_text(interval%highest)
+      if (bounded_above) then
+         if (interval%open_above) then
+            words = words//"less than "//bound_text(interval%highest, whole)
+         else
+            words = words//"at most "//bound_text(interval%highest, whole)
+         end if
+      end if
    end function in_words
+
+   pure function bound_text(bound, whole) result(text)
+      real(rk), intent(in) :: bound
+      logical, intent(in) :: whole
+      character(len=:), allocatable :: text
+
+      if (whole) then
+         text = integer_text(nint(bound, ik))
+      else
+         text = real_text(bound)
+      end if
+   end function bound_text
 
 end module scene_intervals

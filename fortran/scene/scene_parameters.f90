@@ -85,7 +85,7 @@ module scene_parameters
 
    type(parameter_t), parameter :: body_parameters(*) = [ &
       parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
-                  meaning="Short name; results go to out/<name> unless told otherwise"), &
+                  meaning="Short name; results go to `out/<name>` unless told otherwise"), &
       parameter_t("scene", "title", kind_text, default="''", meaning="What the scene shows, in a line"), &
       parameter_t("domain", "x_min", unit="m", need=need_always, meaning="Left side"), &
       parameter_t("domain", "x_max", unit="m", need=need_always, meaning="Right side, above x_min"), &

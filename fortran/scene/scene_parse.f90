@@ -50,7 +50,13 @@ contains
       character(len=256) :: reason
       integer(lk) :: n_bytes
       integer :: unit, status
+      logical :: exists
 
+      inquire (file=path, exist=exists)
+      if (.not. exists) then
+         call raise_error(error, "", path//": there is no such scene file")
+         return
+      end if
       reason = ""
       open (newunit=unit, file=path, action="read", status="old", access="stream", &
             form="unformatted", iostat=status, iomsg=reason)

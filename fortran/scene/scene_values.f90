@@ -257,7 +257,7 @@ contains
       case (kind_choice)
          words = "'"//with_or(trim(parameter%choices))//"'"
       case (kind_integer)
-         words = "a whole number "//in_words(parameter%range)
+         words = "a whole number "//in_words(parameter%range, whole=.true.)
       case (kind_logical)
          words = ".true. or .false."
       case (kind_name)
@@ -268,7 +268,8 @@ contains
                  " characters in UTF-8"
       case default
          words = "a finite number like 4.0e10"
-         if (in_words(parameter%range) /= "") words = "a finite number "//in_words(parameter%range)
+         if (in_words(parameter%range, whole=.false.) /= "") &
+            words = "a finite number "//in_words(parameter%range, whole=.false.)
          if (parameter%unit /= "-") words = words//" ["//trim(parameter%unit)//"]"
       end select
    end function wanted

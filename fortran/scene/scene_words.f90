@@ -4,7 +4,7 @@ module scene_words
    implicit none(type, external)
    private
 
-   public :: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text
+   public :: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text, rounded_text
 
 contains
 
@@ -138,5 +138,17 @@ contains
          text = sign//digits(1:1)//"."//digits(2:)//"e"//integer_text(int(exponent, ik))
       end if
    end function real_text
+
+   !> A computed number for a message, to four digits.
+   pure function rounded_text(value) result(text)
+      real(rk), intent(in) :: value
+      character(len=:), allocatable :: text
+      character(len=32) :: buffer
+      real(rk) :: rounded
+
+      write (buffer, '(es32.3e3)') value
+      read (buffer, '(f32.0)') rounded
+      text = real_text(rounded)
+   end function rounded_text
 
 end module scene_words

@@ -1,0 +1,147 @@
+!> What several tests of this room need: files by their lines, and scenes compared bit for bit.
+module scene_test_files
+   use base_kinds, only: lk, rk
+   use scene_types, only: fracture_t, injection_t, probe_t, scene_t
+   implicit none(type, external)
+   private
+
+   public :: delete_file, put_bytes, put_lines, same_scene, source_path
+
+   interface same
+      module procedure same_real
+      module procedure same_reals
+   end interface same
+
+contains
+
+   !> A file of the source tree, which CTest tells by the environment.
+   function source_path(name) result(path)
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: path
+      character(len=4096) :: root
+
+      call get_environment_variable("WINGCRACK_SOURCE", root)
+      path = trim(root)//"/"//name
+   end function source_path
+
+   subroutine put_lines(path, lines)
+      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: lines(:)
+      integer :: unit, i
+
+      open (newunit=unit, file=path, action="write", status="replace")
+      do i = 1, size(lines)
+         write (unit, '(a)') trim(lines(i))
+      end do
+      close (unit)
+   end subroutine put_lines
+
+   subroutine put_bytes(path, bytes)
+      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: bytes
+      integer :: unit
+
+      open (newunit=unit, file=path, action="write", status="replace", access="stream", &
+            form="unformatted")
+      write (unit) bytes
+      close (unit)
+   end subroutine put_bytes
+
+   subroutine delete_file(path)
+      character(len=*), intent(in) :: path
+      integer :: unit, status
+
+      open (newunit=unit, file=path, iostat=status)
+      if (status == 0) close (unit, status="delete")
+   end subroutine delete_file
+
+   !> Every component is the same, the numbers bit for bit.
+   pure logical function same_scene(a, b)
+      type(scene_t), intent(in) :: a, b
+      integer :: i
+
+      same_scene = .false.
+      if (a%name /= b%name .or. a%title /= b%title) return
+      if (.not. same([a%domain%x_min, a%domain%x_max, a%domain%y_min, a%domain%y_max], &
+                     [b%domain%x_min, b%domain%x_max, b%domain%y_min, b%domain%y_max])) return
+      if (.not. same([a%material%young, a%material%poisson, a%material%biot, a%material%porosity, &
+                      a%material%permeability_xx, a%material%permeability_yy, &
+                      a%material%permeability_xy, a%material%toughness], &
+                     [b%material%young, b%material%poisson, b%material%biot, b%material%porosity, &
+                      b%material%permeability_xx, b%material%permeability_yy, &
+                      b%material%permeability_xy, b%material%toughness])) return
+      if (a%material%plane_stress .neqv. b%material%plane_stress) return
+      if (a%material%storage /= b%material%storage) return
+      if (.not. same(a%fluid%compressibility, b%fluid%compressibility)) return
+      if (.not. same(a%fluid%viscosity, b%fluid%viscosity)) return
+      if (size(a%fractures) /= size(b%fractures)) return
+      if (size(a%injections) /= size(b%injections)) return
+      if (size(a%probes) /= size(b%probes)) return
+      if (.not. all([(same_fracture(a%fractures(i), b%fractures(i)), i=1, size(a%fractures))])) return
+      if (.not. all([(same_injection(a%injections(i), b%injections(i)), i=1, size(a%injections))])) return
+      if (.not. all([(same_probe(a%probes(i), b%probes(i)), i=1, size(a%probes))])) return
+      do i = 1, 4
+         if (any(a%sides(i)%displacement_given .neqv. b%sides(i)%displacement_given)) return
+         if (a%sides(i)%pressure_given .neqv. b%sides(i)%pressure_given) return
+         if (.not. same([a%sides(i)%displacement, a%sides(i)%traction, a%sides(i)%pressure], &
+                        [b%sides(i)%displacement, b%sides(i)%traction, b%sides(i)%pressure])) return
+      end do
+      if (a%initial%fracture_pressure /= b%initial%fracture_pressure) return
+      if (.not. same(a%initial%pressure, b%initial%pressure)) return
+      if (.not. same([a%time%end, a%time%step, a%time%growth_factor, a%time%smallest_factor], &
+                     [b%time%end, b%time%step, b%time%growth_factor, b%time%smallest_factor])) return
+      if (.not. same_levels(a, b)) return
+      if (a%output%vtu .neqv. b%output%vtu) return
+      if (.not. same(a%output%interval, b%output%interval)) return
+      same_scene = .true.
+   end function same_scene
+
+   pure logical function same_levels(a, b)
+      type(scene_t), intent(in) :: a, b
+
+      associate (d => a%discretization, e => b%discretization, g => a%growth, h => b%growth)
+         same_levels = same([d%size_fracture, d%size_boundary, d%window, d%fine_ratio, d%newton_tolerance], &
+                            [e%size_fracture, e%size_boundary, e%window, e%fine_ratio, e%newton_tolerance]) &
+                       .and. d%rosette_sectors == e%rosette_sectors .and. d%newton_max == e%newton_max &
+                       .and. d%face_condition == e%face_condition &
+                       .and. (g%enabled .eqv. h%enabled) .and. (g%intensities .eqv. h%intensities) &
+                       .and. same([g%increment, g%exponent, g%threshold, g%new_aperture, g%stop_gain], &
+                                  [h%increment, h%exponent, h%threshold, h%new_aperture, h%stop_gain]) &
+                       .and. g%new_volume == h%new_volume
+      end associate
+   end function same_levels
+
+   pure logical function same_fracture(a, b)
+      type(fracture_t), intent(in) :: a, b
+
+      same_fracture = a%name == b%name .and. same(a%x, b%x) .and. same(a%y, b%y) .and. &
+                      same([a%friction, a%dilation, a%aperture], [b%friction, b%dilation, b%aperture])
+   end function same_fracture
+
+   pure logical function same_injection(a, b)
+      type(injection_t), intent(in) :: a, b
+
+      same_injection = a%fracture == b%fracture .and. (a%at_point .eqv. b%at_point) .and. &
+                       same([a%x, a%y, a%rate, a%start, a%end], [b%x, b%y, b%rate, b%start, b%end])
+   end function same_injection
+
+   pure logical function same_probe(a, b)
+      type(probe_t), intent(in) :: a, b
+
+      same_probe = a%name == b%name .and. same([a%x, a%y], [b%x, b%y])
+   end function same_probe
+
+   pure logical function same_real(a, b)
+      real(rk), intent(in) :: a, b
+
+      same_real = transfer(a, 0_lk) == transfer(b, 0_lk)
+   end function same_real
+
+   pure logical function same_reals(a, b)
+      real(rk), intent(in) :: a(:), b(:)
+
+      same_reals = size(a) == size(b)
+      if (same_reals) same_reals = all(transfer(a, [0_lk]) == transfer(b, [0_lk]))
+   end function same_reals
+
+end module scene_test_files

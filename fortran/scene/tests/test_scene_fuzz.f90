@@ -1,0 +1,164 @@
+!> Whatever a file holds, reading it ends with a scene or with a message, never in a crash.
+program test_scene_fuzz
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: lk
+   use scene_namelist, only: read_scene
+   use scene_test_files, only: delete_file, put_bytes, same_scene, source_path
+   use scene_types, only: scene_t
+   use scene_write, only: write_scene
+   implicit none(type, external)
+   character(len=*), parameter :: path = "test_scene_fuzz.nml"
+   type(checks_t) :: checks
+   character(len=:), allocatable :: good
+   integer(lk) :: seed
+
+   seed = 20231101_lk
+   call load_good()
+   call cut_everywhere()
+   call change_bytes()
+   call random_bytes()
+   call random_pieces()
+   call large_files()
+   call delete_file(path)
+   call checks%finish()
+
+contains
+
+   subroutine load_good()
+      integer :: unit
+      integer(lk) :: n_bytes
+
+      open (newunit=unit, file=source_path("inputs/paper_c/onset.nml"), action="read", status="old", &
+            access="stream", form="unformatted")
+      inquire (unit=unit, size=n_bytes)
+      allocate (character(len=n_bytes) :: good)
+      read (unit) good
+      close (unit)
+   end subroutine load_good
+
+   !> A file that ends early is refused, wherever it ends before its last group has begun.
+   subroutine cut_everywhere()
+      integer :: length, needed, n_refused
+
+      needed = index(good, "&growth") - 1  ! all that follows is optional
+      n_refused = 0
+      do length = 0, needed, 7
+         if (refused(good(1:length))) n_refused = n_refused + 1
+      end do
+      call checks%is_true(n_refused == count([(.not. complete_at(length), length=0, needed, 7)]), &
+                          "every cut within the required part is refused")
+   end subroutine cut_everywhere
+
+   !> Cut behind the last required group, at blanks or in a comment, a file is complete.
+   logical function complete_at(length)
+      integer, intent(in) :: length
+      integer :: last_group
+
+      last_group = index(good, "&fine") - 1
+      complete_at = length > index(good, "size_boundary") .and. length <= last_group
+      if (complete_at) complete_at = index(good(1:length), "/", back=.true.) > index(good, "size_boundary")
+      if (length > last_group) complete_at = length >= last_group + index(good(last_group + 1:), "/")
+   end function complete_at
+
+   subroutine change_bytes()
+      character(len=:), allocatable :: bytes
+      integer :: i, k, position, n_survived
+
+      n_survived = 0
+      do i = 1, 1500
+         bytes = good
+         do k = 1, 1 + random_below(4)
+            position = 1 + random_below(len(bytes) - 1)
+            select case (random_below(3))
+            case (0)  ! change
+               bytes(position:position) = char(random_below(256))
+            case (1)  ! lose
+               bytes = bytes(:position - 1)//bytes(position + 1:)
+            case default  ! repeat what stands elsewhere
+               bytes = bytes(:position)//bytes(1 + random_below(len(bytes)):)
+            end select
+         end do
+         if (settled(bytes)) n_survived = n_survived + 1
+      end do
+      call checks%is_true(n_survived == 1500, "files with changed bytes are refused, or read and written to the same scene")
+   end subroutine change_bytes
+
+   subroutine random_bytes()
+      character(len=400) :: bytes
+      integer :: i, k, n_refused
+
+      n_refused = 0
+      do i = 1, 500
+         do k = 1, len(bytes)
+            bytes(k:k) = char(random_below(256))
+         end do
+         if (refused(bytes)) n_refused = n_refused + 1
+      end do
+      call checks%is_true(n_refused == 500, "random bytes are refused")
+   end subroutine random_bytes
+
+   !> Pieces of the syntax in any order reach deeper than bytes do.
+   subroutine random_pieces()
+      character(len=16), parameter :: pieces(*) = [character(len=16) :: &
+                                                   "&material", "&fracture", "&side", "&", "/", "=", ",", "'", &
+                                                   "''", "'left'", "name", "x", "y =", "young =", "1*", "3*1.0", &
+                                                   "*", "1e400", "-", ".", "NaN", "T", "! remark", "x(1)", "0*1"]
+      character(len=:), allocatable :: text
+      integer :: i, k, n_refused
+
+      n_refused = 0
+      do i = 1, 2000
+         text = "&fracture"
+         do k = 1, 12
+            text = text//" "//trim(pieces(1 + random_below(size(pieces))))
+            if (random_below(5) == 0) text = text//achar(10)
+         end do
+         if (refused(text)) n_refused = n_refused + 1
+      end do
+      call checks%is_true(n_refused == 2000, "random pieces are refused")
+   end subroutine random_pieces
+
+   subroutine large_files()
+      call checks%is_true(refused(repeat("&probe/", 100000)), "a great many groups")
+      call checks%is_true(refused("&"//repeat("a", 200000)), "a very long name")
+      call checks%is_true(refused("&scene title = '"//repeat("a", 200000)//"' /"), "a very long text")
+      call checks%is_true(refused("&fracture x = "//repeat("1,", 150000)//" /"), "a very long list")
+      call checks%is_true(refused(repeat(" ", 4000001)), "too large a file")
+      call checks%is_true(refused(repeat("/", 100000)), "slashes")
+   end subroutine large_files
+
+   !> Refused with a message, or a scene that is written and read to the same.
+   logical function settled(bytes)
+      character(len=*), intent(in) :: bytes
+      type(scene_t) :: scene, again
+      type(error_t), allocatable :: error
+
+      settled = refused(bytes)
+      if (settled) return
+      call read_scene(path, scene, error)
+      if (.not. allocated(error)) call write_scene(path, scene, error)
+      if (.not. allocated(error)) call read_scene(path, again, error)
+      if (.not. allocated(error)) settled = same_scene(scene, again)
+   end function settled
+
+   logical function refused(bytes)
+      character(len=*), intent(in) :: bytes
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call put_bytes(path, bytes)
+      call read_scene(path, scene, error)
+      refused = allocated(error)
+      if (refused) refused = index(error%message, path) == 1
+   end function refused
+
+   !> A number from 0 to n - 1 (linear congruential; Lewis, Goodman and Miller 1969).
+   integer function random_below(n)
+      integer, intent(in) :: n
+
+      seed = mod(16807_lk*seed, 2147483647_lk)
+      random_below = int(mod(seed, int(n, lk)))
+   end function random_below
+
+end program test_scene_fuzz
