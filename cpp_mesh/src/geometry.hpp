@@ -87,13 +87,13 @@ inline double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
                      distance_to_segment(c, a, b), distance_to_segment(d, a, b)});
 }
 
-// Smallest angle of a triangle [rad]; negative if it is inverted.
-inline double smallest_angle(Vec2 a, Vec2 b, Vec2 c) {
-    const double twice = twice_area(a, b, c);
-    const double smallest = std::min({std::atan2(std::abs(twice), dot(b - a, c - a)),
-                                      std::atan2(std::abs(twice), dot(c - b, a - b)),
-                                      std::atan2(std::abs(twice), dot(a - c, b - c))});
-    return twice > 0.0 ? smallest : -smallest;
+// Sine of a triangle's smallest angle, a measure of its shape: negative if the triangle is
+// inverted, at most sqrt(3)/2. The smallest angle lies between the two longest sides.
+inline double sine_of_smallest_angle(Vec2 a, Vec2 b, Vec2 c) {
+    const double ab = dot(b - a, b - a), bc = dot(c - b, c - b), ca = dot(a - c, a - c);
+    const double shortest = std::min({ab, bc, ca});
+    const double others = shortest == ab ? bc * ca : shortest == bc ? ca * ab : ab * bc;
+    return others > 0.0 ? twice_area(a, b, c) / std::sqrt(others) : 0.0;
 }
 
 struct Rectangle {

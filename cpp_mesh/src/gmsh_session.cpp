@@ -153,6 +153,8 @@ GmshSession::GmshSession() {
     gmsh::initialize(0, nullptr, read_configuration, run);
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::option::setNumber("General.NumThreads", 1);
+    for (const char* dimension : {"1D", "2D", "3D"})
+        gmsh::option::setNumber(std::string("Mesh.MaxNumThreads") + dimension, 1);
     gmsh::option::setNumber("Mesh.Algorithm", algorithm_frontal_delaunay);
     gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
     gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);

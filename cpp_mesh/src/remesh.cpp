@@ -16,6 +16,9 @@ namespace {
 // for cells of good shape.
 constexpr double margin_in_cells = 2.0;
 
+// Cells longer than this times the wanted size are taken into the patch.
+constexpr double largest_ratio = 2.0;
+
 // A new end on the boundary replaces a boundary node that is nearer than this share of its edge.
 constexpr double replaced_share = 0.35;
 
@@ -86,11 +89,24 @@ private:
                 mark_near(old_.plane,
                           {graph_.points[edge.point[0]].xy, graph_.points[edge.point[1]].xy},
                           margin_in_cells * size_, marked_);
+        mark_too_large();
         for (int p : new_points())
             if (graph_.points[p].on_boundary)
                 mark_around_boundary_point(graph_.points[p].xy);
         make_simple(old_.plane, edges_, marked_);
         parts_ = patch_parts(old_.plane, edges_, marked_);
+    }
+
+    // Where the sizes have become much smaller, the old cells would leave no room to grow smoothly.
+    void mark_too_large() {
+        for (std::size_t c = 0; c < old_.plane.cells.size(); ++c) {
+            const Triangle& node = old_.plane.cells[c];
+            const Vec2 p = xy_[node[0]], q = xy_[node[1]], r = xy_[node[2]];
+            const Vec2 centre = (1.0 / 3.0) * (p + q + r);
+            const double longest = std::max({distance(p, q), distance(q, r), distance(r, p)});
+            if (longest > largest_ratio * new_.size(centre) && !marked_[c])
+                marked_[c] = 1;
+        }
     }
 
     // A new end on the boundary may replace a node of the boundary edge that it lies on.

@@ -6,14 +6,14 @@ namespace {
 
 constexpr int sweeps = 3;
 
-double smallest_angle_around(const PlaneMesh& mesh, const EdgeTable& edges, int node) {
-    double smallest = 4.0;
+double worst_shape_around(const PlaneMesh& mesh, const EdgeTable& edges, int node) {
+    double worst = 1.0;
     for (const int* c = edges.begin(node); c != edges.end(node); ++c) {
         const Triangle& cell = mesh.cells[*c];
-        smallest = std::min(smallest,
-                            smallest_angle(mesh.xy[cell[0]], mesh.xy[cell[1]], mesh.xy[cell[2]]));
+        worst = std::min(
+            worst, sine_of_smallest_angle(mesh.xy[cell[0]], mesh.xy[cell[1]], mesh.xy[cell[2]]));
     }
-    return smallest;
+    return worst;
 }
 
 } // namespace
@@ -29,9 +29,9 @@ void smooth(PlaneMesh& mesh, int first_free) {
                     if (other != node)
                         sum = sum + mesh.xy[other];
             const Vec2 before = mesh.xy[node];
-            const double quality = smallest_angle_around(mesh, edges, node);
+            const double quality = worst_shape_around(mesh, edges, node);
             mesh.xy[node] = (0.5 / n_cells) * sum; // each neighbour is in two cells
-            if (!(smallest_angle_around(mesh, edges, node) > quality))
+            if (!(worst_shape_around(mesh, edges, node) > quality))
                 mesh.xy[node] = before;
         }
     }
