@@ -1,0 +1,209 @@
+!> run.json: what a run was, how it ended and what it cost.
+module output_record
+   use base_errors, only: error_t
+   use base_kinds, only: ik, lk, rk
+   use base_timers, only: phase_count, phase_names, timers_t
+   use output_files, only: write_text_file
+   use output_json, only: json_t
+   use output_text, only: add_text, text_t
+   implicit none(type, external)
+   private
+
+   public :: peak_memory_mb, run_record_t, status_failed, status_finished, status_stopped
+
+   character(len=*), parameter :: status_finished = "finished"  !< the end that the scene asks for
+   character(len=*), parameter :: status_stopped = "stopped"  !< interrupted from outside
+   character(len=*), parameter :: status_failed = "failed"  !< could not go on
+
+   !> Unknowns of one kind.
+   type :: dof_block_t
+      character(len=:), allocatable :: name
+      integer(lk) :: n = 0_lk
+   end type dof_block_t
+
+   !> All that run.json holds but the timers. Components without default must be set.
+   type :: run_record_t
+      character(len=:), allocatable :: scene  !< its name
+      character(len=:), allocatable :: version  !< of this program
+      character(len=:), allocatable :: status  !< status_finished, status_stopped or status_failed
+      character(len=:), allocatable :: reason  !< why it ended
+      integer(ik) :: steps = 0  !< accepted time steps
+      integer(ik) :: cells = 0  !< matrix cells at the end
+      integer(ik) :: fracture_cells = 0  !< at the end
+      real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
+      real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
+      integer(ik) :: newton_total = 0  !< iterations
+      integer(ik) :: newton_max = 0  !< iterations in one step
+      integer(ik) :: step_cuts = 0
+      type(dof_block_t), allocatable, private :: dofs(:)
+      type(text_t), allocatable, private :: used(:)
+      type(text_t), allocatable, private :: left_out(:)
+      type(text_t), allocatable, private :: warnings(:)
+   contains
+      procedure :: count_dofs
+      procedure :: use_feature
+      procedure :: leave_out_feature
+      procedure :: warn
+      procedure :: write => write_record
+   end type run_record_t
+
+contains
+
+   !> Set the number of unknowns of a block, e.g. "displacement"; a later count replaces an earlier
+   !! one.
+   subroutine count_dofs(self, block_name, n)
+      class(run_record_t), intent(inout) :: self
+      character(len=*), intent(in) :: block_name
+      integer, intent(in) :: n
+      type(dof_block_t), allocatable :: longer(:)
+      integer :: i
+
+      if (.not. allocated(self%dofs)) allocate (self%dofs(0))
+      do i = 1, size(self%dofs)
+         if (self%dofs(i)%name == block_name) then
+            self%dofs(i)%n = int(n, lk)
+            return
+         end if
+      end do
+      allocate (longer(size(self%dofs) + 1))
+      longer(1:size(self%dofs)) = self%dofs
+      longer(size(longer))%name = block_name
+      longer(size(longer))%n = int(n, lk)
+      call move_alloc(longer, self%dofs)
+   end subroutine count_dofs
+
+   !> Note a feature that the run uses.
+   subroutine use_feature(self, feature)
+      class(run_record_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+
+      call add_once(self%used, feature)
+   end subroutine use_feature
+
+   !> Note a feature that the run leaves out.
+   subroutine leave_out_feature(self, feature)
+      class(run_record_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+
+      call add_once(self%left_out, feature)
+   end subroutine leave_out_feature
+
+   !> Note a warning; the same words are kept once.
+   subroutine warn(self, warning)
+      class(run_record_t), intent(inout) :: self
+      character(len=*), intent(in) :: warning
+
+      call add_once(self%warnings, warning)
+   end subroutine warn
+
+   !> Write run.json.
+   subroutine write_record(self, path, timers, error)
+      class(run_record_t), intent(in) :: self
+      character(len=*), intent(in) :: path
+      type(timers_t), intent(in) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      type(json_t) :: json
+      integer :: i
+
+      call json%begin_object("")
+      call add_optional_text(json, "scene", self%scene)
+      call add_optional_text(json, "version", self%version)
+      call add_optional_text(json, "status", self%status)
+      call add_optional_text(json, "reason", self%reason)
+      call json%add("steps", self%steps)
+      call json%add("cells", self%cells)
+      call json%add("fracture_cells", self%fracture_cells)
+      call json%begin_object("dofs")
+      if (allocated(self%dofs)) then
+         do i = 1, size(self%dofs)
+            call json%add(self%dofs(i)%name, self%dofs(i)%n)
+         end do
+      end if
+      call json%end_object()
+      call add_list(json, "used", self%used)
+      call add_list(json, "left_out", self%left_out)
+      call json%begin_object("timers_s")
+      do i = 1, phase_count
+         call json%add(trim(phase_names(i)), timers%seconds(i))
+      end do
+      call json%end_object()
+      call json%add("cpu_s", timers%cpu_seconds())
+      call json%add("wall_s", timers%wall_seconds())
+      call json%add("peak_memory_mb", peak_memory_mb())
+      call json%add("mass_error_relative", self%mass_error_relative)
+      call json%add("contact_residual", self%contact_residual)
+      call json%begin_object("newton_iterations")
+      call json%add("total", self%newton_total)
+      call json%add("max", self%newton_max)
+      call json%end_object()
+      call json%add("step_cuts", self%step_cuts)
+      call add_list(json, "warnings", self%warnings)
+      call json%end_object()
+      call write_text_file(path, json%text(), error)
+   end subroutine write_record
+
+   !> Largest memory that the process has held so far [MB of 2**20 bytes]; NaN where the system does
+   !! not say.
+   function peak_memory_mb() result(megabytes)
+      use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+      real(rk) :: megabytes
+      character(len=128) :: line
+      integer :: unit, status
+      real(rk) :: kilobytes
+
+      megabytes = ieee_value(megabytes, ieee_quiet_nan)
+      open (newunit=unit, file="/proc/self/status", action="read", status="old", iostat=status)
+      if (status /= 0) return
+      do
+         read (unit, "(a)", iostat=status) line
+         if (status /= 0) exit
+         if (line(1:6) == "VmHWM:") then
+            read (line(7:), *, iostat=status) kilobytes
+            if (status == 0) megabytes = kilobytes/1024.0_rk
+            exit
+         end if
+      end do
+      close (unit)
+   end function peak_memory_mb
+
+   !> Add a string to a list that does not have it yet.
+   subroutine add_once(list, text)
+      type(text_t), allocatable, intent(inout) :: list(:)
+      character(len=*), intent(in) :: text
+      integer :: i
+
+      if (allocated(list)) then
+         do i = 1, size(list)
+            if (list(i)%text == text) return
+         end do
+      end if
+      call add_text(list, text)
+   end subroutine add_once
+
+   subroutine add_list(json, key, list)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: key
+      type(text_t), allocatable, intent(in) :: list(:)
+
+      if (allocated(list)) then
+         call json%add(key, list)
+      else
+         call json%add_raw(key, "[]")
+      end if
+   end subroutine add_list
+
+   !> A text that was never set is null.
+   subroutine add_optional_text(json, key, text)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: key
+      character(len=:), allocatable, intent(in) :: text
+
+      if (allocated(text)) then
+         call json%add(key, text)
+      else
+         call json%add_raw(key, "null")
+      end if
+   end subroutine add_optional_text
+
+end module output_record

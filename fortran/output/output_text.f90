@@ -1,0 +1,99 @@
+!> Text that grows: a buffer with room to spare, and lists of strings.
+module output_text
+   use base_errors, only: error_t
+   use base_kinds, only: rk
+   use output_files, only: write_text_file
+   use output_number, only: format_real, number_width
+   implicit none(type, external)
+   private
+
+   public :: add_text, newline, text_buffer_t, text_t
+
+   character(len=*), parameter :: newline = achar(10)
+
+   !> A string of its own length.
+   type :: text_t
+      character(len=:), allocatable :: text
+   end type text_t
+
+   !> A long text, built piece by piece.
+   type :: text_buffer_t
+      integer :: length = 0  !< characters used
+      character(len=:), allocatable, private :: storage
+   contains
+      procedure :: append
+      procedure :: append_real
+      procedure :: text => buffer_text
+      procedure :: write_file
+   end type text_buffer_t
+
+contains
+
+   !> Add a piece at the end.
+   pure subroutine append(self, piece)
+      class(text_buffer_t), intent(inout) :: self
+      character(len=*), intent(in) :: piece
+      character(len=:), allocatable :: larger
+
+      if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
+      if (self%length + len(piece) > len(self%storage)) then
+         allocate (character(len=2*(self%length + len(piece))) :: larger)
+         larger(1:self%length) = self%storage(1:self%length)
+         call move_alloc(larger, self%storage)
+      end if
+      self%storage(self%length + 1:self%length + len(piece)) = piece
+      self%length = self%length + len(piece)
+   end subroutine append
+
+   !> Add a number at the end, with the digits that it needs.
+   pure subroutine append_real(self, x)
+      class(text_buffer_t), intent(inout) :: self
+      real(rk), intent(in) :: x
+      character(len=number_width) :: piece
+      integer :: length
+
+      call format_real(x, piece, length)
+      call self%append(piece(1:length))
+   end subroutine append_real
+
+   !> All that was added.
+   pure function buffer_text(self) result(text)
+      class(text_buffer_t), intent(in) :: self
+      character(len=:), allocatable :: text
+
+      if (allocated(self%storage)) then
+         text = self%storage(1:self%length)
+      else
+         text = ""
+      end if
+   end function buffer_text
+
+   !> Write all that was added as a whole file.
+   subroutine write_file(self, path, error)
+      class(text_buffer_t), intent(in) :: self
+      character(len=*), intent(in) :: path
+      type(error_t), allocatable, intent(out) :: error
+
+      if (allocated(self%storage)) then
+         call write_text_file(path, self%storage(1:self%length), error)
+      else
+         call write_text_file(path, "", error)
+      end if
+   end subroutine write_file
+
+   !> Add a string to a list.
+   pure subroutine add_text(list, text)
+      type(text_t), allocatable, intent(inout) :: list(:)
+      character(len=*), intent(in) :: text
+      type(text_t), allocatable :: longer(:)
+      integer :: n
+
+      n = 0
+      if (allocated(list)) n = size(list)
+      allocate (longer(n + 1))
+      if (n > 0) longer(1:n) = list
+      longer(n + 1)%text = text
+      call move_alloc(longer, list)
+   end subroutine add_text
+
+end module output_text

@@ -1,0 +1,260 @@
+!> Tests of output_run: a small run writes every file with the contract's names, and only whole
+!! files.
+program test_output_run
+   use base_check_files, only: file_exists, file_text
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_output, timers_t
+   use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
+   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
+      & matrix_fields_t, state_open, state_slip, state_stick, tip_row_t
+   use output_files, only: make_directory, write_text_file
+   use output_record, only: run_record_t, status_finished
+   use output_run, only: run_output_t
+   use output_tables, only: event_slip_onset, event_step_cut
+   use scene_types, only: scene_t
+   implicit none(type, external)
+
+   character(len=*), parameter :: nl = achar(10)
+   character(len=*), parameter :: top = "test_output_run.out"
+   type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(scene_t) :: scene
+   type(mesh_t) :: mesh
+   type(network_t) :: network
+   type(matrix_fields_t) :: matrix
+   type(fracture_fields_t) :: fracture
+   type(intersection_fields_t) :: intersections
+   type(timers_t) :: timers
+
+   call make_scene()
+   call make_mesh()
+   call make_state()
+   call timers%begin()
+   call run_with_fluid(top//"/run")
+   call run_without_fluid(top//"/dry")
+   call refuse()
+   call checks%finish()
+
+contains
+
+   !> Two times with everything.
+   subroutine run_with_fluid(folder)
+      character(len=*), intent(in) :: folder
+      type(run_output_t) :: output
+      type(run_record_t) :: record
+      integer :: i
+
+      ! Leftovers of an earlier and longer run, and of one that died while it wrote.
+      call make_directory(folder//"/vtu", error)
+      do i = 0, 3
+         call write_text_file(folder//"/vtu/matrix_00000"//achar(48 + i)//".vtu", "old", error)
+      end do
+      call write_text_file(folder//"/run.json", "old", error)
+      call write_text_file(folder//"/history.csv.part", "ol", error)
+
+      call output%open(folder, scene, error)
+      call checks%no_error(error, "open")
+      call checks%is_true(file_exists(folder//"/scene.nml"), "scene.nml is there from the start")
+      call checks%is_true(.not. file_exists(folder//"/run.json"), "an earlier run.json is gone")
+      call checks%is_true(.not. file_exists(folder//"/vtu/matrix_000003.vtu"), "and its fields")
+      call checks%is_true(.not. file_exists(folder//"/history.csv.part"), "and what it left aside")
+
+      call timers%start(phase_output)
+      do i = 0, 1
+         call output%history_row(history_row_t(2.0_rk*i, 2.0_rk, 4_ik, 6.8e6_rk, 1.0e-4_rk, &
+            & 2.0e-5_rk, 0.0_rk, 1.0e-3_rk, 1.0e-14_rk, 1.0e-4_rk, 2.0e-5_rk, 1_ik, 1_ik, 1_ik, &
+            & 1.25_rk, 2_ik, 1_ik, 1.0e6_rk))
+         call output%tip_row(tip_row_t(2.0_rk*i, 1_ik, 1_ik, [1.0_rk, 0.5_rk], 1.0e6_rk, 2.0e5_rk, &
+            & 1.1e6_rk, 2.1e5_rk, 1.05e6_rk, 30.0_rk, acos(-1.0_rk)/4.0_rk, 0.0_rk))
+         call output%probe_row(2.0_rk*i, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
+            & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]), [6.8e6_rk])
+         call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
+         call output%write_fields(2.0_rk*i, mesh, matrix, fracture, intersections, error)
+         call checks%no_error(error, "fields")
+         call checks%is_true(.not. output%fields_due(2.0_rk*i + 0.02_rk), "not at the short steps")
+         call output%network_step(2.0_rk*i, network, mesh)
+      end do
+      call output%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
+      call output%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+      call output%log("two steps, ""quoted""")
+      call output%tick(error)
+      call checks%is_true(.not. file_exists(folder//"/history.csv"), "tables wait for their time")
+      call output%flush(error)
+      call checks%no_error(error, "flush")
+      call checks%is_true(file_exists(folder//"/history.csv"), "a flush writes them")
+      call checks%is_true(.not. file_exists(folder//"/run.json"), "run.json waits for the end")
+      call timers%stop(phase_output)
+      record%scene = "small"
+      record%version = "0.1.0"
+      record%status = status_finished
+      record%reason = "end time reached"
+      call output%close(record, timers, error)
+      call checks%no_error(error, "close")
+
+      call starts(folder//"/history.csv", "time_s,dt_s,newton_iterations,well_pressure_pa,"// &
+      & "injected_m2,leakoff_m2,prefilled_m2,fracture_volume_m2,mass_error_relative,max_slip_m,"// &
+         & "max_opening_m,n_stick,n_slip,n_open,fracture_length_m,n_tips,n_intersections,"// &
+     & "seismic_moment_nm"//nl//"0.0,2.0,4,6800000.0,0.0001,2e-05,0.0,0.001,1e-14,0.0001,2e-05,"// &
+         & "1,1,1,1.25,2,1,1000000.0"//nl//"2.0,")
+      call starts(folder//"/tips.csv", "time_s,tip,fracture,x_m,y_m,k1_pa_sqrtm,k2_pa_sqrtm,"// &
+         & "k1_dc_pa_sqrtm,k2_dc_pa_sqrtm,keq_pa_sqrtm,g_j_m2,angle_deg,advance_m"//nl// &
+         & "0.0,1,1,1.0,0.5,1000000.0,200000.0,1100000.0,210000.0,1050000.0,30.0,45.0,0.0"//nl)
+      call starts(folder//"/fractures.csv", "time_s,fracture,s_m,x_m,y_m,aperture_m,jump_n_m,"// &
+         & "jump_t_m,traction_n_pa,traction_t_pa,pressure_pa,state"//nl// &
+         & "0.0,1,0.25,0.25,0.5,0.001,0.0,0.0,-10000000.0,1000000.0,6000000.0,stick"//nl// &
+         & "0.0,1,0.75,0.75,0.5,0.0011,0.0001,-0.002,-5000000.0,3000000.0,6500000.0,slip"//nl// &
+         & "0.0,2,0.125,0.5,0.375,0.002,0.001,0.0,0.0,0.0,7000000.0,open"//nl//"2.0,")
+      call starts(folder//"/probes.csv", "time_s,A_p_pa,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,"// &
+          & "A_sxy_pa"//nl//"0.0,6800000.0,0.001,-0.002,-10000000.0,-20000000.0,500000.0"//nl)
+      call starts(folder//"/events.csv", "time_s,kind,fracture,x_m,y_m,detail"//nl// &
+         & "2.0,slip_onset,1,0.25,0.5,slip 1.0e-5 m"//nl// &
+         & '2.0,step_cut,,,,"from 2 s to 1 s, as Newton did not converge"'//nl)
+      call starts(folder//"/matrix.pvd", '<?xml version="1.0"?>'//nl// &
+         & '<VTKFile type="Collection" version="1.0">'//nl//"  <Collection>"//nl// &
+         & '    <DataSet timestep="0.0" part="0" file="vtu/matrix_000000.vtu"/>'//nl// &
+         & '    <DataSet timestep="2.0" part="0" file="vtu/matrix_000001.vtu"/>'//nl// &
+         & "  </Collection>"//nl//"</VTKFile>"//nl)
+      call checks%is_true(file_exists(folder//"/vtu/fractures_000001.vtu"), "fractures' fields")
+      call checks%is_true(file_exists(folder//"/vtu/intersections_000001.vtu"), "intersections'")
+      call checks%is_true(file_exists(folder//"/network.json"), "network.json")
+      call starts(folder//"/run.json", "{"//nl//'  "scene": "small",')
+      call checks%is_true(index(file_text(folder//"/run.log"), 's  two steps, "quoted"'//nl) > 0, &
+         & "run.log")
+   end subroutine run_with_fluid
+
+   !> Mechanics only, without VTU files, intersections and intensities: nothing about fluid is
+   !! written.
+   subroutine run_without_fluid(folder)
+      character(len=*), intent(in) :: folder
+      type(run_output_t) :: output
+      type(run_record_t) :: record
+      type(matrix_fields_t) :: dry_matrix
+      type(fracture_fields_t) :: dry_fracture
+      type(intersection_fields_t) :: none
+      type(scene_t) :: dry_scene
+
+      dry_scene = scene
+      dry_scene%output%vtu = .false.
+      dry_scene%output%interval = 10.0_rk
+      dry_scene%growth%intensities = .false.
+      dry_matrix = matrix
+      deallocate (dry_matrix%pressure)
+      dry_fracture = fracture
+      deallocate (dry_fracture%pressure)
+      call output%open(folder, dry_scene, error, has_fluid=.false.)
+      call checks%no_error(error, "open without fluid")
+      call output%history_row(history_row_t(time=1.0_rk))
+      call output%tip_row(tip_row_t(time=1.0_rk))
+      call output%probe_row(1.0_rk, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
+         & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]))
+      call output%write_fields(1.0_rk, mesh, dry_matrix, dry_fracture, none, error)
+      call checks%no_error(error, "fields without fluid")
+      call checks%is_true(.not. output%fields_due(9.99_rk), "fields follow the interval")
+      call checks%is_true(output%fields_due(10.0_rk), "fields are due when it has passed")
+      call output%write_fields(25.0_rk, mesh, dry_matrix, dry_fracture, none, error)
+      call checks%is_true(.not. output%fields_due(29.9_rk), "missed times are not made up for")
+      call output%close(record, timers, error)
+      call checks%no_error(error, "close without fluid")
+      call starts(folder//"/history.csv", "time_s,dt_s,newton_iterations,fracture_volume_m2,"// &
+         & "max_slip_m,max_opening_m,n_stick,n_slip,n_open,fracture_length_m,n_tips,"// &
+         & "n_intersections,seismic_moment_nm"//nl//"1.0,0.0,0,0.0,0.0,0.0,0,0,0,0.0,0,0,0.0"//nl)
+      call starts(folder//"/fractures.csv", "time_s,fracture,s_m,x_m,y_m,aperture_m,jump_n_m,"// &
+         & "jump_t_m,traction_n_pa,traction_t_pa,state"//nl)
+      call starts(folder//"/probes.csv", "time_s,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,A_sxy_pa"//nl// &
+         & "1.0,0.001,-0.002,-10000000.0,-20000000.0,500000.0"//nl)
+      call checks%is_true(.not. file_exists(folder//"/tips.csv"), "no intensities, no tips.csv")
+      call checks%is_true(.not. file_exists(folder//"/matrix.pvd"), "no VTU, no collection")
+      call checks%is_true(.not. file_exists(folder//"/vtu"), "no VTU, no folder")
+   end subroutine run_without_fluid
+
+   !> A directory that cannot be made.
+   subroutine refuse()
+      type(run_output_t) :: output
+
+      call output%open(top//"/run/run.json", scene, error)
+      call checks%fails_with(error, "run.json", "a file in the way of the directory is refused")
+   end subroutine refuse
+
+   !> A file begins with these words.
+   subroutine starts(path, words)
+      character(len=*), intent(in) :: path, words
+
+      call checks%is_true(index(file_text(path), words) == 1, path//" begins with "//words)
+   end subroutine starts
+
+   !> A scene with one probe, two fractures and intensities.
+   subroutine make_scene()
+
+      scene%name = "small"
+      scene%domain%x_max = 1.0_rk
+      scene%domain%y_max = 1.0_rk
+      scene%material%young = 4.0e10_rk
+      scene%material%poisson = 0.2_rk
+      scene%material%biot = 0.8_rk
+      scene%material%permeability_xx = 1.0e-18_rk
+      scene%material%permeability_yy = 2.0e-18_rk
+      scene%time%end = 4.0_rk
+      scene%time%step = 2.0_rk
+      scene%growth%intensities = .true.
+      allocate (scene%fractures(2), scene%injections(0), scene%probes(1))
+      scene%fractures(1)%name = "main"
+      scene%fractures(1)%x = [0.0_rk, 1.0_rk]
+      scene%fractures(1)%y = [0.5_rk, 0.5_rk]
+      scene%fractures(2)%name = "side"
+      scene%fractures(2)%x = [0.5_rk, 0.5_rk]
+      scene%fractures(2)%y = [0.25_rk, 0.5_rk]
+      scene%probes(1)%name = "A"
+   end subroutine make_scene
+
+   !> Four triangles; fracture 1 splits them, fracture 2 meets it from below. (The writers need no
+   !! more of a mesh than its points, cells and fracture cells, which here do not have to fit
+   !! together.)
+   subroutine make_mesh()
+
+      mesh%n_nodes = 8
+      mesh%n_cells = 4
+      mesh%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.0_rk, 0.5_rk, 0.0_rk, &
+         & 0.5_rk, 1.0_rk, 0.5_rk, 1.0_rk, 1.0_rk, 0.0_rk, 1.0_rk], [2, 8])
+      mesh%cell_nodes = reshape([1_ik, 2_ik, 3_ik, 1_ik, 3_ik, 4_ik, 5_ik, 6_ik, 7_ik, 5_ik, 7_ik, &
+         & 8_ik], [3, 4])
+      network = network_t([1_ik, 3_ik, 5_ik], reshape([0.0_rk, 0.5_rk, 1.0_rk, 0.5_rk, 0.5_rk, &
+         & 0.25_rk, 0.5_rk, 0.5_rk], [2, 4]), [0.0_rk, 0.0_rk])
+      associate (f => mesh%fracture)
+         f%n_cells = 3
+         f%n_points = 4
+         f%n_tips = 2
+         f%cell_fracture = [1_ik, 1_ik, 2_ik]
+         f%cell_points = reshape([1_ik, 2_ik, 2_ik, 3_ik, 4_ik, 2_ik], [2, 3])
+         f%cell_s = reshape([0.0_rk, 0.5_rk, 0.5_rk, 1.0_rk, 0.0_rk, 0.25_rk], [2, 3])
+         f%point_xy = reshape([0.0_rk, 0.5_rk, 0.5_rk, 0.5_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.25_rk], &
+            & [2, 4])
+         f%point_kind = [point_boundary, point_joint_t, point_tip, point_tip]
+         f%point_first = [1_ik, 2_ik, 5_ik, 6_ik, 7_ik]
+         f%point_cells = [1_ik, 1_ik, 2_ik, 3_ik, 2_ik, 3_ik]
+         f%tip_point = [3_ik, 4_ik]
+         f%tip_fracture = [1_ik, 2_ik]
+         f%tip_end = [2_ik, 1_ik]
+         f%tip_direction = reshape([1.0_rk, 0.0_rk, 0.0_rk, -1.0_rk], [2, 2])
+      end associate
+   end subroutine make_mesh
+
+   subroutine make_state()
+
+      matrix%displacement = reshape([0.1_rk, 0.2_rk, 0.3_rk, 0.4_rk, 0.5_rk, 0.6_rk, 0.7_rk, &
+         & 0.8_rk], [2, 4])*1.0e-3_rk
+      matrix%stress = spread([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], 2, 4)
+      matrix%pressure = [6.0e6_rk, 6.1e6_rk, 6.2e6_rk, 1.0e7_rk/3.0_rk]
+      fracture%aperture = [1.0e-3_rk, 1.1e-3_rk, 2.0e-3_rk]
+      fracture%jump_n = [0.0_rk, 1.0e-4_rk, 1.0e-3_rk]
+      fracture%jump_t = [0.0_rk, -2.0e-3_rk, 0.0_rk]
+      fracture%traction_n = [-1.0e7_rk, -5.0e6_rk, 0.0_rk]
+      fracture%traction_t = [1.0e6_rk, 3.0e6_rk, 0.0_rk]
+      fracture%pressure = [6.0e6_rk, 6.5e6_rk, 7.0e6_rk]
+      fracture%state = [state_stick, state_slip, state_open]
+      intersections%point = [2_ik]
+      intersections%pressure = [6.75e6_rk]
+   end subroutine make_state
+
+end program test_output_run
