@@ -1,0 +1,239 @@
+!> The matrix equations condensed onto the fractures.
+!!
+!! Between two changes of the mesh or of the time step the rock is linear with constant coefficients: it is
+!! factorized once and condensed onto the jumps and the pressures of the fracture cells; what is left of it is
+!! a dense relation between jumps, pressures, tractions and fluxes on the fractures:
+!!   S q - g = ( -l/2 (f_n - p_F), -l/2 f_tau at the start, dt l lambda+,
+!!               -l/2 (f_n - p_F), -l/2 f_tau at the end,   dt l lambda- )
+!!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
+!! six of each per fracture cell.
+module coarse_condensed
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_mumps, only: mumps_indefinite, mumps_t
+   use coarse_matrix, only: cell_area, matrix_t
+   use coarse_regions, only: face_length
+   use coarse_rock, only: rock_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: condensed_t
+
+   !> Factors of the matrix and the dense system on the fractures, for one mesh and one time step.
+   type :: condensed_t
+      real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
+      real(rk), allocatable :: stiffness(:, :)  !< S (6 n, 6 n) in the order above, cell by cell
+      real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side -
+      real(rk), allocatable :: length(:)  !< (n) [m]
+      integer(ik) :: n = 0  !< fracture cells
+      type(mumps_t) :: solver
+      logical :: analysed = .false.
+      real(rk), allocatable :: scale(:)  !< (3 n_blocks) unknown = scale * scaled unknown
+   contains
+      procedure :: factorize
+      procedure :: condense
+      procedure :: expand
+   end type condensed_t
+
+contains
+
+   !> Factorize for a time step and condense. The pattern is analysed at the first call.
+   subroutine factorize(self, mesh, rock, matrix, dt, error)
+      class(condensed_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: dt  !< [s]
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(ik), allocatable :: row(:), col(:), schur(:)
+      real(rk), allocatable :: values(:)
+      integer(ik) :: i, n
+
+      self%dt = -1.0_rk
+      if (.not. self%analysed) then
+         self%n = mesh%fracture%n_cells
+         call find_scale(mesh, rock, matrix, self%scale)
+         call find_frames(mesh, self%normal, self%length)
+         call triplet_pattern(matrix, row, col)
+         n = 3*matrix%n_blocks
+         schur = [(i, i=3*matrix%n_cells + 1, n)]
+         call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
+         if (allocated(error)) return
+         self%analysed = .true.
+      end if
+      call triplet_values(matrix, self%scale, dt, values)
+      call self%solver%factorize(values, error)
+      if (allocated(error)) return
+      if (self%n > 0) call find_stiffness(self)
+      self%dt = dt
+   end subroutine factorize
+
+   !> Load g on the fractures.
+   subroutine condense(self, rhs, g, error)
+      class(condensed_t), intent(inout) :: self
+      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks), fracture cells without their tractions and fluxes
+      real(rk), intent(out) :: g(:)  !< (6 n)
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%n == 0) return
+      call self%solver%condense(reshape(rhs, [size(rhs)])*self%scale, g, error)
+      g = g/self%scale(size(self%scale) - 6*self%n + 1:)
+      call turn_to_normals(self, g)
+   end subroutine condense
+
+   !> All unknowns from q on the fractures, or, without fractures, from the right-hand side.
+   subroutine expand(self, q, rhs, unknowns, error)
+      class(condensed_t), intent(inout) :: self
+      real(rk), intent(in) :: q(:)  !< (6 n)
+      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks)
+      real(rk), intent(out) :: unknowns(:, :)  !< (3, n_blocks)
+      type(error_t), allocatable, intent(out) :: error
+
+      real(rk) :: x(size(rhs), 1)
+      real(rk), allocatable :: jumps(:)
+
+      if (self%n == 0) then
+         x(:, 1) = reshape(rhs, [size(rhs)])*self%scale
+         call self%solver%solve(x, error)
+      else
+         jumps = q
+         call turn_to_axes(self, jumps)
+         call self%solver%expand(jumps/self%scale(size(self%scale) - 6*self%n + 1:), x(:, 1), error)
+      end if
+      unknowns = reshape(x(:, 1)*self%scale, shape(unknowns))
+   end subroutine expand
+
+   !> S, in the fractures' own directions.
+   subroutine find_stiffness(self)
+      class(condensed_t), intent(inout) :: self
+
+      real(rk) :: schur(6*self%n, 6*self%n)
+      integer(ik) :: i
+
+      call self%solver%get_schur(schur)
+      associate (s => self%scale(size(self%scale) - 6*self%n + 1:))
+         do i = 1, 6*self%n
+            schur(:, i) = schur(:, i)/(s*s(i))
+            call turn_to_normals(self, schur(:, i))
+         end do
+      end associate
+      schur = transpose(schur)
+      do i = 1, 6*self%n
+         call turn_to_normals(self, schur(:, i))
+      end do
+      self%stiffness = schur
+   end subroutine find_stiffness
+
+   !> Components x, y of jumps or forces become n, tau; tau is n turned by -90 degrees.
+   pure subroutine turn_to_normals(self, v)
+      class(condensed_t), intent(in) :: self
+      real(rk), intent(inout) :: v(:)  !< (6 n)
+
+      integer(ik) :: at, i
+
+      do i = 1, self%n
+         associate (n => self%normal(:, i))
+            do at = 6*i - 5, 6*i - 2, 3
+               v(at:at + 1) = [n(1)*v(at) + n(2)*v(at + 1), n(2)*v(at) - n(1)*v(at + 1)]
+            end do
+         end associate
+      end do
+   end subroutine turn_to_normals
+
+   !> Components n, tau become x, y: the turn is its own inverse.
+   pure subroutine turn_to_axes(self, v)
+      class(condensed_t), intent(in) :: self
+      real(rk), intent(inout) :: v(:)  !< (6 n)
+
+      call turn_to_normals(self, v)
+   end subroutine turn_to_axes
+
+   !> Units in which all unknowns are of one size: displacement per sqrt(2G), pressure by the cell's size.
+   subroutine find_scale(mesh, rock, matrix, scale)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(matrix_t), intent(in) :: matrix
+      real(rk), allocatable, intent(out) :: scale(:)
+
+      integer(ik) :: c, i
+      real(rk) :: root
+
+      root = sqrt(2.0_rk*rock%shear)
+      allocate (scale(3*matrix%n_blocks))
+      scale = 1.0_rk/root
+      do c = 1, mesh%n_cells
+         scale(3*c) = root/sqrt(cell_area(mesh, c))
+      end do
+      do i = 1, mesh%fracture%n_cells
+         scale(3*(mesh%n_cells + 2*i - 1):3*(mesh%n_cells + 2*i):3) = root/face_length(mesh, &
+            mesh%fracture%cell_faces(1, i))
+      end do
+   end subroutine find_scale
+
+   !> Normal (from side + to side -) and length of each fracture cell.
+   subroutine find_frames(mesh, normal, length)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), allocatable, intent(out) :: normal(:, :), length(:)
+
+      integer(ik) :: i
+      real(rk) :: tangent(2)
+
+      allocate (normal(2, mesh%fracture%n_cells), length(mesh%fracture%n_cells))
+      do i = 1, mesh%fracture%n_cells
+         associate (points => mesh%fracture%cell_points(:, i))
+            tangent = mesh%fracture%point_xy(:, points(2)) - mesh%fracture%point_xy(:, points(1))
+         end associate
+         length(i) = norm2(tangent)
+         normal(:, i) = [-tangent(2), tangent(1)]/length(i)
+      end do
+   end subroutine find_frames
+
+   subroutine triplet_pattern(matrix, row, col)
+      type(matrix_t), intent(in) :: matrix
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+
+      integer(ik) :: a, b, entry, i, n
+
+      n = 9*(size(matrix%col) - matrix%n_blocks) + 6*matrix%n_blocks
+      allocate (row(n), col(n))
+      n = 0
+      do i = 1, matrix%n_blocks
+         do entry = matrix%row_first(i), matrix%row_first(i + 1) - 1
+            do b = 1, 3
+               do a = merge(b, 1_ik, matrix%col(entry) == i), 3
+                  n = n + 1
+                  row(n) = 3*(i - 1) + a
+                  col(n) = 3*(matrix%col(entry) - 1) + b
+               end do
+            end do
+         end do
+      end do
+   end subroutine triplet_pattern
+
+   subroutine triplet_values(matrix, scale, dt, values)
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: scale(:), dt
+      real(rk), allocatable, intent(out) :: values(:)
+
+      integer(ik) :: a, b, entry, i, n
+      real(rk) :: block(3, 3)
+
+      allocate (values(9*(size(matrix%col) - matrix%n_blocks) + 6*matrix%n_blocks))
+      n = 0
+      do i = 1, matrix%n_blocks
+         do entry = matrix%row_first(i), matrix%row_first(i + 1) - 1
+            block = matrix%elastic(:, :, entry)
+            block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
+            do b = 1, 3
+               do a = merge(b, 1_ik, matrix%col(entry) == i), 3
+                  n = n + 1
+                  values(n) = block(a, b)*scale(3*(i - 1) + a)*scale(3*(matrix%col(entry) - 1) + b)
+               end do
+            end do
+         end do
+      end do
+   end subroutine triplet_values
+
+end module coarse_condensed

@@ -1,0 +1,97 @@
+!> Contact with Coulomb friction and shear dilation on one fracture cell, as equations for Newton's method.
+!!
+!! Complementarity functions of a primal-dual active set (Huber and Wohlmuth 2005; model.md section 4) in
+!! their scalar form, each divided by its positive factor so that it is a stress [Pa] or, times the
+!! stiffness c, a displacement. With the trial pressure z = -f_n - c ([u]_n - g) and the trial shear
+!! q = f_tau + c d[u]_tau:
+!!   open   z <= 0:             f_n = 0,               f_tau = 0
+!!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
+!!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
+!! The gap g = tan(psi) |[u]_tau|.
+!!
+!! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the jump is
+!! u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip increment; it
+!! opposes the slip on side -, where the traction is -f. (Model.md writes -f_tau for f_tau, as for a
+!! traction on side -; with sigma n as above that would let friction do work on the slip.)
+module coarse_contact
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: contact_equations, contact_law_t, contact_residual
+   public :: state_open, state_slip, state_stick
+
+   integer(ik), parameter :: state_stick = 0
+   integer(ik), parameter :: state_slip = 1
+   integer(ik), parameter :: state_open = 2
+
+   !> Parameters of one fracture cell.
+   type :: contact_law_t
+      real(rk) :: friction = 0.0_rk  !< mu_s [-]
+      real(rk) :: dilation = 0.0_rk  !< tan(psi) [-]
+   end type contact_law_t
+
+contains
+
+   !> Normal and tangential equation with their derivatives.
+   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, state, residual, &
+      by_traction, by_jump)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: stiffness  !< c [Pa/m]
+      real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
+      integer(ik), intent(out) :: state
+      real(rk), intent(out) :: residual(2)  !< [Pa]
+      real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j
+      real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
+
+      real(rk) :: gap_slope, pressure, shear, way
+
+      shear = traction(2) + stiffness*(jump(2) - slip_before)
+      gap_slope = law%dilation*sign(1.0_rk, merge(jump(2), shear, abs(jump(2)) > 0.0_rk))
+      pressure = -traction(1) - stiffness*(jump(1) - gap_slope*jump(2))
+      by_traction = 0.0_rk
+      by_jump = 0.0_rk
+      if (.not. pressure > 0.0_rk) then
+         state = state_open
+         residual = traction
+         by_traction(1, 1) = 1.0_rk
+         by_traction(2, 2) = 1.0_rk
+         return
+      end if
+      residual(1) = stiffness*(jump(1) - gap_slope*jump(2))
+      by_jump(1, :) = stiffness*[1.0_rk, -gap_slope]
+      if (abs(shear) < law%friction*pressure) then
+         state = state_stick
+         residual(2) = stiffness*(jump(2) - slip_before)
+         by_jump(2, 2) = stiffness
+      else
+         state = state_slip
+         way = sign(1.0_rk, shear)
+         residual(2) = traction(2) - law%friction*pressure*way
+         by_traction(2, :) = [law%friction*way, 1.0_rk]
+         by_jump(2, :) = law%friction*way*stiffness*[1.0_rk, -gap_slope]
+      end if
+   end subroutine contact_equations
+
+   !> How far a cell is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction bound and
+   !! direction of slip, each by itself and independent of the equations that Newton's method solves.
+   pure function contact_residual(law, stiffness, traction, jump, slip_before) result(worst)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: stiffness, traction(2), jump(2), slip_before
+      real(rk) :: worst
+
+      real(rk) :: bound, opening, slip
+
+      opening = jump(1) - law%dilation*abs(jump(2))
+      slip = jump(2) - slip_before
+      bound = law%friction*max(0.0_rk, -traction(1))
+      worst = max(-stiffness*opening, traction(1), abs(traction(2)) - bound)
+      worst = max(worst, min(stiffness*abs(opening), abs(traction(1))))
+      worst = max(worst, min(stiffness*abs(slip), abs(abs(traction(2)) - bound)))
+      ! Friction must not drive the slip.
+      worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))
+   end function contact_residual
+
+end module coarse_contact

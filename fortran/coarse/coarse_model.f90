@@ -1,0 +1,216 @@
+!> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step at a time.
+!!
+!! For one mesh the discretization is made once; for one time step on it the matrix is factorized once. A time
+!! step then costs one substitution in the factors and a few small dense Newton steps on the fractures.
+module coarse_model
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
+      phase_solve, timers_t
+   use coarse_condensed, only: condensed_t
+   use coarse_contact, only: state_stick
+   use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
+   use coarse_matrix, only: discretize, matrix_t
+   use coarse_newton, only: newton_settings_t, solve_fractures
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use mesh_types, only: mesh_t, point_interior
+   use scene_types, only: boundary_side_t, scene_t
+   implicit none(type, external)
+   private
+
+   public :: coarse_model_t, new_state
+
+   !> Everything that belongs to one mesh.
+   type :: coarse_model_t
+      type(rock_t) :: rock
+      type(boundary_side_t) :: sides(4)
+      type(regions_t) :: regions
+      type(matrix_t) :: matrix
+      type(condensed_t) :: condensed
+      type(newton_settings_t) :: settings
+      type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
+      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      logical :: drained = .false.  !< fluid may cross the outer boundary
+   contains
+      procedure :: set_mesh
+      procedure :: equilibrate
+      procedure :: advance
+   end type coarse_model_t
+
+contains
+
+   !> Discretize on a mesh. Refuses joints of fractures, for which there is no flow law here.
+   subroutine set_mesh(self, mesh, scene, timers, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call timers%start(phase_discretize)
+      self%rock = new_rock(scene%material, scene%fluid)
+      self%sides = scene%sides
+      self%drained = any(scene%sides%pressure_given)
+      self%settings = newton_settings_t(tolerance=scene%discretization%newton_tolerance, &
+         iterations_max=scene%discretization%newton_max, viscosity=scene%fluid%viscosity, &
+         compressibility=scene%fluid%compressibility, young=scene%material%young)
+      call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
+      if (.not. allocated(error)) call find_connections(mesh, self%connections)
+      call self%condensed%solver%release()
+      self%condensed%analysed = .false.
+      self%condensed%dt = -1.0_rk
+      call timers%stop(phase_discretize)
+   end subroutine set_mesh
+
+   !> The state before anything happens: no displacement, uniform pressure.
+   subroutine new_state(mesh, cells, pressure, model, state)
+      type(mesh_t), intent(in) :: mesh
+      type(fracture_cells_t), intent(in) :: cells
+      real(rk), intent(in) :: pressure  !< [Pa]
+      type(coarse_model_t), intent(in) :: model
+      type(state_t), intent(out) :: state
+
+      integer(ik) :: c, n
+
+      n = mesh%fracture%n_cells
+      allocate (state%unknowns(3, model%regions%n_blocks), source=0.0_rk)
+      state%unknowns(3, :) = pressure
+      allocate (state%content(mesh%n_cells))
+      do c = 1, mesh%n_cells
+         ! Content at zero strain: S p
+         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c)/(model%rock%storage &
+            + model%rock%biot**2/(model%rock%lame + model%rock%shear))
+      end do
+      allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
+      state%unknowns(:2, :) = 0.0_rk
+      allocate (state%pressure(n), source=pressure)
+      allocate (state%contact(2, n), source=state_stick)
+      state%aperture = cells%residual_aperture
+   end subroutine new_state
+
+   !> Undrained response to the load, the fractures having the pressure of the rock around them.
+   subroutine equilibrate(self, mesh, dt, state, timers, report, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      real(rk) :: time
+      integer(ik), allocatable :: connections(:, :)
+
+      time = state%time
+      self%settings%equilibrate = .true.
+      connections = self%connections
+      self%connections = connections(:, :0)
+      call self%advance(mesh, dt, state, timers, report, error)
+      self%settings%equilibrate = .false.
+      self%connections = connections
+      state%time = time
+   end subroutine equilibrate
+
+   !> One backward Euler step. The state changes only if the step converges (report%converged); an error is
+   !! raised where the equations cannot be solved at all.
+   subroutine advance(self, mesh, dt, state, timers, report, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      real(rk), allocatable :: rhs(:, :), g(:), q(:)
+      type(state_t) :: before
+      integer(ik) :: n
+
+      n = mesh%fracture%n_cells
+      if (.not. abs(self%condensed%dt - dt) <= 1.0e-12_rk*dt) then
+         call timers%start(phase_factorize)
+         call self%condensed%factorize(mesh, self%rock, self%matrix, dt, error)
+         call timers%stop(phase_factorize)
+         if (allocated(error)) return
+      end if
+      allocate (g(6*n), q(6*n))
+      call timers%start(phase_assemble)
+      rhs = self%matrix%elastic_known
+      rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
+      rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - state%content
+      call timers%stop(phase_assemble)
+      call timers%start(phase_solve)
+      call self%condensed%condense(rhs, g, error)
+      call timers%stop(phase_solve)
+      if (allocated(error)) return
+
+      before = state
+      report%converged = .true.
+      if (n > 0) then
+         call timers%start(phase_contact)
+         call solve_fractures(self%condensed, self%cells, self%connections, self%settings, dt, g, state, &
+            q, report)
+         call timers%stop(phase_contact)
+         if (.not. report%converged) return
+      end if
+      call timers%start(phase_solve)
+      call self%condensed%expand(q, rhs, state%unknowns, error)
+      call timers%stop(phase_solve)
+      if (allocated(error)) return
+      call timers%start(phase_assemble)
+      call corner_tractions(self%regions, state%unknowns, state%tractions)
+      call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, state%tractions, &
+         state%content)
+      state%time = state%time + dt
+      call mass_error(self, mesh, dt, before, state, report%mass_error)
+      call timers%stop(phase_assemble)
+      if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) &
+         call raise_error(error, "coarse_model", "the solution is not a finite number")
+   end subroutine advance
+
+   !> Fluid that appeared or vanished in the step [m2]: what is stored less what came in.
+   subroutine mass_error(self, mesh, dt, before, after, balance)
+      class(coarse_model_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt
+      type(state_t), intent(in) :: before, after
+      real(rk), intent(out) :: balance
+
+      real(rk), allocatable :: outflow(:)
+
+      balance = sum(after%content - before%content)
+      if (mesh%fracture%n_cells > 0) then
+         balance = balance + sum(self%condensed%length*(after%aperture - before%aperture &
+            + after%aperture*self%settings%compressibility*(after%pressure - before%pressure))) &
+            - dt*sum(self%cells%injection)
+      end if
+      if (self%drained) then
+         allocate (outflow(mesh%n_cells))
+         call cell_outflow(mesh, self%regions, after%unknowns, outflow)
+         balance = balance + dt*sum(outflow)
+         if (mesh%fracture%n_cells > 0) balance = balance &
+            + dt*sum(self%condensed%length*after%leakoff)
+      end if
+   end subroutine mass_error
+
+   !> Pairs of fracture cells that exchange fluid along their fracture.
+   subroutine find_connections(mesh, connections)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), allocatable, intent(out) :: connections(:, :)
+
+      integer(ik) :: n, point
+
+      allocate (connections(2, mesh%fracture%n_points))
+      n = 0
+      do point = 1, mesh%fracture%n_points
+         if (mesh%fracture%point_kind(point) /= point_interior) cycle
+         n = n + 1
+         connections(:, n) = mesh%fracture%point_cells(mesh%fracture%point_first(point): &
+            mesh%fracture%point_first(point) + 1)
+      end do
+      connections = connections(:, :n)
+   end subroutine find_connections
+
+end module coarse_model

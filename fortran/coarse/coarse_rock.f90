@@ -1,0 +1,54 @@
+!> Poroelastic constants of the rock in the form that the discretization uses.
+module coarse_rock
+   use base_kinds, only: rk
+   use scene_types, only: fluid_t, material_t
+   implicit none(type, external)
+   private
+
+   public :: new_rock, rock_t
+
+   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants.
+   type :: rock_t
+      real(rk) :: shear = 0.0_rk  !< shear modulus G [Pa]
+      real(rk) :: lame = 0.0_rk  !< first Lame constant, reduced for plane stress [Pa]
+      real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
+      real(rk) :: biot = 0.0_rk  !< alpha [-]
+      real(rk) :: storage = 0.0_rk  !< S [1/Pa]
+      real(rk) :: resistivity(2, 2) = 0.0_rk  !< inverse of K/mu [Pa s/m2]
+      real(rk) :: mobility = 0.0_rk  !< mean of K/mu [m2/(Pa s)]
+      real(rk) :: permeability(3) = 0.0_rk  !< K_xx, K_yy, K_xy [m2]
+   end type rock_t
+
+contains
+
+   !> Constants from the scene (model.md section 2).
+   pure function new_rock(material, fluid) result(rock)
+      type(material_t), intent(in) :: material
+      type(fluid_t), intent(in) :: fluid
+      type(rock_t) :: rock
+
+      real(rk) :: bulk, determinant
+
+      associate (e => material%young, nu => material%poisson)
+         rock%young = e
+         rock%shear = e/(2.0_rk*(1.0_rk + nu))
+         rock%lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu))
+         if (material%plane_stress) rock%lame = e*nu/(1.0_rk - nu**2)
+         bulk = e/(3.0_rk*(1.0_rk - 2.0_rk*nu))
+      end associate
+      rock%biot = material%biot
+      rock%storage = (material%biot - material%porosity)/bulk
+      if (material%storage == "textbook") rock%storage = rock%storage*(1.0_rk - material%biot)
+      rock%storage = rock%storage + material%porosity*fluid%compressibility
+      rock%permeability = [material%permeability_xx, material%permeability_yy, &
+         material%permeability_xy]
+      determinant = material%permeability_xx*material%permeability_yy - material%permeability_xy**2
+      rock%resistivity(1, 1) = material%permeability_yy
+      rock%resistivity(2, 2) = material%permeability_xx
+      rock%resistivity(1, 2) = -material%permeability_xy
+      rock%resistivity(2, 1) = -material%permeability_xy
+      rock%resistivity = rock%resistivity*(fluid%viscosity/determinant)
+      rock%mobility = sqrt(determinant)/fluid%viscosity
+   end function new_rock
+
+end module coarse_rock

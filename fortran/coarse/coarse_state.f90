@@ -1,0 +1,42 @@
+!> The state of the coarse level at one time, and the properties of its fracture cells.
+module coarse_state
+   use base_kinds, only: ik, rk
+   use coarse_contact, only: contact_law_t
+   implicit none(type, external)
+   private
+
+   public :: fracture_cells_t, state_t, step_report_t
+
+   !> What each fracture cell is made of.
+   type :: fracture_cells_t
+      type(contact_law_t), allocatable :: law(:)  !< (n)
+      real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
+      real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
+   end type fracture_cells_t
+
+   !> Unknowns and what is remembered of them.
+   type :: state_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      real(rk), allocatable :: unknowns(:, :)  !< (3, n_blocks) in blocks as in coarse_regions [m], [Pa]
+      real(rk), allocatable :: content(:)  !< (n_cells) fluid content above the initial state [m2]
+      real(rk), allocatable :: tractions(:)  !< corner tractions [Pa], packed as in coarse_fields
+      ! Fracture cells; at their two ends where the law of contact is fulfilled:
+      real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
+      real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
+      integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open
+      real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
+      real(rk), allocatable :: aperture(:)  !< (n) a [m]; below a0 only where fluid has yet to fill a new cell
+      real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
+   end type state_t
+
+   !> How a step was found.
+   type :: step_report_t
+      integer(ik) :: iterations = 0
+      logical :: converged = .false.
+      real(rk) :: contact_residual = 0.0_rk  !< relative to the largest traction [-]
+      real(rk) :: stress_scale = 0.0_rk  !< [Pa]
+      real(rk) :: mass_error = 0.0_rk  !< [m2]
+      character(len=:), allocatable :: reason  !< why it did not converge
+   end type step_report_t
+
+end module coarse_state

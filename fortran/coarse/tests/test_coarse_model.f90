@@ -1,0 +1,271 @@
+!> The coarse level against exact states: uniform stress and pressure, linear pressure, a sticking
+!! fracture, a slipping one, fluid mass.
+program test_coarse_model
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_contact, only: contact_law_t, state_slip, state_stick
+   use coarse_fields, only: cell_stresses, nodal_values
+   use coarse_model, only: coarse_model_t, new_state
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_types, only: mesh_t, network_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+
+   real(rk), parameter :: undrained_pressure = 6902061.032_rk  !< catalogue 4.0 [Pa]
+   real(rk), parameter :: undrained_u(2) = [-0.6412206423e-3_rk, -0.04122064228e-3_rk]  !< at (2, 2) [m]
+   type(checks_t) :: checks
+
+   call undrained_square()
+   call linear_pressure()
+   call sticking_fracture()
+   call slipping_fracture()
+   call injection_conserves_mass()
+   call checks%finish()
+
+contains
+
+   !> Body of Paper C.
+   subroutine paper_c(scene)
+      type(scene_t), intent(out) :: scene
+
+      scene%material%young = 40.0e9_rk
+      scene%material%poisson = 0.2_rk
+      scene%material%biot = 0.8_rk
+      scene%material%porosity = 0.01_rk
+      scene%material%permeability_xx = 5.0e-20_rk
+      scene%material%permeability_yy = 5.0e-20_rk
+      scene%fluid%compressibility = 4.0e-10_rk
+      scene%fluid%viscosity = 1.0e-4_rk
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      scene%sides(2)%traction = [-20.0e6_rk, 0.0_rk]
+      scene%sides(4)%traction = [0.0_rk, -10.0e6_rk]
+   end subroutine paper_c
+
+   subroutine make_mesh(xy, size_fracture, size_boundary, mesh)
+      real(rk), intent(in) :: xy(:, :)  !< vertices of the only fracture; none if empty
+      real(rk), intent(in) :: size_fracture, size_boundary
+      type(mesh_t), intent(out) :: mesh
+      type(mesher_t) :: mesher
+      type(network_t) :: network
+      type(mesh_spec_t) :: spec
+      type(error_t), allocatable :: error
+
+      spec = mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
+         size_boundary=size_boundary)
+      network%first = [1_ik]
+      allocate (network%s_start(0))
+      if (size(xy) > 0) then
+         network%first = [1_ik, size(xy, 2) + 1_ik]
+         network%s_start = [0.0_rk]
+      end if
+      network%xy = xy
+      call build_mesh(spec, network, mesher, mesh, error)
+      call checks%no_error(error, "mesh")
+   end subroutine make_mesh
+
+   subroutine make_cells(mesh, friction, dilation, cells)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: friction, dilation
+      type(fracture_cells_t), intent(out) :: cells
+
+      allocate (cells%law(mesh%fracture%n_cells))
+      cells%law = contact_law_t(friction=friction, dilation=dilation)
+      allocate (cells%residual_aperture(mesh%fracture%n_cells), source=1.0e-3_rk)
+      allocate (cells%injection(mesh%fracture%n_cells), source=0.0_rk)
+   end subroutine make_cells
+
+   subroutine start(mesh, scene, friction, dilation, model, state)
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: friction, dilation
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call make_cells(mesh, friction, dilation, model%cells)
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization")
+      call new_state(mesh, model%cells, 0.0_rk, model, state)
+   end subroutine start
+
+   !> Displacement at the corner (2, 2), which belongs to one or two cells.
+   function corner_displacement(mesh, model, state) result(u)
+      type(mesh_t), intent(in) :: mesh
+      type(coarse_model_t), intent(in) :: model
+      type(state_t), intent(in) :: state
+      real(rk) :: u(2)
+      real(rk), allocatable :: values(:, :)
+      integer(ik) :: v
+
+      allocate (values(3, mesh%n_nodes))
+      call nodal_values(mesh, model%rock, model%regions, state%unknowns, state%tractions, values)
+      v = minloc(norm2(mesh%xy - 2.0_rk, dim=1), dim=1)
+      u = values(1:2, v)
+   end function corner_displacement
+
+   !> Uniform undrained state: exact on any mesh.
+   subroutine undrained_square()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: stresses(:, :)
+      real(rk) :: none(2, 0)
+
+      call paper_c(scene)
+      call make_mesh(none, 0.3_rk, 0.3_rk, mesh)
+      call start(mesh, scene, 0.0_rk, 0.0_rk, model, state)
+      call model%advance(mesh, 1800.0_rk, state, timers, report, error)
+      call checks%no_error(error, "undrained step")
+      call checks%is_close(maxval(abs(state%unknowns(3, :) - undrained_pressure)), 0.0_rk, 1.0e-2_rk, &
+         "undrained pressure")
+      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), 0.0_rk, &
+         1.0e-12_rk, "undrained displacement")
+      allocate (stresses(3, mesh%n_cells))
+      call cell_stresses(mesh, model%regions, state%tractions, stresses)
+      call checks%is_close(maxval(abs(stresses(1, :) + 20.0e6_rk)), 0.0_rk, 1.0e-3_rk, "sigma_xx")
+      call checks%is_close(maxval(abs(stresses(2, :) + 10.0e6_rk)), 0.0_rk, 1.0e-3_rk, "sigma_yy")
+      call checks%is_close(maxval(abs(stresses(3, :))), 0.0_rk, 1.0e-3_rk, "sigma_xy")
+      call checks%is_close(report%mass_error, 0.0_rk, 1.0e-16_rk, "fluid mass")
+   end subroutine undrained_square
+
+   !> Steady flow between two pressures with a full permeability tensor: the pressure is linear.
+   subroutine linear_pressure()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: x(:)
+      real(rk) :: none(2, 0)
+      integer(ik) :: c
+
+      call paper_c(scene)
+      scene%material%permeability_xx = 5.0e-14_rk
+      scene%material%permeability_yy = 2.0e-14_rk
+      scene%sides(1)%pressure_given = .true.
+      scene%sides(1)%pressure = 3.0e6_rk
+      scene%sides(2)%pressure_given = .true.
+      scene%sides(2)%pressure = 1.0e6_rk
+      call make_mesh(none, 0.3_rk, 0.3_rk, mesh)
+      call start(mesh, scene, 0.0_rk, 0.0_rk, model, state)
+      call model%advance(mesh, 1.0e15_rk, state, timers, report, error)
+      call checks%no_error(error, "steady step")
+      allocate (x(mesh%n_cells))
+      do c = 1, mesh%n_cells
+         x(c) = sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk
+      end do
+      call checks%is_close(maxval(abs(state%unknowns(3, :) - (3.0e6_rk - 1.0e6_rk*x))), 0.0_rk, &
+         1.0e-3_rk, "linear pressure")
+   end subroutine linear_pressure
+
+   !> A fracture with high friction in the uniform state changes nothing and carries the resolved stress.
+   subroutine sticking_fracture()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 0.8_rk, 1.2_rk, 1.3_rk], [2, 2])
+
+      call paper_c(scene)
+      call make_mesh(at, 0.1_rk, 0.3_rk, mesh)
+      call start(mesh, scene, 5.0_rk, 0.0_rk, model, state)
+      call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
+      call checks%no_error(error, "sticking step")
+      call checks%is_true(report%converged, "sticking step converges")
+      call checks%is_true(all(state%contact == state_stick), "all stick")
+      ! At 45 degrees: sigma_n = -15 MPa, shear (sigma_yy - sigma_xx)/2 = 5 MPa
+      call checks%is_close(maxval(abs(state%pressure - undrained_pressure)), 0.0_rk, 1.0e-1_rk, &
+         "fracture pressure")
+      call checks%is_close(maxval(abs(state%traction(1, :, :) - undrained_pressure + 15.0e6_rk)), 0.0_rk, &
+         1.0e-1_rk, "normal traction")
+      call checks%is_close(maxval(abs(state%traction(2, :, :) - 5.0e6_rk)), 0.0_rk, 1.0e-1_rk, &
+         "shear traction")
+      call checks%is_close(maxval(abs(state%jump)), 0.0_rk, 1.0e-15_rk, "no jump")
+      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), 0.0_rk, &
+         1.0e-12_rk, "undrained displacement with a fracture")
+   end subroutine sticking_fracture
+
+   !> Closed frictional crack with dilation (catalogue 3.1, undrained elasticity): first order in the cell
+   !! size, and exact tractions.
+   subroutine slipping_fracture()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: a = 0.05_rk, h = a/sqrt(2.0_rk), psi = tan(0.0174532925199433_rk)
+      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], [2, 2])
+      real(rk) :: drop, slip, error_of(2), modulus
+      integer(ik) :: level, n
+
+      call paper_c(scene)
+      drop = (5.0e6_rk - 0.5_rk*(15.0e6_rk - undrained_pressure))/(1.0_rk + 0.5_rk*psi)
+      ! Undrained plane-strain modulus E_u/(1-nu_u^2) = 2G/(1-nu_u), nu_u = 0.3104329765 (catalogue 4.3)
+      modulus = 2.0_rk*40.0e9_rk/2.4_rk/(1.0_rk - 0.3104329765_rk)
+      slip = 4.0_rk*drop*a/modulus
+      do level = 1, 2
+         call make_mesh(at, 0.01_rk/2**(level - 1), 0.1_rk, mesh)
+         call start(mesh, scene, 0.5_rk, psi, model, state)
+         call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
+         call checks%no_error(error, "slipping step")
+         call checks%is_true(report%converged, "slipping step converges")
+         call checks%is_true(all(state%contact == state_slip), "all slip")
+         call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-9_rk, "contact law")
+         n = mesh%fracture%n_cells
+         error_of(level) = state%jump(2, 2, n/2)/slip - 1.0_rk
+         call checks%is_close(sum(state%traction(1, :, :))/(2*n), undrained_pressure - 15.0e6_rk - psi*drop, &
+            2.0e4_rk, "contact pressure with dilation")
+         call checks%is_close(maxval(abs(state%jump(1, :, :) - psi*state%jump(2, :, :))), 0.0_rk, 1.0e-14_rk, &
+            "dilation")
+         print '(a,i0,a,f8.4,a,i0)', "level ", level, " slip error", error_of(level), " iterations ", &
+            report%iterations
+      end do
+      call checks%is_true(abs(error_of(2)) < 0.62_rk*abs(error_of(1)), "slip converges with first order")
+   end subroutine slipping_fracture
+
+   !> Ten steps of injection: fluid is neither made nor lost.
+   subroutine injection_conserves_mass()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: at(2, 2) = reshape([0.9_rk, 0.95_rk, 1.1_rk, 1.05_rk], [2, 2])
+      real(rk), parameter :: dt = 1800.0_rk, rate = 5.0e-9_rk
+      integer :: i
+
+      call paper_c(scene)
+      call make_mesh(at, 0.02_rk, 0.1_rk, mesh)
+      call start(mesh, scene, 0.5_rk, 0.0175_rk, model, state)
+      call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
+      model%cells%injection(1) = rate
+      do i = 1, 10
+         call model%advance(mesh, dt, state, timers, report, error)
+         call checks%no_error(error, "injection step")
+         call checks%is_true(report%converged, "injection step converges")
+         call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*rate*dt, "fluid mass in injection")
+         call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-8_rk, "contact law in injection")
+         print '(a,i0,a,f9.4,a,i0,a,es9.2,a,es9.2)', "step ", i, " p_F [MPa]", state%pressure(1)/1.0e6_rk, &
+            " iterations ", report%iterations, " mass", report%mass_error, " slip", state%jump(2, 1, 5)
+      end do
+   end subroutine injection_conserves_mass
+
+end program test_coarse_model
