@@ -45,7 +45,7 @@ class Cells:
 
 def times() -> FloatArray:
     """Times of all steps [s]."""
-    return np.arange(1, STEPS + 1) * 5.0 * HOUR
+    return np.arange(1.0, STEPS + 1.0) * 5.0 * HOUR
 
 
 def wing_length(step: int) -> float:
@@ -135,8 +135,10 @@ def _write_csv(path: Path, columns: dict[str, list[object]]) -> None:
 
 def _history(fluid: bool) -> dict[str, list[object]]:
     columns: dict[str, list[object]] = {
-        "time_s": list(times()), "dt_s": [5.0 * HOUR] * STEPS, "newton_iterations": [4] * STEPS,
-    }  # fmt: skip
+        "time_s": list(times()),
+        "dt_s": [5.0 * HOUR] * STEPS,
+        "newton_iterations": [4] * STEPS,
+    }
     if fluid:
         injected = 5.0e-9 * times()
         columns |= {
@@ -146,7 +148,7 @@ def _history(fluid: bool) -> dict[str, list[object]]:
             "prefilled_m2": [0.0] * STEPS,
         }
         columns["fracture_volume_m2"] = list(1.0e-4 + 0.4 * injected)
-        columns["mass_error_relative"] = [0.0] + [1.0e-13] * (STEPS - 1)
+        columns["mass_error_relative"] = [0.0, *[1.0e-13] * (STEPS - 1)]
     cells = [fracture_cells(step) for step in range(STEPS)]
     columns["max_slip_m"] = [float(np.abs(c.jump_t).max()) for c in cells]
     columns["max_opening_m"] = [float(c.jump_n.max()) for c in cells]
@@ -160,7 +162,21 @@ def _history(fluid: bool) -> dict[str, list[object]]:
 
 
 def _tips() -> dict[str, list[object]]:
-    names = ["time_s", "tip", "fracture", "x_m", "y_m", "k1_pa_sqrtm", "k2_pa_sqrtm", "k1_dc_pa_sqrtm", "k2_dc_pa_sqrtm", "keq_pa_sqrtm", "g_j_m2", "angle_deg", "advance_m"]
+    names = [
+        "time_s",
+        "tip",
+        "fracture",
+        "x_m",
+        "y_m",
+        "k1_pa_sqrtm",
+        "k2_pa_sqrtm",
+        "k1_dc_pa_sqrtm",
+        "k2_dc_pa_sqrtm",
+        "keq_pa_sqrtm",
+        "g_j_m2",
+        "angle_deg",
+        "advance_m",
+    ]
     columns: dict[str, list[object]] = {name: [] for name in names}
     for step, time in enumerate(times()):
         for tip in (1, 2):
@@ -169,9 +185,20 @@ def _tips() -> dict[str, list[object]]:
             k2 = 0.38e6 + 0.03e6 * min(step, GROWTH_STEP) - 0.08e6 * max(0, step - GROWTH_STEP)
             k1 = 0.02e6 * step + (0.35e6 if step > GROWTH_STEP else 0.0) + 0.01e6 * tip
             values = (
-                time, tip, 1, x, y, k1, k2, 1.02 * k1, 0.98 * k2, k1 + 0.5 * abs(k2), 5.0,
-                -65.0, 0.01,
-            )  # fmt: skip
+                time,
+                tip,
+                1,
+                x,
+                y,
+                k1,
+                k2,
+                1.02 * k1,
+                0.98 * k2,
+                k1 + 0.5 * abs(k2),
+                5.0,
+                -65.0,
+                0.01,
+            )
             for name, value in zip(names, values, strict=True):
                 columns[name].append(value)
     return columns
@@ -190,13 +217,19 @@ def _fractures(fluid: bool) -> dict[str, list[object]]:
     for step, time in enumerate(times()):
         cells = fracture_cells(step)
         values: dict[str, list[object]] = {
-            "time_s": [time] * cells.s.size, "fracture": [1] * cells.s.size, "s_m": list(cells.s),
-            "x_m": list(cells.centre[:, 0]), "y_m": list(cells.centre[:, 1]),
-            "aperture_m": list(1.0e-3 + cells.jump_n), "jump_n_m": list(cells.jump_n),
-            "jump_t_m": list(cells.jump_t), "traction_n_pa": list(cells.traction_n),
-            "traction_t_pa": list(cells.traction_t), "pressure_pa": list(cells.pressure),
+            "time_s": [time] * cells.s.size,
+            "fracture": [1] * cells.s.size,
+            "s_m": list(cells.s),
+            "x_m": list(cells.centre[:, 0]),
+            "y_m": list(cells.centre[:, 1]),
+            "aperture_m": list(1.0e-3 + cells.jump_n),
+            "jump_n_m": list(cells.jump_n),
+            "jump_t_m": list(cells.jump_t),
+            "traction_n_pa": list(cells.traction_n),
+            "traction_t_pa": list(cells.traction_t),
+            "pressure_pa": list(cells.pressure),
             "state": [STATES[number] for number in cells.state],
-        }  # fmt: skip
+        }
         for name, column in columns.items():
             column += values[name]
     return columns
@@ -237,10 +270,14 @@ def _write_fields(root: Path, cells_per_side: int, fluid: bool) -> None:
         lines = np.arange(len(ends)).reshape(-1, 2)
         fractures = pyvista.UnstructuredGrid({pyvista.CellType.LINE: lines}, ends)
         data = {
-            "fracture": np.ones(len(lines), dtype=int), "jump_n": cells.jump_n,
-            "jump_t": cells.jump_t, "traction_n": cells.traction_n,
-            "traction_t": cells.traction_t, "state": cells.state, "arc_length": cells.s,
-        }  # fmt: skip
+            "fracture": np.ones(len(lines), dtype=int),
+            "jump_n": cells.jump_n,
+            "jump_t": cells.jump_t,
+            "traction_n": cells.traction_n,
+            "traction_t": cells.traction_t,
+            "state": cells.state,
+            "arc_length": cells.s,
+        }
         if fluid:
             data |= {"aperture": 1.0e-3 + cells.jump_n, "pressure": cells.pressure}
         for name, values in data.items():

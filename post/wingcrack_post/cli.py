@@ -75,19 +75,28 @@ def _parser() -> argparse.ArgumentParser:
         "directories", metavar="DIR", nargs="+", type=Path, help="output directory of a run"
     )
     plot.add_argument(
-        "--times", type=_times, default=(), metavar="T,...",
+        "--times",
+        type=_times,
+        default=(),
+        metavar="T,...",
         help="times of maps and profiles: seconds, or with the unit s, min, h or d; the nearest"
         " written times are drawn (default: the first, the start of growth, equally spaced"
         " fracture lengths, the last)",
-    )  # fmt: skip
+    )
     plot.add_argument(
-        "--only", type=_one_of(GROUPS), default=GROUPS, metavar="GROUP,...",
+        "--only",
+        type=_one_of(GROUPS),
+        default=GROUPS,
+        metavar="GROUP,...",
         help=f"draw only these groups: {', '.join(GROUPS)}",
-    )  # fmt: skip
+    )
     plot.add_argument(
-        "--format", type=_one_of(FORMATS), default=FORMATS, metavar="FORMAT,...",
+        "--format",
+        type=_one_of(FORMATS),
+        default=FORMATS,
+        metavar="FORMAT,...",
         help="png, pdf (default: both)",
-    )  # fmt: skip
+    )
     plot.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
 
@@ -132,6 +141,9 @@ def _plot(directory: Path, choices: _Choices) -> int:
         print(f"wingcrack plot: {reason}", file=sys.stderr)
         return 2
     if drawn:
+        for outcome in left_out:
+            if outcome.lacking:
+                print(f"{outcome.name}: left out: {outcome.reason}.", file=sys.stderr)
         return 0
     reasons = "; ".join(dict.fromkeys(outcome.reason for outcome in left_out))
     print(f"wingcrack plot: {directory}: nothing was drawn: {reasons}.", file=sys.stderr)
@@ -141,6 +153,5 @@ def _plot(directory: Path, choices: _Choices) -> int:
 def _report(outcome: Outcome) -> None:
     for file in outcome.files:
         print(file, flush=True)
-    if outcome.reason:
-        stream = sys.stderr if outcome.lacking else sys.stdout
-        print(f"{outcome.name}: left out: {outcome.reason}.", file=stream, flush=True)
+    if outcome.reason and not outcome.lacking:
+        print(f"{outcome.name}: left out: {outcome.reason}.", flush=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import warnings
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -84,7 +86,7 @@ def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
 
 def read_matrix(path: Path) -> MatrixField:
     """Read a file of the matrix series, which holds triangles only."""
-    mesh = _read_grid(path)
+    mesh = read_grid(path)
     triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
     cell = {name: np.asarray(mesh.cell_data[name], dtype=float) for name in mesh.cell_data.keys()}  # noqa: SIM118
     return MatrixField(np.asarray(mesh.points, dtype=float)[:, :2], triangles, cell)
@@ -92,14 +94,23 @@ def read_matrix(path: Path) -> MatrixField:
 
 def read_fractures(path: Path) -> FractureField:
     """Read a file of the fracture series, which holds lines only."""
-    mesh = _read_grid(path)
+    return fracture_field(read_grid(path), path)
+
+
+def fracture_field(mesh: Any, path: Path) -> FractureField:
+    """Take the fractures out of a pyvista mesh; `path` is for error messages."""
     points = np.asarray(mesh.points, dtype=float)[:, :2]
     if mesh.n_cells == 0:
         return FractureField(np.empty((0, 2, 2)), np.empty(0, dtype=np.int64))
     lines = _cells(mesh, path, _LINE, 2, "lines")
-    if "state" not in mesh.cell_data:
-        raise RunError(f"{path}: the cell data 'state' is missing.")
-    return FractureField(points[lines], np.asarray(mesh.cell_data["state"]).astype(np.int64))
+    return FractureField(points[lines], cell_values(mesh, path, "state").astype(np.int64))
+
+
+def cell_values(mesh: Any, path: Path, name: str) -> FloatArray:
+    """Take cell data from a pyvista mesh; `path` is for error messages."""
+    if name not in mesh.cell_data:
+        raise RunError(f"{path}: the cell data '{name}' is missing.")
+    return np.asarray(mesh.cell_data[name], dtype=float)
 
 
 def load_pyvista() -> Any:
@@ -111,17 +122,23 @@ def load_pyvista() -> Any:
     return pyvista
 
 
-def _read_grid(path: Path) -> Any:
+def read_grid(path: Path) -> Any:
+    """Read a VTU file with pyvista."""
     if not path.is_file():
         raise RunError(f"{path}: the file is missing, though its PVD collection names it.")
     pyvista = load_pyvista()
+    level = logging.root.manager.disable
+    logging.disable(logging.ERROR)  # else a damaged file brings pages of VTK's own errors
     try:
-        mesh = pyvista.read(path)
+        with pyvista.vtk_verbosity("off"), warnings.catch_warnings():
+            # VTK gives an empty mesh for a damaged file, pyvista warns about it
+            warnings.filterwarnings("error", message="The VTK reader", category=UserWarning)
+            return pyvista.read(path)
     except Exception as reason:  # VTK raises many kinds; all mean an unreadable file
-        raise RunError(f"{path}: the file cannot be read ({reason}).") from None
-    if mesh.n_points == 0 and path.stat().st_size > 0 and mesh.n_cells > 0:
-        raise RunError(f"{path}: the file has cells but no points.")
-    return mesh
+        first_line = str(reason).splitlines()[0] if str(reason) else type(reason).__name__
+        raise RunError(f"{path}: the file is damaged ({first_line.rstrip('.:')}).") from None
+    finally:
+        logging.disable(level)
 
 
 def _cells(mesh: Any, path: Path, kind: int, nodes: int, name: str) -> IntArray:

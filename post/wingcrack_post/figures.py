@@ -48,7 +48,9 @@ class _Figures:
     draw: Callable[[Run, Sequence[float]], Iterator[tuple[str, Figure]]]
 
 
-def _one(function: Callable[..., Figure], *, timed: bool = False) -> Callable[..., Iterator[tuple[str, Figure]]]:  # fmt: skip  # noqa: E501
+def _one(
+    function: Callable[..., Figure], *, timed: bool = False
+) -> Callable[..., Iterator[tuple[str, Figure]]]:
     def draw(run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
         yield "", function(run, times_s) if timed else function(run)
 
@@ -88,10 +90,9 @@ def _drawn(
 ) -> Outcome:
     files: list[Path] = []
     try:
-        with style.styled():
-            for label, figure in figures.draw(run, times_s):
-                name = f"{figures.name}_{label}" if label else figures.name
-                files += style.save(figure, folder / re.sub(r"[^\w.-]+", "_", name), formats)
+        for label, figure in figures.draw(run, times_s):
+            name = f"{figures.name}_{label}" if label else figures.name
+            files += style.save(figure, folder / re.sub(r"[^\w.-]+", "_", name), formats)
     except AbsentError as reason:
         return Outcome(figures.name, tuple(files), str(reason))
     except EnvironmentLacksError as reason:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
@@ -30,6 +31,7 @@ _MODES = (
     ("equivalent", r"$K_\mathrm{eq}$", "keq_pa_sqrtm", None),
 )
 _MOST_MARKERS = 25  # per line: more run into each other
+_LEGEND_COLUMNS = 4
 
 
 def clock_of(run: Run) -> Unit:
@@ -37,6 +39,7 @@ def clock_of(run: Run) -> Unit:
     return time_unit(float(run.history.number("time_s")[-1]))
 
 
+@style.styled
 def intensities(run: Run) -> Figure:
     """Stress intensity factors of every tip by both methods, and K_IC if the scene tells it.
 
@@ -48,73 +51,108 @@ def intensities(run: Run) -> Figure:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     clock = clock_of(run)
     time = clock.of(table.number("time_s"))
-    figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
-    panels = list(figure.subplots(1, len(_MODES)))
     tips = _tips(table)
+    toughness = run.scene.toughness_pa_sqrtm if run.scene else None
+    handles = _tip_handles(run, tips, toughness)
+    legend_rows = -(-len(handles) // _LEGEND_COLUMNS)
+    figure = style.new_figure(style.DOUBLE_COLUMN, 2.45 + 0.17 * legend_rows)
+    panels = list(figure.subplots(1, len(_MODES)))
     for axes, (title, symbol, integral, correlation) in zip(panels, _MODES, strict=True):
         for index, (_, rows) in enumerate(tips):
             look = style.line_look(index)
-            axes.plot(time[rows], INTENSITY.of(table.number(integral)[rows]), **look)
+            marker = style.lone_marker(int(rows.sum()))
+            axes.plot(time[rows], INTENSITY.of(table.number(integral)[rows]), marker=marker, **look)
             if correlation is not None:
                 every = max(1, int(rows.sum()) // _MOST_MARKERS)
                 axes.plot(
-                    time[rows], INTENSITY.of(table.number(correlation)[rows]), linestyle="none",
-                    marker="o", markerfacecolor="none", markeredgecolor=look["color"],
-                    markeredgewidth=0.7, markevery=every,
-                )  # fmt: skip
+                    time[rows],
+                    INTENSITY.of(table.number(correlation)[rows]),
+                    linestyle="none",
+                    marker="o",
+                    markerfacecolor="none",
+                    markeredgecolor=look["color"],
+                    markeredgewidth=0.7,
+                    markevery=every,
+                )
         _finish(axes, title, f"{symbol} [{INTENSITY.name}]", clock)
-    toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     if toughness is not None:
         panels[-1].axhline(float(INTENSITY.of(toughness)), color="#555555", linewidth=0.8, ls="--")
     style.letter(panels)
-    style.outside_legend(figure, _tip_handles(run, tips, toughness), 4)
+    style.outside_legend(figure, handles, _LEGEND_COLUMNS)
     return figure
 
 
+@style.styled
 def development(run: Run) -> Figure:
-    """Fracture length, well pressure (with a fluid), slip and opening, and the states."""
+    """Fracture length, well pressure (with a fluid), largest slip and opening, and the states."""
     table = run.history
     clock = clock_of(run)
     time = clock.of(table.number("time_s"))
+    marker = style.lone_marker(time.size)
     fluid = table.has("well_pressure_pa")
-    figure = style.new_figure(style.DOUBLE_COLUMN, 4.6)
-    panels = list(figure.subplots(2, 2, sharex=True).flat)
-    length, pressure, jumps, states = panels
-    length.plot(time, METRE.of(table.number("fracture_length_m")), color=style.CYCLE[0])
+    figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
+    panels = list((figure.subplots(2, 2) if fluid else figure.subplots(1, 3)).flat)
+    length, jumps, states = panels[0], panels[-2], panels[-1]
+    values = METRE.of(table.number("fracture_length_m"))
+    length.plot(time, values, color=style.CYCLE[0], marker=marker)
     _finish(length, "fracture length", "total length [m]", clock)
     if fluid:
-        pressure.plot(time, MEGAPASCAL.of(table.number("well_pressure_pa")), color=style.CYCLE[0])
-        _finish(pressure, "well pressure", "pressure [MPa]", clock)
-    else:
-        pressure.remove()
-        panels.remove(pressure)
-        length.tick_params(labelbottom=True)
+        values = MEGAPASCAL.of(table.number("well_pressure_pa"))
+        panels[1].plot(time, values, color=style.CYCLE[0], marker=marker)
+        _finish(panels[1], "well pressure", "pressure [MPa]", clock)
     slip, opening = table.number("max_slip_m"), table.number("max_opening_m")
     unit = displacement_unit(slip, opening)
-    jumps.plot(time, unit.of(slip), color=style.CYCLE[1], label="slip")
-    jumps.plot(time, unit.of(opening), color=style.CYCLE[0], linestyle="--", label="opening")
+    # the colours of the states that go with them
+    for label, jump, colour, dashes in (
+        ("slip", slip, style.STATE_COLOURS["slip"], "-"),
+        ("opening", opening, style.STATE_COLOURS["open"], "--"),
+    ):
+        jumps.plot(time, unit.of(jump), dashes, color=colour, label=label, marker=marker)
     jumps.legend()
     _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", clock)
-    for state in style.STATES:
-        states.step(
-            time, table.number(f"n_{state}"), where="post", color=style.STATE_COLOURS[state],
-            label=state,
-        )  # fmt: skip
-    states.set_ylim(bottom=0.0)
-    states.legend()
-    _finish(states, "contact state", "fracture cells", clock)
-    start = growth_start(run)
-    if start is not None:
-        for axes in panels:
-            axes.axvline(float(clock.of(start)), color="#999999", linewidth=0.7, linestyle=":")
-        length.annotate(
-            "first growth", (float(clock.of(start)), 0.97), rotation=90, va="top", ha="right",
-            xycoords=("data", "axes fraction"), fontsize=6.5, color="#555555",
-        )  # fmt: skip
+    _draw_states(states, table, time)
+    _finish(states, "contact state", "fracture cells [-]", clock)
+    _mark_growth(run, length, panels, clock)
     style.letter(panels)
     return figure
 
 
+def _draw_states(axes: Axes, table: Table, time: FloatArray) -> None:
+    marker = style.lone_marker(time.size)
+    for state in style.STATES:
+        # a state holds for the step that ends at its time
+        axes.step(
+            time,
+            table.number(f"n_{state}"),
+            where="pre",
+            color=style.STATE_COLOURS[state],
+            marker=marker,
+            label=state,
+        )
+    axes.set_ylim(bottom=0.0)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.legend()
+
+
+def _mark_growth(run: Run, first: Axes, panels: Sequence[Axes], clock: Unit) -> None:
+    start = growth_start(run)
+    if start is None:
+        return
+    for axes in panels:
+        axes.axvline(float(clock.of(start)), color="#999999", linewidth=0.7, linestyle=":")
+    first.annotate(
+        "first growth",
+        (float(clock.of(start)), 0.97),
+        xycoords=("data", "axes fraction"),
+        rotation=90,
+        va="top",
+        ha="right",
+        fontsize=6.5,
+        color="#555555",
+    )
+
+
+@style.styled
 def balance(run: Run) -> Figure:
     """Where the injected fluid went, and how well mass is conserved.
 
@@ -137,16 +175,20 @@ def balance(run: Run) -> Figure:
     if table.has("prefilled_m2") and np.any(table.number("prefilled_m2") != 0.0):
         series.append(("prefilled new cells", table.number("prefilled_m2")))
     unit = area_unit(*(values for _, values in series))
+    marker = style.lone_marker(time.size)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.6)
     volumes, errors = figure.subplots(1, 2)
     for index, (label, values) in enumerate(series):
         dashes = style.LINE_STYLES[index % len(style.LINE_STYLES)]
-        volumes.plot(time, unit.of(values), color=style.CYCLE[index], linestyle=dashes, label=label)
+        volumes.plot(
+            time, unit.of(values), dashes, color=style.CYCLE[index], label=label, marker=marker
+        )
     volumes.legend()
     _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", clock)
     error = np.abs(table.number("mass_error_relative"))
     # zero cannot stand on a logarithmic axis; such steps are exact to round-off
-    errors.semilogy(time, np.maximum(error, np.finfo(float).eps), color=style.CYCLE[0])
+    shown = np.maximum(error, np.finfo(float).eps)
+    errors.semilogy(time, shown, color=style.CYCLE[0], marker=marker)
     _finish(errors, "mass conservation", "relative mass error [-]", clock)
     style.letter([volumes, errors])
     return figure
@@ -165,18 +207,25 @@ def _tip_handles(
     fractures = table.text("fracture")
     handles = [
         Line2D(
-            [], [], **style.line_look(index),
+            [],
+            [],
+            **style.line_look(index),
             label=f"tip {name} ({run.fracture_name(str(fractures[rows][0]))})",
         )
         for index, (name, rows) in enumerate(tips)
-    ]  # fmt: skip
+    ]
     handles.append(Line2D([], [], color="#555555", label="lines: interaction integral"))
     handles.append(
         Line2D(
-            [], [], color="#555555", linestyle="none", marker="o", markerfacecolor="none",
+            [],
+            [],
+            color="#555555",
+            linestyle="none",
+            marker="o",
+            markerfacecolor="none",
             label="circles: displacement correlation",
         )
-    )  # fmt: skip
+    )
     if toughness is not None:
         handles.append(
             Line2D([], [], color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")

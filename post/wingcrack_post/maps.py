@@ -12,6 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
 from wingcrack_post import style
@@ -55,6 +56,7 @@ class _Frame:
     fractures: FractureField | None
 
 
+@style.styled
 def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     """Draw the pore pressure at chosen times on one colour scale.
 
@@ -93,15 +95,19 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
                     _mark(axes, zoom)
             if column == 0:
                 axes.set_ylabel("$y$ [m]")
-            axes.set_xlabel("$x$ [m]")
+            if depth == len(views) - 1:
+                axes.set_xlabel("$x$ [m]")
     for axes in [panel for row in grid for panel in row if not panel.collections]:
         axes.remove()
     style.letter(lettered)
     drawn = [panel for row in grid for panel in row if panel.collections]
     bar = figure.colorbar(
-        ScalarMappable(norm, style.FIELD_COLOURS), ax=drawn, shrink=0.6 if bands > 1 else 0.9,
-        aspect=30, pad=0.015,
-    )  # fmt: skip
+        ScalarMappable(norm, style.FIELD_COLOURS),
+        ax=drawn,
+        shrink=0.6 if bands > 1 else 0.9,
+        aspect=30,
+        pad=0.015,
+    )
     bar.set_label("pore pressure [MPa]")
     if any(frame.fractures is not None for frame in frames):
         style.outside_legend(figure, style.state_handles(), len(style.STATES))
@@ -161,11 +167,12 @@ def _pressure_scale(frames: Sequence[_Frame]) -> Normalize:
 
 
 def _panels(columns: int, bands: int, views: Sequence[Window]) -> tuple[Figure, list[list[Axes]]]:
-    panel_width = min(2.0, 6.2 / columns) if columns > 1 else 2.9
+    width = {1: style.SINGLE_COLUMN, 2: 5.3}.get(columns, style.DOUBLE_COLUMN)
+    panel_width = (width - 1.1) / columns - 0.35  # without colour bar and tick labels
     heights = [view.ratio * panel_width for view in views] * bands
-    # labels, titles and legend need room beside the panels themselves
-    height = sum(heights) + 0.45 * bands * len(views) + 0.35
-    figure = style.new_figure(panel_width * columns + 1.1, height)
+    # tick labels in every row; a title and the label of x once in a band; the legend once
+    height = sum(heights) + 0.25 * len(heights) + 0.35 * bands + 0.35
+    figure = style.new_figure(width, height)
     axes = figure.subplots(len(heights), columns, squeeze=False, height_ratios=heights)
     return figure, [list(row) for row in axes]
 
@@ -174,11 +181,16 @@ def _draw(axes: Axes, frame: _Frame, view: Window, norm: Normalize, *, close: bo
     points = frame.matrix.points
     triangulation = Triangulation(points[:, 0], points[:, 1], frame.matrix.triangles)
     axes.tripcolor(
-        triangulation, facecolors=MEGAPASCAL.of(frame.matrix.cell["pressure"]), norm=norm,
-        cmap=style.FIELD_COLOURS, rasterized=True, edgecolors="none", antialiased=False,
-    )  # fmt: skip
+        triangulation,
+        facecolors=MEGAPASCAL.of(frame.matrix.cell["pressure"]),
+        norm=norm,
+        cmap=style.FIELD_COLOURS,
+        rasterized=True,
+        edgecolors="none",
+        antialiased=False,
+    )
     if frame.fractures is not None and len(frame.fractures.segments):
-        _draw_fractures(axes, frame.fractures, 1.6 if close else 1.0)
+        _draw_fractures(axes, frame.fractures, 2.2 if close else 1.0)
     axes.set_xlim(view.x_min, view.x_max)
     axes.set_ylim(view.y_min, view.y_max)
     axes.set_aspect("equal")
@@ -198,17 +210,27 @@ def _draw_fractures(axes: Axes, fractures: FractureField, width: float) -> None:
         mine = fractures.segments[fractures.state == number]
         if len(mine):
             lines = LineCollection(
-                list(mine), colors=style.STATE_COLOURS[state], linewidths=width, label=state,
-                capstyle="butt", zorder=3,
-            )  # fmt: skip
+                list(mine),
+                colors=style.STATE_COLOURS[state],
+                linewidths=width,
+                label=state,
+                capstyle="butt",
+                zorder=3,
+            )
             axes.add_collection(lines, autolim=False)
 
 
 def _mark(axes: Axes, zoom: Window) -> None:
     frame = Rectangle(
-        (zoom.x_min, zoom.y_min), zoom.x_max - zoom.x_min, zoom.y_max - zoom.y_min,
-        fill=False, edgecolor="white", linewidth=0.8, linestyle="--", zorder=4,
-    )  # fmt: skip
+        (zoom.x_min, zoom.y_min),
+        zoom.x_max - zoom.x_min,
+        zoom.y_max - zoom.y_min,
+        fill=False,
+        edgecolor="white",
+        linewidth=0.7,
+        zorder=4,
+        path_effects=[withStroke(linewidth=1.5, foreground="black")],
+    )
     axes.add_patch(frame)
 
 

@@ -46,6 +46,7 @@ def probe_names(table: Table) -> list[str]:
     return [name.removesuffix("_ux_m") for name in table.cells if name.endswith("_ux_m")]
 
 
+@style.styled
 def probe_histories(run: Run) -> Figure:
     """Draw every quantity at every probe: colour tells the probe, dashes the component.
 
@@ -73,23 +74,29 @@ def probe_histories(run: Run) -> Figure:
         for index, name in enumerate(names):
             for part, (end, _) in enumerate(quantity.parts):
                 axes.plot(
-                    time, unit.of(table.number(name + end)), linestyle=style.LINE_STYLES[part],
+                    time,
+                    unit.of(table.number(name + end)),
+                    linestyle=style.LINE_STYLES[part],
                     color=style.CYCLE[index % len(style.CYCLE)],
-                )  # fmt: skip
-        if len(quantity.parts) > 1:
-            axes.legend(
-                handles=[
-                    Line2D([], [], color="#555555", linestyle=style.LINE_STYLES[part], label=symbol)
-                    for part, (_, symbol) in enumerate(quantity.parts)
-                ]
-            )
+                    marker=style.lone_marker(time.size),
+                )
         axes.set_title(quantity.title)
         axes.set_ylabel(f"{quantity.label} [{unit.name}]")
         axes.set_xlabel(f"time [{clock.name}]")
     style.letter(panels)
+    style.outside_legend(figure, _handles(names, quantities), 6)
+    return figure
+
+
+def _handles(names: list[str], quantities: list[_Quantity]) -> list[Line2D]:
+    """Colours of the probes, then which component has which dashes."""
     handles = [
         Line2D([], [], color=style.CYCLE[index % len(style.CYCLE)], label=f"probe {name}")
         for index, name in enumerate(names)
     ]
-    style.outside_legend(figure, handles, min(len(handles), 6))
-    return figure
+    for part, dashes in enumerate(style.LINE_STYLES):
+        symbols = [q.parts[part][1] for q in quantities if part < len(q.parts)]
+        if symbols:
+            label = ", ".join(symbols)
+            handles.append(Line2D([], [], color="#555555", linestyle=dashes, label=label))
+    return handles

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from wingcrack_post import style
-from wingcrack_post.errors import RunError
 from wingcrack_post.read import Run, needed
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.times import select_times
@@ -85,6 +84,7 @@ def _arc_length_at(point: FloatArray, s: FloatArray, xy: FloatArray) -> float:
     return float(s[nearest] + share[nearest] * (s[nearest + 1] - s[nearest]))
 
 
+@style.styled
 def _profile(
     run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
 ) -> Figure:
@@ -106,7 +106,7 @@ def _profile(
         for moment, colour in zip(times, colours, strict=True):
             rows = np.flatnonzero(time == moment)
             rows = rows[np.argsort(s[rows])]
-            marker = "." if rows.size < 3 else ""
+            marker = style.lone_marker(rows.size)
             axis.plot(s[rows], unit.of(values[rows]), color=colour, marker=marker)
         axis.set_title(panel.title)
         axis.set_ylabel(f"{panel.label} [{unit.name}]")
@@ -139,9 +139,14 @@ def _friction(run: Run, label: str) -> float | None:
 
 
 def _draw_bound(
-    axis: Axes, table: Table, mine: BoolArray, s: FloatArray, times: Sequence[float],
-    colours: Sequence[tuple[float, float, float, float]], friction: float,
-) -> None:  # fmt: skip
+    axis: Axes,
+    table: Table,
+    mine: BoolArray,
+    s: FloatArray,
+    times: Sequence[float],
+    colours: Sequence[tuple[float, float, float, float]],
+    friction: float,
+) -> None:
     """Dash mu_s |f_n| on the side of zero where the tangential traction is."""
     time = table.number("time_s")[mine]
     normal = table.number("traction_n_pa")[mine]
@@ -157,11 +162,11 @@ def _draw_bound(
 
 
 def _time_handles(
-    times: Sequence[float], colours: Sequence[tuple[float, float, float, float]], clock: Unit,
+    times: Sequence[float],
+    colours: Sequence[tuple[float, float, float, float]],
+    clock: Unit,
     friction: float | None,
-) -> list[Line2D]:  # fmt: skip
-    if not times:
-        raise RunError("fractures.csv: there are no written times.")
+) -> list[Line2D]:
     handles = [
         Line2D([], [], color=colour, label=f"$t$ = {float(clock.of(time)):.4g} {clock.name}")
         for time, colour in zip(times, colours, strict=True)

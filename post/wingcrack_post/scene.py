@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from wingcrack_post.errors import RunError
 
-# one group: "&name ... /", where a slash inside a quoted string does not end the group
-_QUOTED = r"'[^']*'|\"[^\"]*\""
-_GROUP = re.compile(rf"&(\w+)((?:{_QUOTED}|[^'\"/])*)/")
-_ASSIGNMENT = re.compile(rf"(\w+)\s*(?:\([^)]*\))?\s*=\s*((?:{_QUOTED}|[^=&'\"])*?)(?=\s*,?\s*\w+\s*(?:\([^)]*\))?\s*=|\s*$)")  # fmt: skip  # noqa: E501
-_COMMENT = re.compile(rf"({_QUOTED})|![^\n]*")
+# quoted text (a doubled quote stands for one), comment, group, slash, equal sign, plain word
+_TOKEN = re.compile(r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|![^\n]*|&\w+|/|=|[^\s,=/!&'\"]+")
 
 
 @dataclass(frozen=True)
@@ -51,20 +49,26 @@ class Scene:
         return None
 
 
-def read_groups(text: str) -> list[tuple[str, dict[str, str]]]:
-    """Split a Fortran namelist text into its groups, each a name and the raw text of its values.
+def read_groups(text: str) -> list[tuple[str, dict[str, list[str]]]]:
+    """Split a Fortran namelist text into its groups, each a name and the raw values by name.
 
-    >>> read_groups("&material toughness = 7.0e5, young=4e10 / ! rock")
-    [('material', {'toughness': '7.0e5', 'young': '4e10'})]
+    >>> read_groups("&fracture name = 'a', x = 0.1 0.2 / ! the flaw")
+    [('fracture', {'name': ["'a'"], 'x': ['0.1', '0.2']})]
     """
-    plain = _COMMENT.sub(lambda match: match.group(1) or "", text)
-    groups = []
-    for group, body in _GROUP.findall(plain):
-        values = {
-            key.lower(): value.strip().rstrip(",").strip()
-            for key, value in _ASSIGNMENT.findall(body)
-        }
-        groups.append((group.lower(), values))
+    groups: list[tuple[str, dict[str, list[str]]]] = []
+    inside = False
+    values: list[str] = []
+    tokens = [token for token in _TOKEN.findall(text) if not token.startswith("!")]
+    for token, following in pairwise([*tokens, "/"]):
+        if token.startswith("&"):
+            groups.append((token[1:].lower(), {}))
+            inside = True
+        elif token == "/":
+            inside = False
+        elif inside and following == "=":
+            values = groups[-1][1].setdefault(token.lower(), [])
+        elif inside and token != "=":
+            values.append(token)
     return groups
 
 
@@ -76,32 +80,29 @@ def read_scene(path: Path) -> Scene | None:
         return None
     except (OSError, UnicodeDecodeError) as reason:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
-    groups = read_groups(text)
     toughness: float | None = None
     name = title = ""
     fractures = []
-    for group, values in groups:
-        if "toughness" in values:
-            toughness = _number(path, group, "toughness", values["toughness"])
-        if group == "fracture":
-            friction = (
-                _number(path, group, "friction", values["friction"])
-                if "friction" in values
-                else None
-            )
-            fractures.append(FractureLaw(_string(values.get("name", "")), friction))
-        elif group == "scene":
-            name, title = _string(values.get("name", "")), _string(values.get("title", ""))
-    if toughness is not None and toughness > 1e30:  # huge(): the scene has no toughness
-        toughness = None
+    for group, values in read_groups(text):
+        if group == "scene":
+            name, title = _text(values, "name"), _text(values, "title")
+        elif group == "material":
+            toughness = _number(path, group, values, "toughness")
+        elif group == "fracture":
+            friction = _number(path, group, values, "friction")
+            fractures.append(FractureLaw(_text(values, "name"), friction))
     return Scene(name, title, toughness, tuple(fractures))
 
 
-def _string(raw: str) -> str:
-    return raw.strip().strip("'\"").strip()
+def _text(values: dict[str, list[str]], key: str) -> str:
+    raw = "".join(values.get(key, [])[:1])
+    return raw[1:-1].replace(raw[:1] * 2, raw[:1]).strip() if raw[:1] in ("'", '"') else raw
 
 
-def _number(path: Path, group: str, key: str, raw: str) -> float:
+def _number(path: Path, group: str, values: dict[str, list[str]], key: str) -> float | None:
+    if not values.get(key):
+        return None
+    raw = values[key][0]
     try:
         return float(raw.lower().replace("d", "e"))
     except ValueError:

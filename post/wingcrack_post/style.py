@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -13,12 +14,15 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
 SINGLE_COLUMN = 3.5  # [inch], as most journals have it
 DOUBLE_COLUMN = 7.1  # [inch]
 
 # Okabe and Ito (2008), "Color universal design"; yellow is left out: too light on paper
 CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
-LINE_STYLES = ("-", "--", "-.", ":")
+LINE_STYLES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 
 STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files
 STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
@@ -26,7 +30,7 @@ STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
 FIELD_COLOURS = "cividis"
 FORMATS = ("png", "pdf")
 
-RC: dict[str, Any] = {
+RC: dict[Any, Any] = {
     "axes.axisbelow": True,
     "axes.grid": True,
     "axes.labelsize": 8,
@@ -66,12 +70,18 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height))
 
 
-def styled() -> Any:
-    """Context in which figures are made and saved."""
-    return matplotlib.rc_context(RC)
+def styled(function: Callable[P, R]) -> Callable[P, R]:
+    """Decorate a function that makes or saves a figure: it then does so in the common style."""
+
+    @wraps(function)
+    def within(*args: P.args, **kwargs: P.kwargs) -> R:
+        with matplotlib.rc_context(RC):
+            return function(*args, **kwargs)
+
+    return within
 
 
-def line_look(index: int) -> dict[str, str]:
+def line_look(index: int) -> dict[str, Any]:
     """Colour and dash pattern of the line with this number: 28 that differ."""
     return {
         "color": CYCLE[index % len(CYCLE)],
@@ -91,6 +101,11 @@ def time_colours() -> Colormap:
     return LinearSegmentedColormap.from_list("time", [base(0.88 * i / 63) for i in range(64)])
 
 
+def lone_marker(points: int) -> str:
+    """Marker for a line of so many points: a single one would leave nothing to see."""
+    return "." if points == 1 else ""
+
+
 def letter(axes: Sequence[Axes]) -> None:
     """Put (a), (b), ... before the titles of panels, for the caption to refer to."""
     for index, axis in enumerate(axes):
@@ -106,13 +121,12 @@ def state_handles(line_width: float = 2.0) -> list[Line2D]:
     ]
 
 
-def outside_legend(
-    figure: Figure, handles: Sequence[Any], columns: int, title: str | None = None
-) -> None:
+def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
     """Legend below all panels."""
-    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, title=title)
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
 
 
+@styled
 def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     """Write a figure in each format and return the files.
 

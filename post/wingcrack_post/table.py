@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -86,7 +87,7 @@ def read_table(path: Path) -> Table:
         raise RunError(f"{path}: the file is missing.") from None
     except (OSError, UnicodeDecodeError) as reason:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
-    lines = list(csv.reader(content.splitlines(), skipinitialspace=True))
+    lines = list(csv.reader(StringIO(content, newline=""), skipinitialspace=True))
     if not lines or not lines[0]:
         raise RunError(f"{path}: the file is empty, a header line was expected.")
     names = [name.strip() for name in lines[0]]

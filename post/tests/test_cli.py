@@ -1,0 +1,171 @@
+"""The command line: files, messages and exit status."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from wingcrack_post.cli import main
+
+POST = Path(__file__).resolve().parents[1]
+
+
+def test_all_figures_as_png_and_pdf(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", str(own_run), "--only", "maps,fractures,tips,probes"]) == 0
+    names = ["pressure_maps", "fracture_1", "intensities", "development", "balance", "probes"]
+    files = [own_run / "figures" / f"{n}.{f}" for n in names for f in ("png", "pdf")]
+    assert capsys.readouterr().out.splitlines() == [str(file) for file in files]
+    assert sorted((own_run / "figures").iterdir()) == sorted(files)
+    for file in files:
+        content = file.read_bytes()
+        assert content.startswith(b"%PDF" if file.suffix == ".pdf" else b"\x89PNG")
+        assert len(content) > 5000
+    # the widest figures fill a page of 7.1 inches at 300 dots per inch
+    assert imread(own_run / "figures" / "probes.png").shape[1] == 2130
+
+
+def test_same_run_gives_the_same_bytes(own_run: Path) -> None:
+    contents = []
+    for _ in range(2):
+        assert main(["plot", str(own_run), "--only", "tips", "--quiet"]) == 0
+        figures = sorted((own_run / "figures").iterdir())
+        contents.append([file.read_bytes() for file in figures])
+    assert contents[0] == contents[1]
+
+
+def test_quiet_prints_nothing(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", str(own_run), "--only", "probes", "--format", "png", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert [p.name for p in (own_run / "figures").iterdir()] == ["probes.png"]
+
+
+def test_mechanics_only_names_what_it_leaves_out(
+    dry_run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plot", str(dry_run), "--only", "maps,tips", "--format", "png"]) == 0
+    out = capsys.readouterr().out
+    assert "pressure_maps: left out: the run has no pore pressure (mechanics only).\n" in out
+    assert "balance: left out: the run has no fluid (mechanics only).\n" in out
+    assert "development.png\n" in out
+
+
+def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("run.json", "network.json", "matrix.pvd", "tips.csv", "probes.csv"):
+        (own_run / name).unlink()
+    assert main(["plot", str(own_run), "--format", "png"]) == 0
+    out = capsys.readouterr().out
+    assert "intensities: left out: the run has no tips.csv (stress intensity factors).\n" in out
+    figures = sorted(path.name for path in (own_run / "figures").iterdir())
+    assert figures == ["balance.png", "development.png", "fracture_1.png"]
+
+
+def test_nothing_to_draw_is_an_error(dry_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", str(dry_run), "--only", "maps", "--quiet"]) == 2
+    assert capsys.readouterr().err == (
+        f"wingcrack plot: {dry_run}: nothing was drawn: the run has no pore pressure"
+        " (mechanics only).\n"
+    )
+
+
+def _empty(run: Path) -> None:
+    (run / "history.csv").write_text("", encoding="utf-8")
+
+
+def _without_history(run: Path) -> None:
+    (run / "history.csv").unlink()
+
+
+def _without_column(run: Path) -> None:
+    path = run / "probes.csv"
+    path.write_text(path.read_text(encoding="utf-8").replace("d_syy_pa", "d_s"), encoding="utf-8")
+
+
+def _without_vtu(run: Path) -> None:
+    (run / "matrix_0000.vtu").unlink()
+
+
+def _not_xml(run: Path) -> None:
+    (run / "matrix_0000.vtu").write_text("nonsense", encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (_empty, "history.csv: the file is empty, a header line was expected."),
+        (_without_history, "history.csv is missing, so this is no directory that 'wingcrack run'"),
+        (_without_column, "probes.csv: the column 'd_syy_pa' is missing (there are: time_s,"),
+        (_without_vtu, "matrix_0000.vtu: the file is missing, though its PVD collection names it."),
+        (_not_xml, "matrix_0000.vtu: the file is damaged ("),
+    ],
+)
+def test_bad_input_is_one_sentence_and_status_2(
+    own_run: Path, damage: object, message: str
+) -> None:
+    assert callable(damage)
+    damage(own_run)
+    done = _called("plot", str(own_run), "--format", "png", "--only", "maps,probes")
+    assert done.returncode == 2
+    assert done.stderr.startswith("wingcrack plot: ")
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_missing_directory() -> None:
+    done = _called("plot", "no/such/place")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "wingcrack plot: no/such/place: there is no such directory.\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "the following arguments are required: plot"),
+        (["plot"], "the following arguments are required: DIR"),
+        (["plot", "d", "--only", "map"], "'map' is none of maps, fractures, tips, probes, view"),
+        (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
+        (["plot", "d", "--times", "noon"], "'noon' is no time"),
+        (["plot", "d", "--color"], "unrecognized arguments: --color"),
+    ],
+)
+def test_wrong_use_is_one_sentence_and_status_2(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    assert stop.value.code == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+
+
+def test_help_has_an_example() -> None:
+    done = _called("plot", "--help")
+    assert done.returncode == 0
+    assert "example:\n  wingcrack plot out/wing_crack" in done.stdout
+
+
+def test_figure_libraries_are_loaded_only_when_needed() -> None:
+    code = (
+        "import sys, wingcrack_post, wingcrack_post.cli\n"
+        "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
+        "import wingcrack_post.figures\n"
+        "assert not {'pyvista', 'vtk', 'matplotlib.pyplot'} & set(sys.modules)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=POST, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def _called(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "wingcrack_post", *arguments],
+        cwd=POST,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
