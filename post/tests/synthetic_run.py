@@ -317,7 +317,8 @@ def write_run(root: Path, *, cells_per_side: int = 12, fluid: bool = True) -> Pa
     )
     record = {"scene": "synthetic", "version": "0.1.0", "status": "finished", "steps": STEPS}
     (root / "run.json").write_text(json.dumps(record), encoding="utf-8")
-    network = {"fractures": [{"fracture": 1, "vertices": polyline(STEPS - 1).tolist()}]}
+    x, y = polyline(STEPS - 1).T.tolist()
+    network = {"fractures": [{"fracture": 1, "name": "flaw", "x_m": x, "y_m": y}]}
     (root / "network.json").write_text(json.dumps(network), encoding="utf-8")
     _write_fields(root, cells_per_side, fluid)
     return root

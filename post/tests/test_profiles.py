@@ -79,6 +79,9 @@ def test_no_bound_where_the_scene_is_unknown(own_run: Path) -> None:
     (own_run / "scene.nml").unlink()
     ((_, figure),) = fracture_profiles(read_run(own_run), [0.0])
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["$t$ = 5 h"]
+    assert figure.get_suptitle() == "flaw"  # as the network calls it
+    (own_run / "network.json").unlink()
+    ((_, figure),) = fracture_profiles(read_run(own_run), [0.0])
     assert figure.get_suptitle() == "fracture 1"
 
 

@@ -55,10 +55,13 @@ class Run:
         return self.directory.resolve().name
 
     def fracture_name(self, label: str) -> str:
-        """How figures call a fracture: its name in the scene, else "fracture <number>"."""
+        """How figures call a fracture: its name in scene or network, else its number."""
         law = self.scene.fracture(label) if self.scene else None
         if law and law.name:
             return law.name
+        for fracture in (self.network or {}).get("fractures", []):
+            if str(fracture.get("fracture")) == label and fracture.get("name"):
+                return str(fracture["name"])
         return f"fracture {label}" if label.isdecimal() else label
 
 

@@ -30,8 +30,8 @@ _SCALAR_BAR = {
     "n_labels": 5,
     "position_x": 0.2,
     "width": 0.6,
-    "position_y": 0.02,
-    "height": 0.1,
+    "position_y": 0.015,
+    "height": 0.09,
     "fmt": "%.4g",
 }
 
@@ -168,7 +168,7 @@ def _aim(plotter: Any, view: Window) -> None:
     plotter.camera.position = (x, y, 1.0)
     ratio = _PANEL[1] / _PANEL[0]
     half = max((view.x_max - view.x_min) / 2 * ratio, (view.y_max - view.y_min) / 2)
-    plotter.camera.parallel_scale = 1.15 * half
+    plotter.camera.parallel_scale = 1.27 * half
     plotter.renderer.reset_camera_clipping_range()
 
 
