@@ -223,3 +223,13 @@ def test_plot_does_not_wait_for_the_build(bare_tree: Tree) -> None:
     done = bare_tree.call("plot", bare_tree.place)
     assert done.returncode == 0, done.stderr
     assert done.stdout == f"post plot {bare_tree.place}\n"
+
+
+def test_a_failed_check_does_not_stop_the_others(own_tree: Tree) -> None:
+    # None of the tools is in this tree's environment, so every step fails.
+    done = own_tree.call("test")
+    assert done.returncode == 1
+    assert done.stdout.rindex("== pytest") > done.stdout.index("== fprettify")
+    reason = done.stderr.splitlines()[-1]
+    for step in ("fprettify", "ruff check", "mypy", "CTest, debug build", "pytest"):
+        assert step in reason
