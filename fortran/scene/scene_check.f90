@@ -2,10 +2,10 @@
 !> then those that need the numbers.
 module scene_check
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
    use scene_parameters, only: groups
-   use scene_sheet, only: sheet_t
+   use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
    use scene_values, only: nearest_word, value_t
    use scene_words, only: integer_text, real_text, rounded_text
@@ -62,8 +62,8 @@ contains
             if (sheet%records(j)%group /= sheet%records(i)%group) cycle
             other = sheet%records(j)%value("name")
             if (name%text /= other%text) cycle
-            call raise_error(error, "", sheet%blame(i, "name", "'"//name%text//"' is already taken on line "// &
-                                                    integer_text(other%line)//" but must be unique"))
+            call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on line "// &
+                        integer_text(other%line)//" but must be unique")
             return
          end do
       end do
@@ -82,16 +82,14 @@ contains
       yy = sheet%records(i)%is_given("permeability_yy")
       xy = sheet%records(i)%is_given("permeability_xy")
       if (scalar .and. (xx .or. yy .or. xy)) then
-         call raise_error(error, "", sheet%blame(i, "permeability", &
-                                                 "is given beside components of the tensor but must be "// &
-                                                 "given alone or not at all"))
+         call refuse(error, sheet, i, "permeability", "is given beside components of the "// &
+                     "tensor but must be given alone or not at all")
       else if ((xx .neqv. yy) .or. (xy .and. .not. xx)) then
-         call raise_error(error, "", sheet%blame(i, merge("permeability_yy", "permeability_xx", xx), &
-                                                 "is missing but must be given with the other "// &
-                                                 "components of the tensor"))
+         call refuse(error, sheet, i, merge("permeability_yy", "permeability_xx", xx), &
+                     "is missing but must be given with the other components of the tensor")
       else if (sheet%has("fluid") .and. .not. (scalar .or. xx)) then
-         call raise_error(error, "", sheet%blame(i, "permeability", &
-                                                 "[m2], which a scene with &fluid needs, is missing"))
+         call refuse(error, sheet, i, "permeability", "[m2], which a scene with &fluid needs, "// &
+                     "is missing")
       end if
    end subroutine check_permeability
 
@@ -107,9 +105,8 @@ contains
          do axis = 1, 2
             if (sheet%records(i)%is_given(axes(axis)//"_displacement") .and. &
                 sheet%records(i)%is_given(axes(axis)//"_traction")) then
-               call raise_error(error, "", &
-                                sheet%blame(i, axes(axis)//"_traction", "is given beside "//axes(axis)// &
-                                            "_displacement but only one of them can be prescribed"))
+               call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
+                           axes(axis)//"_displacement but only one of them can be prescribed")
                return
             end if
          end do
@@ -127,13 +124,14 @@ contains
          associate (record => sheet%records(i))
             select case (groups(record%group)%name)
             case ("injection", "initial")
-               if (record%line > 0) &
-                  call raise_error(error, "", sheet%blame(i, "", &
-                                                          "needs a fluid, but the group &fluid is missing"))
+               if (record%line > 0) call refuse(error, sheet, i, "", &
+                                                "needs a fluid, but the group &fluid is missing")
             case ("side")
-               if (record%is_given("pressure")) &
-                  call raise_error(error, "", sheet%blame(i, "pressure", &
-                                                          "needs a fluid, but the group &fluid is missing"))
+               if (record%is_given("pressure")) call refuse(error, sheet, i, "pressure", &
+                                                            "needs a fluid, but the group "// &
+                                                            "&fluid is missing")
+            case default
+               cycle
             end select
          end associate
          if (allocated(error)) return
@@ -148,7 +146,8 @@ contains
       character(len=name_length), allocatable :: names(:)
       integer :: i, k
 
-      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, sheet%length)])))
+      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, &
+                              sheet%length)])))
       do k = 1, size(names)
          value = sheet%records(sheet%find("fracture", k))%value("name")
          names(k) = value%text
@@ -158,16 +157,15 @@ contains
             if (groups(record%group)%name /= "injection") cycle
             wanted = record%value("fracture")
             if (size(names) == 0) then
-               call raise_error(error, "", sheet%blame(i, "fracture", "is '"//wanted%text// &
-                                                       "', but the scene has no fracture"))
+               call refuse(error, sheet, i, "fracture", "is '"//wanted%text// &
+                           "', but the scene has no fracture")
             else if (.not. any(names == wanted%text)) then
-               call raise_error(error, "", sheet%blame(i, "fracture", "is '"//wanted%text// &
-                                                       "', which is no fracture of the scene; the nearest "// &
-                                                       "is '"//nearest_word(wanted%text, names)//"'"))
+               call refuse(error, sheet, i, "fracture", "is '"//wanted%text// &
+                           "', which is no fracture of the scene; the nearest is '"// &
+                           nearest_word(wanted%text, names)//"'")
             else if (record%is_given("x") .neqv. record%is_given("y")) then
-               call raise_error(error, "", sheet%blame(i, merge("y", "x", record%is_given("x")), &
-                                                       "is missing but must be given with the other "// &
-                                                       "coordinate"))
+               call refuse(error, sheet, i, merge("y", "x", record%is_given("x")), &
+                           "is missing but must be given with the other coordinate")
             end if
          end associate
          if (allocated(error)) return
@@ -189,27 +187,24 @@ contains
          solid_part = (m%biot - m%porosity)/bulk_modulus
          if (m%storage == "textbook") solid_part = solid_part*(1.0_rk - m%biot)
          if (m%biot < m%porosity) then
-            call raise_error(error, "", sheet%blame(i, "biot", "is "//real_text(m%biot)// &
-                                                    " but must be at least the porosity, "// &
-                                                    real_text(m%porosity)))
+            call refuse(error, sheet, i, "biot", "is "//real_text(m%biot)// &
+                        " but must be at least the porosity, "//real_text(m%porosity))
          else if (.not. m%porosity*scene%fluid%compressibility + solid_part > 0.0_rk) then
-            call raise_error(error, "", sheet%blame(i, "biot", "and porosity give no storage: phi c_p and "// &
-                                                    "the part of the solid are both zero, but their sum "// &
-                                                    "must be positive"))
+            call refuse(error, sheet, i, "biot", "and porosity give no storage: phi c_p and "// &
+                        "the part of the solid are both zero, but their sum must be positive")
          else if (.not. abs(m%permeability_xy) < &
-                  sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then  ! as a product it would underflow
-            call raise_error(error, "", sheet%blame(i, "permeability_xy", "is "// &
-                                                    real_text(m%permeability_xy)//" but must be smaller "// &
-                                                    "than sqrt(permeability_xx permeability_yy), for the "// &
-                                                    "tensor must be positive definite"))
+                  sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
+            call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &
+                        " but must be smaller than sqrt(permeability_xx permeability_yy), for "// &
+                        "the tensor must be positive definite")
          end if
       end associate
    end subroutine check_material
 
    !> The sides hold the body against its three rigid motions.
    !>
-   !> With u = (a - w y, b + w x): a side held along its own direction fixes a - w y or b + w x at one y or
-   !> x, a side held in the direction of its normal fixes a and w, or b and w, at once.
+   !> With u = (a - w y, b + w x): a side held along its own direction fixes b + w x at its x, or
+   !> a - w y at its y; one held in the direction of its normal fixes a and w, or b and w, at once.
    pure subroutine check_support(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -218,17 +213,18 @@ contains
 
       x_held = scene%sides%displacement_given(1)
       y_held = scene%sides%displacement_given(2)
-      rotation_held = any(x_held(1:2)) .or. all(x_held(3:4)) .or. any(y_held(3:4)) .or. all(y_held(1:2))
+      rotation_held = any(x_held(1:2)) .or. all(x_held(3:4)) .or. any(y_held(3:4)) .or. &
+                      all(y_held(1:2))
       if (.not. any(x_held)) then
-         call raise_error(error, "", sheet%path//": &side: no side has an x_displacement, but one must "// &
-                          "hold the body against moving in x (see docs/input.md)")
+         call raise_error(error, "", sheet%path//": &side: no side has an x_displacement, but "// &
+                          "one must hold the body against moving in x (see docs/input.md)")
       else if (.not. any(y_held)) then
-         call raise_error(error, "", sheet%path//": &side: no side has a y_displacement, but one must "// &
-                          "hold the body against moving in y (see docs/input.md)")
+         call raise_error(error, "", sheet%path//": &side: no side has a y_displacement, but "// &
+                          "one must hold the body against moving in y (see docs/input.md)")
       else if (.not. rotation_held) then
-         call raise_error(error, "", sheet%path//": &side: the body can rotate, but a side must hold it: "// &
-                          "left or right an x_displacement, or bottom or top a y_displacement "// &
-                          "(see docs/input.md)")
+         call raise_error(error, "", sheet%path//": &side: the body can rotate, but a side "// &
+                          "must hold it: left or right an x_displacement, or bottom or top a "// &
+                          "y_displacement (see docs/input.md)")
       end if
    end subroutine check_support
 
@@ -240,22 +236,20 @@ contains
 
       record = sheet%find("time")
       if (scene%time%step > scene%time%end) then
-         call raise_error(error, "", sheet%blame(record, "step", "is "//real_text(scene%time%step)// &
-                                                 " but must be at most end, "//real_text(scene%time%end)))
+         call refuse(error, sheet, record, "step", "is "//real_text(scene%time%step)// &
+                     " but must be at most end, "//real_text(scene%time%end))
          return
       else if (scene%time%smallest_factor > scene%time%growth_factor) then
-         call raise_error(error, "", sheet%blame(record, "smallest_factor", &
-                                                 "is "//real_text(scene%time%smallest_factor)// &
-                                                 " but must be at most growth_factor, "// &
-                                                 real_text(scene%time%growth_factor)))
+         call refuse(error, sheet, record, "smallest_factor", "is "// &
+                     real_text(scene%time%smallest_factor)// &
+                     " but must be at most growth_factor, "//real_text(scene%time%growth_factor))
          return
       end if
       do i = 1, size(scene%injections)
          if (scene%injections(i)%end > scene%injections(i)%start) cycle
-         call raise_error(error, "", sheet%blame(sheet%find("injection", i), "end", &
-                                                 "is "//real_text(scene%injections(i)%end)// &
-                                                 " but must be after start, "// &
-                                                 real_text(scene%injections(i)%start)))
+         call refuse(error, sheet, sheet%find("injection", i), "end", "is "// &
+                     real_text(scene%injections(i)%end)//" but must be after start, "// &
+                     real_text(scene%injections(i)%start))
          return
       end do
    end subroutine check_times
@@ -272,22 +266,19 @@ contains
       switch = "intensities"
       if (scene%growth%enabled) switch = "enabled"
       if (size(scene%fractures) == 0) then
-         call raise_error(error, "", sheet%blame(sheet%find("growth"), switch, &
-                                                 "is .true. but must be .false., for the scene has no "// &
-                                                 "fracture"))
+         call refuse(error, sheet, sheet%find("growth"), switch, &
+                     "is .true. but must be .false., for the scene has no fracture")
          return
       end if
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
       if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
-         call raise_error(error, "", sheet%blame(sheet%find("fine"), "window", &
-                                                 "is "//real_text(scene%discretization%window)// &
-                                                 " but must be larger than twice the fine mesh size, "// &
-                                                 rounded_text(fine_size)))
+         call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
+                     real_text(scene%discretization%window)//" but must be larger than twice "// &
+                     "the fine mesh size, "//rounded_text(fine_size))
       else if (scene%growth%increment > 0.5_rk*scene%discretization%window) then
-         call raise_error(error, "", sheet%blame(sheet%find("growth"), "increment", &
-                                                 "is "//real_text(scene%growth%increment)// &
-                                                 " but must be at most half the window, "// &
-                                                 rounded_text(0.5_rk*scene%discretization%window)))
+         call refuse(error, sheet, sheet%find("growth"), "increment", "is "// &
+                     real_text(scene%growth%increment)//" but must be at most half the "// &
+                     "window, "//rounded_text(0.5_rk*scene%discretization%window))
       end if
    end subroutine check_levels
 

@@ -1,8 +1,8 @@
 !> Checks where things are: domain, fractures, wells, probes, cell sizes.
 module scene_check_geometry
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use scene_sheet, only: sheet_t
+   use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: integer_text, real_text, rounded_text
    implicit none(type, external)
@@ -21,25 +21,23 @@ contains
 
       associate (d => scene%domain, size_boundary => scene%discretization%size_boundary)
          if (.not. d%x_max > d%x_min) then
-            call raise_error(error, "", sheet%blame(sheet%find("domain"), "x_max", "is "//real_text(d%x_max)// &
-                                                    " but must be greater than x_min, "//real_text(d%x_min)))
+            call refuse(error, sheet, sheet%find("domain"), "x_max", "is "//real_text(d%x_max)// &
+                        " but must be greater than x_min, "//real_text(d%x_min))
             return
          else if (.not. d%y_max > d%y_min) then
-            call raise_error(error, "", sheet%blame(sheet%find("domain"), "y_max", "is "//real_text(d%y_max)// &
-                                                    " but must be greater than y_min, "//real_text(d%y_min)))
+            call refuse(error, sheet, sheet%find("domain"), "y_max", "is "//real_text(d%y_max)// &
+                        " but must be greater than y_min, "//real_text(d%y_min))
             return
          end if
          shorter_edge = min(d%x_max - d%x_min, d%y_max - d%y_min)
          if (size_boundary > shorter_edge) then
-            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_boundary", &
-                                                    "is "//real_text(size_boundary)// &
-                                                    " but must be at most the shorter edge of the domain, "// &
-                                                    rounded_text(shorter_edge)))
+            call refuse(error, sheet, sheet%find("coarse"), "size_boundary", "is "// &
+                        real_text(size_boundary)//" but must be at most the shorter edge of "// &
+                        "the domain, "//rounded_text(shorter_edge))
          else if (scene%discretization%size_fracture > size_boundary) then
-            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_fracture", &
-                                                    "is "//real_text(scene%discretization%size_fracture)// &
-                                                    " but must be at most size_boundary, "// &
-                                                    real_text(size_boundary)))
+            call refuse(error, sheet, sheet%find("coarse"), "size_fracture", "is "// &
+                        real_text(scene%discretization%size_fracture)// &
+                        " but must be at most size_boundary, "//real_text(size_boundary))
          end if
       end associate
    end subroutine check_domain
@@ -55,11 +53,11 @@ contains
          call check_vertices(sheet, i, scene%fractures(i), scene%domain, error)
          if (allocated(error)) return
          if (scene%discretization%size_fracture > total_length(scene%fractures(i))) then
-            call raise_error(error, "", sheet%blame(sheet%find("coarse"), "size_fracture", &
-                                                    "is "//real_text(scene%discretization%size_fracture)// &
-                                                    " but must be at most the length of fracture '"// &
-                                                    trim(scene%fractures(i)%name)//"', "// &
-                                                    rounded_text(total_length(scene%fractures(i)))))
+            call refuse(error, sheet, sheet%find("coarse"), "size_fracture", "is "// &
+                        real_text(scene%discretization%size_fracture)// &
+                        " but must be at most the length of fracture '"// &
+                        trim(scene%fractures(i)%name)//"', "// &
+                        rounded_text(total_length(scene%fractures(i))))
             return
          end if
       end do
@@ -78,39 +76,39 @@ contains
       whose = "of fracture '"//trim(fracture%name)//"' "
       n = size(fracture%x)
       if (size(fracture%y) /= n) then
-         call raise_error(error, "", sheet%blame(record, "y", whose//"has "// &
-                                                 integer_text(size(fracture%y, kind=ik))// &
-                                                 " values but must have as many as x, "// &
-                                                 integer_text(int(n, ik))))
+         call refuse(error, sheet, record, "y", whose//"has "//integer_text(size(fracture%y, &
+                                                                                 kind=ik))// &
+                     " values but must have as many as x, "//integer_text(int(n, ik)))
          return
       else if (n < 2) then
-         call raise_error(error, "", sheet%blame(record, "x", whose//"has one value but must have at "// &
-                                                 "least two, the ends of the fracture"))
+         call refuse(error, sheet, record, "x", whose//"has one value but must have at least "// &
+                     "two, the ends of the fracture")
          return
       end if
       do k = 1, n
          if (.not. contains_point(domain, fracture%x(k), fracture%y(k))) then
-            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the vertex "// &
-                                                    point_text(fracture%x(k), fracture%y(k))// &
-                                                    " outside of the domain but must lie within it"))
+            call refuse(error, sheet, record, "x", "and y "//whose//"give the vertex "// &
+                        point_text(fracture%x(k), fracture%y(k))//" outside of the domain but "// &
+                        "must lie within it")
             return
          end if
       end do
       do k = 2, n
-         if (.not. hypot(fracture%x(k) - fracture%x(k - 1), fracture%y(k) - fracture%y(k - 1)) > 0.0_rk) then
-            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the vertex "// &
-                                                    point_text(fracture%x(k), fracture%y(k))// &
-                                                    " twice in a row but must give it once"))
+         if (.not. hypot(fracture%x(k) - fracture%x(k - 1), &
+                         fracture%y(k) - fracture%y(k - 1)) > 0.0_rk) then
+            call refuse(error, sheet, record, "x", "and y "//whose//"give the vertex "// &
+                        point_text(fracture%x(k), fracture%y(k))//" twice in a row but must "// &
+                        "give it once")
             return
          else if (along_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
-            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"run along the boundary to "// &
-                                                    point_text(fracture%x(k), fracture%y(k))// &
-                                                    " but must touch it with the ends only"))
+            call refuse(error, sheet, record, "x", "and y "//whose//"run along the boundary to "// &
+                        point_text(fracture%x(k), fracture%y(k))//" but must touch it with "// &
+                        "the ends only")
             return
          else if (k < n .and. on_boundary(domain, fracture%x(k), fracture%y(k))) then
-            call raise_error(error, "", sheet%blame(record, "x", "and y "//whose//"give the inner vertex "// &
-                                                    point_text(fracture%x(k), fracture%y(k))// &
-                                                    " on the boundary but must touch it with the ends only"))
+            call refuse(error, sheet, record, "x", "and y "//whose//"give the inner vertex "// &
+                        point_text(fracture%x(k), fracture%y(k))//" on the boundary but must "// &
+                        "touch it with the ends only")
             return
          end if
       end do
@@ -129,12 +127,11 @@ contains
             if (.not. well%at_point) cycle
             distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
             if (distance <= scene%discretization%size_fracture) cycle
-            call raise_error(error, "", sheet%blame(sheet%find("injection", i), "x", &
-                                                    "and y are "//point_text(well%x, well%y)//", "// &
-                                                    rounded_text(distance)//" m away from fracture '"// &
-                                                    trim(scene%fractures(well%fracture)%name)// &
-                                                    "', but must be within size_fracture, "// &
-                                                    real_text(scene%discretization%size_fracture)//" m"))
+            call refuse(error, sheet, sheet%find("injection", i), "x", "and y are "// &
+                        point_text(well%x, well%y)//", "//rounded_text(distance)// &
+                        " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
+                        "', but must be within size_fracture, "// &
+                        real_text(scene%discretization%size_fracture)//" m")
          end associate
          return
       end do
@@ -149,9 +146,9 @@ contains
       do i = 1, size(scene%probes)
          associate (probe => scene%probes(i))
             if (contains_point(scene%domain, probe%x, probe%y)) cycle
-            call raise_error(error, "", sheet%blame(sheet%find("probe", i), "x", "and y of probe '"// &
-                                                    trim(probe%name)//"' are "//point_text(probe%x, probe%y)// &
-                                                    " but must lie within the domain"))
+            call refuse(error, sheet, sheet%find("probe", i), "x", "and y of probe '"// &
+                        trim(probe%name)//"' are "//point_text(probe%x, probe%y)// &
+                        " but must lie within the domain")
          end associate
          return
       end do
@@ -171,7 +168,8 @@ contains
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x, y
 
-      on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. y >= domain%y_max
+      on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. &
+                    y >= domain%y_max
    end function on_boundary
 
    !> Both ends of a segment of the domain lie on the same side.

@@ -1,40 +1,43 @@
 !> docs/input.md, written from the table of parameters.
 module scene_describe
    use scene_intervals, only: in_words
-   use scene_parameters, only: group_t, groups, kind_choice, kind_integer, kind_logical, kind_name, &
-                               kind_real, kind_reals, need_always, need_fluid, need_fracture, &
-                               need_growth, need_tips, parameter_t, parameters
+   use scene_parameters, only: group_t, groups, kind_choice, kind_integer, kind_logical
+   use scene_parameters, only: kind_name, kind_real, kind_reals, need_always, need_fluid
+   use scene_parameters, only: need_fracture, need_growth, need_tips, parameter_t, parameters
    implicit none(type, external)
    private
 
    public :: describe_input
 
+   !&<
    character(len=*), parameter :: introduction(*) = [character(len=128) :: &
       "# Scene files", &
       "", &
-      "This page is written by `wingcrack-solver --describe-input` from the table that the reading follows;", &
-      "a test holds it against the code.", &
+      "This page is written by `wingcrack-solver --describe-input` from the table that the", &
+      "reading follows; a test holds it against the code.", &
       "", &
       "A scene file is a text of Fortran namelist groups, in any order:", &
       "", &
       "```fortran", &
       "! a comment, to the end of the line", &
       "&fracture", &
-      "  name = 'main'                      ! texts in single or double quotes; '' within '...' is one quote", &
-      "  x = 0.9, 1.0, 1.1                  ! lists with commas or blanks; 3*1.0 is short for 1.0, 1.0, 1.0", &
+      "  name = 'main'                     ! texts in quotes; within '...', '' is one quote", &
+      "  x = 0.9, 1.0, 1.1                 ! lists with commas or blanks; 2*1.0 is 1.0, 1.0", &
       "  y = 1.0 1.0 1.05", &
-      "  friction = 0.5, dilation_deg = 1   ! several names may share a line", &
-      "  aperture = 1.0e-3                  ! or 1d-3", &
-      "/                                    ! ends the group", &
+      "  friction = 0.5, dilation_deg = 1  ! several names may share a line", &
+      "  aperture = 1.0e-3                 ! or 1d-3", &
+      "/                                   ! ends the group", &
       "```", &
       "", &
       "* All numbers are in SI units; angles are in degrees and carry `_deg` in their name.", &
-      "* Compressive stress is negative, fluid pressure is positive. Rates are per metre of thickness.", &
+      "* Compressive stress is negative, fluid pressure is positive.", &
+      "* Rates are per metre of thickness.", &
       "* Groups and names may be in upper or lower case. Texts are taken as they are.", &
       "* A group is given once, unless it says `repeated`: then once per item.", &
-      "* Unknown groups and names, values of the wrong kind, values out of range and values that contradict", &
-      "  each other are errors; nothing is run or written then.", &
+      "* Unknown groups and names, values of the wrong kind, values out of range and values that", &
+      "  contradict each other are errors; nothing is run or written then.", &
       "* Every run writes `scene.nml`, the scene as understood with every default written out."]
+   !&>
 
 contains
 
@@ -44,7 +47,7 @@ contains
       integer :: i
 
       do i = 1, size(introduction)
-         write (unit, '(a)') trim(introduction(i))
+         write (unit, "(a)") trim(introduction(i))
       end do
       do i = 1, size(groups)
          call describe_group(unit, groups(i))
@@ -56,18 +59,19 @@ contains
       type(group_t), intent(in) :: group
       integer :: i
 
-      write (unit, '(a)') ""
+      write (unit, "(a)") ""
       if (group%repeated) then
-         write (unit, '(a)') "## &"//trim(group%name)//" (repeated)"
+         write (unit, "(a)") "## &"//trim(group%name)//" (repeated)"
       else
-         write (unit, '(a)') "## &"//trim(group%name)
+         write (unit, "(a)") "## &"//trim(group%name)
       end if
-      write (unit, '(a)') "", trim(group%meaning), ""
-      write (unit, '(a)') "| name | kind | unit | default | allowed | meaning |", "|---|---|---|---|---|---|"
+      write (unit, "(a)") "", trim(group%meaning), ""
+      write (unit, "(a)") "| name | kind | unit | default | allowed | meaning |", &
+         "|---|---|---|---|---|---|"
       do i = 1, size(parameters)
          if (parameters(i)%group /= group%name) cycle
-         write (unit, '(a)') "| `"//trim(parameters(i)%name)//"` | "//kind_words(parameters(i))//" | "// &
-            trim(parameters(i)%unit)//" | "//default_words(parameters(i))//" | "// &
+         write (unit, "(a)") "| `"//trim(parameters(i)%name)//"` | "//kind_words(parameters(i))// &
+            " | "//trim(parameters(i)%unit)//" | "//default_words(parameters(i))//" | "// &
             allowed_words(parameters(i))//" | "//trim(parameters(i)%meaning)//" |"
       end do
    end subroutine describe_group

@@ -3,10 +3,10 @@
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
    use base_kinds, only: ik, lk, rk
-   use scene_parameters, only: groups, parameters, side_names
-   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, sheet_t
-   use scene_types, only: boundary_side_t, discretization_t, fluid_t, fracture_t, growth_t, initial_t
-   use scene_types, only: injection_t, material_t, name_length, output_t, probe_t, scene_t, time_t
+   use scene_parameters, only: groups, side_names
+   use scene_sheet, only: add_record, empty_record, parameter_index, record_t, sheet_t
+   use scene_types, only: boundary_side_t, discretization_t, fracture_t, growth_t, injection_t
+   use scene_types, only: material_t, name_length, probe_t, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -69,8 +69,9 @@ contains
       do i = 1, size(scene%injections)  ! the fractures may come after the wells
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          do n_fractures = 1, size(scene%fractures)
-            if (scene%fractures(n_fractures)%name == value%text) &
+            if (scene%fractures(n_fractures)%name == value%text) then
                scene%injections(i)%fracture = int(n_fractures, ik)
+            end if
          end do
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
@@ -104,7 +105,8 @@ contains
          case ("injection")
             do i = 1, size(source%injections)
                record = empty_record(group, 0_ik)
-               call set_text(record, "fracture", trim(source%fractures(source%injections(i)%fracture)%name))
+               call set_text(record, "fracture", &
+                             trim(source%fractures(source%injections(i)%fracture)%name))
                call exchange_injection(record, source%injections(i), .false.)
                call add_record(sheet, record)
             end do
@@ -159,6 +161,8 @@ contains
       case ("output")
          call exchange(record, "vtu", scene%output%vtu, reading)
          call exchange(record, "interval", scene%output%interval, reading)
+      case default  ! the repeated groups
+         return
       end select
    end subroutine exchange_single
 
@@ -242,7 +246,8 @@ contains
       logical, intent(in) :: reading
 
       if (groups(record%group)%name == "coarse") then
-         call exchange(record, "size_fracture", discretization%size_fracture, reading, nothing=0.0_rk)
+         call exchange(record, "size_fracture", discretization%size_fracture, reading, &
+                       nothing=0.0_rk)
          call exchange(record, "size_boundary", discretization%size_boundary, reading)
          call exchange(record, "newton_max", discretization%newton_max, reading)
          call exchange(record, "newton_tolerance", discretization%newton_tolerance, reading)
@@ -348,6 +353,7 @@ contains
    pure subroutine exchange_text(record, name, component, reading)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
+      ! allow(C072)
       character(len=*), intent(inout) :: component
       logical, intent(in) :: reading
       type(value_t) :: value
@@ -379,15 +385,15 @@ contains
 
       degrees = angle/radians
       do n_digits = 1, 17
-         write (style, '(a,i0,a)') "(es32.", n_digits - 1, "e3)"
+         write (style, "(a,i0,a)") "(es32.", n_digits - 1, "e3)"
          write (buffer, style) angle/radians
-         read (buffer, '(f32.0)') candidate
+         read (buffer, "(f32.0)") candidate
          if (same_bits(candidate*radians, angle)) then
             degrees = candidate
             return
          end if
       end do
-      do neighbour = -4, 4  ! rounding of the product hits the angle from a neighbour of the quotient
+      do neighbour = -4, 4  ! the product may round away from the angle
          candidate = angle/radians + real(neighbour, rk)*spacing(angle/radians)
          if (same_bits(candidate*radians, angle)) degrees = candidate
       end do

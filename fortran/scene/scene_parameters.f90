@@ -57,38 +57,50 @@ module scene_parameters
       character(len=160) :: meaning = ""
    end type parameter_t
 
+   ! The tables keep their own layout.
+   !&<
    type(group_t), parameter :: groups(*) = [ &
       group_t("scene", implied=.true., meaning="What the scene is called."), &
       group_t("domain", implied=.true., meaning="The body: a rectangle of unit thickness."), &
-      group_t("material", implied=.true., meaning="The rock, linear elastic and porous. The storage "// &
-              "coefficient that follows from it must be positive, and `biot` at least `porosity`. "// &
-              "Permeability is either isotropic or a positive definite tensor."), &
-      group_t("fluid", meaning="The fluid in pores and fractures. A scene without this group is "// &
+      group_t("material", implied=.true., &
+              meaning="The rock, linear elastic and porous. The storage coefficient that "// &
+              "follows from it must be positive, and `biot` at least `porosity`. Permeability "// &
+              "is either isotropic or a positive definite tensor."), &
+      group_t("fluid", &
+              meaning="The fluid in pores and fractures. A scene without this group is "// &
               "mechanics only, and can have neither injections nor pressures."), &
-      group_t("fracture", repeated=.true., meaning="A fracture: a polyline inside the domain. Its "// &
-              "ends may lie on the boundary; it must not run along the boundary."), &
-      group_t("side", repeated=.true., meaning="A side of the body. Per component either the "// &
-              "displacement or the total traction is prescribed; what is not given is free of "// &
-              "traction. The displacements must hold the body against translation and rotation."), &
-      group_t("injection", repeated=.true., meaning="A well: fluid injected into a fracture, spread "// &
-              "over the fracture as it is at the start, or into its cell nearest to a point. That "// &
-              "point must lie within `size_fracture` of the fracture."), &
-      group_t("initial", implied=.true., meaning="State before the first step."), &
+      group_t("fracture", repeated=.true., &
+              meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
+              "boundary; it must not run along the boundary."), &
+      group_t("side", repeated=.true., &
+              meaning="A side of the body. Per component either the displacement or the total "// &
+              "traction is prescribed; what is not given is free of traction. The "// &
+              "displacements must hold the body against translation and rotation."), &
+      group_t("injection", repeated=.true., &
+              meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
+              "is at the start, or into its cell nearest to a point. That point must lie "// &
+              "within `size_fracture` of the fracture."), &
+      group_t("initial", implied=.true., &
+              meaning="State before the first step. Only in scenes with &fluid."), &
       group_t("time", implied=.true., meaning="Time steps."), &
-      group_t("coarse", implied=.true., meaning="The coarse level: finite volumes on the whole body."), &
-      group_t("fine", implied=.true., meaning="The fine level: finite elements in a window around each "// &
-              "fracture tip. Used where growth or stress intensity factors are asked for."), &
+      group_t("coarse", implied=.true., &
+              meaning="The coarse level: finite volumes on the whole body."), &
+      group_t("fine", implied=.true., &
+              meaning="The fine level: finite elements in a window around each fracture tip. "// &
+              "Used where growth or stress intensity factors are asked for."), &
       group_t("growth", implied=.true., meaning="Fracture growth."), &
-      group_t("probe", repeated=.true., meaning="A point of the rock where the state is recorded in "// &
-              "probes.csv."), &
+      group_t("probe", repeated=.true., &
+              meaning="A point of the rock where the state is recorded in probes.csv."), &
       group_t("output", implied=.true., meaning="What is written, and how often.")]
 
    type(parameter_t), parameter :: body_parameters(*) = [ &
       parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
                   meaning="Short name; results go to `out/<name>` unless told otherwise"), &
-      parameter_t("scene", "title", kind_text, default="''", meaning="What the scene shows, in a line"), &
+      parameter_t("scene", "title", kind_text, default="''", &
+                  meaning="What the scene shows, in a line"), &
       parameter_t("domain", "x_min", unit="m", need=need_always, meaning="Left side"), &
-      parameter_t("domain", "x_max", unit="m", need=need_always, meaning="Right side, above x_min"), &
+      parameter_t("domain", "x_max", unit="m", need=need_always, &
+                  meaning="Right side, above x_min"), &
       parameter_t("domain", "y_min", unit="m", need=need_always, meaning="Bottom side"), &
       parameter_t("domain", "y_max", unit="m", need=need_always, meaning="Top side, above y_min"), &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
@@ -101,20 +113,25 @@ module scene_parameters
                   meaning="Porosity phi"), &
       parameter_t("material", "permeability", unit="m2", range=positive, &
                   absent="see permeability_xx", &
-                  meaning="Isotropic permeability; with a fluid either this or the tensor is required"), &
+                  meaning="Isotropic permeability; with a fluid either this or the tensor is "// &
+                  "required"), &
       parameter_t("material", "permeability_xx", unit="m2", range=positive, &
-                  absent="see permeability", meaning="Component xx of the permeability tensor"), &
+                  absent="see permeability", &
+                  meaning="Component xx of the permeability tensor"), &
       parameter_t("material", "permeability_yy", unit="m2", range=positive, &
-                  absent="see permeability", meaning="Component yy of the permeability tensor"), &
+                  absent="see permeability", &
+                  meaning="Component yy of the permeability tensor"), &
       parameter_t("material", "permeability_xy", unit="m2", absent="0", &
                   meaning="Component xy of the permeability tensor"), &
-      parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, absent="unlimited", &
-                  range=positive, meaning="Fracture toughness K_IC"), &
+      parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, &
+                  absent="unlimited", range=positive, &
+                  meaning="Fracture toughness K_IC"), &
       parameter_t("material", "plane", kind_choice, default="'strain'", choices="strain|stress", &
                   meaning="Plane strain or plane stress"), &
-      parameter_t("material", "storage", kind_choice, default="'thesis'", choices="thesis|textbook", &
-                  meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second term times "// &
-                  "(1 - alpha)"), &
+      parameter_t("material", "storage", kind_choice, default="'thesis'", &
+                  choices="thesis|textbook", &
+                  meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second "// &
+                  "term times (1 - alpha)"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
                   meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
@@ -140,7 +157,8 @@ module scene_parameters
                   meaning="Total traction in x: on the right side, compression is negative"), &
       parameter_t("side", "y_traction", unit="Pa", absent="0, or displacement is given", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
-      parameter_t("side", "pressure", unit="Pa", absent="no flow", meaning="Prescribed pore pressure")]
+      parameter_t("side", "pressure", unit="Pa", absent="no flow", &
+                  meaning="Prescribed pore pressure")]
 
    type(parameter_t), parameter :: process_parameters(*) = [ &
       parameter_t("injection", "fracture", kind_name, need=need_always, &
@@ -158,29 +176,32 @@ module scene_parameters
                   meaning="y of the point of injection, given together with x"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
                   choices="equilibrated|undrained", &
-                  meaning="After loading: that of the matrix around the fracture, or what the load "// &
-                  "produces in the fracture when nothing has flowed yet"), &
+                  meaning="After loading: that of the matrix around the fracture, or what the "// &
+                  "load produces in the fracture when nothing has flowed yet"), &
       parameter_t("initial", "pressure", unit="Pa", default="0.0", &
                   meaning="Pore pressure before the load acts"), &
-      parameter_t("time", "end", unit="s", need=need_always, range=positive, meaning="End of the run"), &
+      parameter_t("time", "end", unit="s", need=need_always, range=positive, &
+                  meaning="End of the run"), &
       parameter_t("time", "step", unit="s", need=need_always, range=positive, &
                   meaning="Regular time step, at most end"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
                   meaning="Share of the regular step that follows growth"), &
       parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
-                  meaning="Share of the regular step below which a cut step ends the run, at most "// &
-                  "growth_factor"), &
+                  meaning="Share of the regular step below which a cut step ends the run, at "// &
+                  "most growth_factor"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
-                  meaning="Cell size dH at the fractures, at most size_boundary and the length of each "// &
-                  "fracture"), &
+                  meaning="Cell size dH at the fractures, at most size_boundary and the "// &
+                  "length of each fracture"), &
       parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
-                  meaning="Cell size far from the fractures, at most the shorter edge of the domain"), &
+                  meaning="Cell size far from the fractures, at most the shorter edge of the "// &
+                  "domain"), &
       parameter_t("coarse", "newton_max", kind_integer, default="30", range=newton_range, &
                   meaning="Newton iterations before a step is cut"), &
       parameter_t("coarse", "newton_tolerance", default="1.0e-9", range=tolerance_range, &
                   meaning="Relative residual at which a step has converged"), &
-      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, absent="no fine level", &
+      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
+                  absent="no fine level", &
                   meaning="Edge l of the square window around a tip, more than 2 size_ratio dH"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &
                   meaning="Fine mesh size at the tip as a share eps_m of dH"), &
@@ -188,7 +209,8 @@ module scene_parameters
                   meaning="Quarter-point elements around a tip"), &
       parameter_t("fine", "face_condition", kind_choice, default="'contact'", &
                   choices="contact|jump|traction", &
-                  meaning="On old fracture faces: contact solved again, or the coarse jump or traction"), &
+                  meaning="On old fracture faces: contact solved again, or the coarse jump or "// &
+                  "traction"), &
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
@@ -202,7 +224,8 @@ module scene_parameters
                   meaning="Residual aperture of new fracture cells"), &
       parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
                   choices="conserved|prefilled", &
-                  meaning="Fluid of new cells: drawn from the connected cells, or appearing with them"), &
+                  meaning="Fluid of new cells: drawn from the connected cells, or appearing "// &
+                  "with them"), &
       parameter_t("growth", "stop_gain", unit="m", range=positive, absent="no limit", &
                   meaning="The run ends when any fracture end has grown by this"), &
       parameter_t("probe", "name", kind_name, need=need_always, &
@@ -212,6 +235,7 @@ module scene_parameters
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
       parameter_t("output", "interval", unit="s", default="0.0", range=at_least_zero, &
                   meaning="Time between written fields; 0: every regular step")]
+   !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]
 

@@ -4,7 +4,8 @@ module scene_parse
    use base_kinds, only: ik, lk
    use scene_parameters, only: groups, need_always, need_fluid, need_fracture, need_growth, &
                                need_tips, parameters
-   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, sheet_t
+   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
+                          refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
                            token_slash, token_text, token_word, tokenize
    use scene_types, only: name_length
@@ -15,7 +16,7 @@ module scene_parse
 
    public :: parse_scene
 
-   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; a guard against reading what is no scene
+   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene
    integer, parameter :: most_groups = 10000
 
 contains
@@ -72,7 +73,7 @@ contains
          read (unit, iostat=status, iomsg=reason) source
          if (status /= 0) call raise_error(error, "", path//": cannot be read: "//trim(reason))
       end if
-      close (unit, iostat=status)
+      close (unit)
    end subroutine load
 
    !> All groups of a file.
@@ -107,14 +108,12 @@ contains
          end associate
          call add_record(sheet, record)
          if (sheet%length > most_groups) then
-            call raise_error(error, "", sheet%blame(sheet%length, "", "is one more than the "// &
-                                                    integer_text(int(most_groups, ik))// &
-                                                    " groups that a scene may have"))
+            call refuse(error, sheet, sheet%length, "", "is one more than the "// &
+                        integer_text(int(most_groups, ik))//" groups that a scene may have")
             return
          else if (earlier > 0) then
-            call raise_error(error, "", sheet%blame(sheet%length, "", "is given twice, first on line "// &
-                                                    integer_text(sheet%records(earlier)%line)// &
-                                                    ", but must be given once"))
+            call refuse(error, sheet, sheet%length, "", "is given twice, first on line "// &
+                        integer_text(sheet%records(earlier)%line)//", but must be given once")
             return
          end if
          next = next + 1
@@ -137,8 +136,7 @@ contains
          do while (items(next)%kind /= token_slash)
             word = source(items(next)%first:items(next)%last)
             if (items(next)%kind == token_end .or. items(next)%kind == token_group) then
-               call raise_error(error, "", sheet%blame(sheet%length, "", &
-                                                       "is not ended by '/' as it must be"))
+               call refuse(error, sheet, sheet%length, "", "is not ended by '/' as it must be")
                return
             else if (.not. begins_value(items(next)%kind, items(next + 1)%kind)) then
                call raise_error(error, "", place(sheet, items(next)%line)//"&"// &
@@ -165,10 +163,10 @@ contains
                if (begins_value(items(next)%kind, items(next + 1)%kind)) exit
                next = next + 1
             end do
-            call read_value(parameters(item), source, items(first:next - 1), record%values(item), reason)
+            call read_value(parameters(item), source, items(first:next - 1), record%values(item), &
+                            reason)
             if (allocated(reason)) then
-               call raise_error(error, "", &
-                                sheet%blame(sheet%length, trim(parameters(item)%name), reason))
+               call refuse(error, sheet, sheet%length, trim(parameters(item)%name), reason)
                return
             end if
          end do
@@ -187,20 +185,21 @@ contains
    pure function unknown_name(group, word) result(message)
       integer, intent(in) :: group
       character(len=*), intent(in) :: word
-      character(len=:), allocatable :: message
-      integer :: i
+      character(len=:), allocatable :: message, likely
+      integer :: owner
 
-      message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)//", the nearest is "// &
-                nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
-      do i = 1, size(parameters)
-         if (parameters(i)%name == lower_case(word)) then
-            message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)// &
-                      ", which belongs to &"//trim(parameters(i)%group)//"; the nearest here is "// &
-                      nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
-            exit
-         end if
-      end do
-      if (index(word, "(") > 0) message = message//", whose values are given as one list without indices"
+      likely = nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
+      message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)
+      owner = findloc(parameters%name == lower_case(word), .true., dim=1)
+      if (owner > 0) then
+         message = message//", which belongs to &"//trim(parameters(owner)%group)// &
+                   "; the nearest here is "//likely
+      else
+         message = message//", the nearest is "//likely
+      end if
+      if (index(word, "(") > 0) then
+         message = message//", whose values are given as one list without indices"
+      end if
       message = message//" (see docs/input.md)"
    end function unknown_name
 
@@ -212,14 +211,16 @@ contains
       integer :: i, item, growth
 
       do i = 1, size(groups)
-         if (groups(i)%implied .and. .not. sheet%has(trim(groups(i)%name))) &
+         if (groups(i)%implied .and. .not. sheet%has(trim(groups(i)%name))) then
             call add_record(sheet, empty_record(i, 0_ik))
+         end if
       end do
       do i = 1, sheet%length
-            do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
-               if (.not. sheet%records(i)%values(item)%is_set) &
-                  call default_value(parameters(item), sheet%records(i)%values(item))
-            end do
+         do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
+            if (.not. sheet%records(i)%values(item)%is_set) then
+               call default_value(parameters(item), sheet%records(i)%values(item))
+            end if
+         end do
       end do
       call name_by_file(sheet, error)
       if (allocated(error)) return
@@ -245,12 +246,13 @@ contains
       dot = index(stem, ".", back=.true.)
       if (dot > 1) stem = stem(1:dot - 1)
       if (len(stem) > name_length .or. .not. is_identifier(stem)) then
-         call raise_error(error, "", sheet%blame(record, "name", "is missing, and '"//shortened(stem)// &
-                                                 "', as the file is called, cannot serve for it: a name "// &
-                                                 "has at most 64 letters, digits, '_', '-' and '.'"))
+         call refuse(error, sheet, record, "name", "is missing, and '"//shortened(stem)// &
+                     "', as the file is called, cannot serve for it: a name has at most 64 "// &
+                     "letters, digits, '_', '-' and '.'")
          return
       end if
-      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), "name")))
+      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), &
+                                                                       "name")))
          value%is_set = .true.
          value%text = stem
       end associate
@@ -285,9 +287,10 @@ contains
             if (.not. needed) cycle
             if (sheet%records(record)%line == 0) then
                call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
-                                " is missing, and with it "//described(item)//" (see docs/input.md)")
+                                " is missing, and with it "//described(item)// &
+                                " (see docs/input.md)")
             else
-               call raise_error(error, "", sheet%blame(record, "", trim(described(item))//", is missing"))
+               call refuse(error, sheet, record, "", trim(described(item))//", is missing")
             end if
             return
          end do

@@ -1,5 +1,6 @@
 !> A scene file as it stands: its groups in order, each with its values and lines.
 module scene_sheet
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use scene_parameters, only: groups, parameters
    use scene_values, only: value_t
@@ -8,7 +9,7 @@ module scene_sheet
    private
 
    public :: record_t, sheet_t
-   public :: add_record, empty_record, group_index, parameter_index
+   public :: add_record, empty_record, group_index, parameter_index, refuse
 
    character(len=*), parameter :: read_about_it = "(see docs/input.md)"
 
@@ -16,7 +17,7 @@ module scene_sheet
    type :: record_t
       integer :: group = 0  !< index into groups
       integer(ik) :: line = 0  !< of `&group`; 0: not in the file, all values are defaults
-      type(value_t), allocatable :: values(:)  !< indexed as parameters, from the group's first to its last
+      type(value_t), allocatable :: values(:)  !< the group's; indexed as scene_parameters
    contains
       procedure :: value => value_of
       procedure :: is_set
@@ -31,7 +32,6 @@ module scene_sheet
    contains
       procedure :: find
       procedure :: has
-      procedure :: blame
    end type sheet_t
 
 contains
@@ -52,7 +52,8 @@ contains
       character(len=*), intent(in) :: name
 
       do item = size(parameters), 1, -1
-         if (parameters(item)%group == groups(group)%name .and. parameters(item)%name == name) return
+         if (parameters(item)%group /= groups(group)%name) cycle
+         if (parameters(item)%name == name) return
       end do
       item = 0
    end function parameter_index
@@ -143,23 +144,36 @@ contains
       has = self%find(name) > 0
    end function has
 
-   !> A message about a parameter: file, line, group, name, what is wrong, where to read about it.
-   pure function blame(self, record, name, reason) result(message)
-      class(sheet_t), intent(in) :: self
-      integer, intent(in) :: record
+   !> Raise an error about a parameter of a group.
+   pure subroutine refuse(error, sheet, record, name, reason)
+      type(error_t), allocatable, intent(out) :: error
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record  !< index into sheet%records
       character(len=*), intent(in) :: name  !< empty: about the group
-      character(len=*), intent(in) :: reason
+      character(len=*), intent(in) :: reason  !< what is wrong and what would be right
+
+      call raise_error(error, "", blame(sheet, record, name, reason))
+   end subroutine refuse
+
+   !> A message about a parameter: file, line, group, name, what is wrong, where to read about it.
+   pure function blame(sheet, record, name, reason) result(message)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      character(len=*), intent(in) :: name, reason
       character(len=:), allocatable :: message
       integer(ik) :: line
+      integer :: item
 
-      line = self%records(record)%line
+      line = sheet%records(record)%line
       if (name /= "") then
-         if (self%records(record)%is_given(name)) &
-            line = self%records(record)%values(parameter_index(self%records(record)%group, name))%line
+         item = parameter_index(sheet%records(record)%group, name)
+         if (sheet%records(record)%values(item)%line > 0) then
+            line = sheet%records(record)%values(item)%line
+         end if
       end if
-      message = self%path
+      message = sheet%path
       if (line > 0) message = message//":"//integer_text(line)
-      message = message//": &"//trim(groups(self%records(record)%group)%name)//": "
+      message = message//": &"//trim(groups(sheet%records(record)%group)%name)//": "
       if (name /= "") message = message//name//" "
       message = message//reason//" "//read_about_it
    end function blame

@@ -1,7 +1,7 @@
 !> Cuts the text of a scene file into tokens that know their line.
 !>
-!> The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the end
-!> of the line, texts in single or double quotes in which a doubled quote stands for one.
+!> The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
+!> end of the line, texts in single or double quotes in which a doubled quote stands for one.
 module scene_tokens
    use base_kinds, only: ik
    use scene_words, only: integer_text
@@ -40,7 +40,7 @@ contains
    pure subroutine tokenize(source, tokens, fault, fault_line)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(out) :: tokens
-      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated means success
+      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
       integer(ik), intent(out) :: fault_line
       integer :: position, last
       integer(ik) :: line
@@ -85,8 +85,9 @@ contains
          case default
             last = position - 1 + word_length(source(position:))
             if (last < position) then
-               fault = "a character with code "//integer_text(ichar(source(position:position), ik)) &
-                       //" stands outside of quotes and comments, where only plain text may stand"
+               fault = "a character with code "//integer_text(ichar(source(position:position), &
+                                                                    ik))// &
+                       " stands outside of quotes and comments, where only plain text may stand"
                exit
             end if
             call append(tokens, token_t(token_word, position, last, line))

@@ -34,7 +34,7 @@ contains
       character(len=*), intent(in) :: source
       type(token_t), intent(in) :: tokens(:)  !< words, texts and commas
       type(value_t), intent(inout) :: value  !< its line stays as it is
-      character(len=:), allocatable, intent(out) :: reason  !< "is ... but must be ..."; unallocated: good
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       real(rk), allocatable :: numbers(:)
       character(len=:), allocatable :: word
       real(rk) :: number
@@ -135,7 +135,7 @@ contains
       star = index(item, "*")
       if (token_kind /= token_word .or. star < 2) return
       if (verify(item(1:star - 1), "0123456789") /= 0) return
-      read (item(1:star - 1), '(i20)', iostat=status) count
+      read (item(1:star - 1), "(i20)", iostat=status) count
       if (status /= 0) count = huge(0) - most_values  ! too large an integer: refused by its size
       count = min(count, huge(0) - most_values)
       if (count >= 1) then
@@ -193,7 +193,7 @@ contains
       good = is_decimal(word(1:mark - 1))
       if (mark <= len(word)) good = good .and. is_whole(word(mark + 1:))
       if (.not. good) return
-      write (style, '(a,i0,a)') "(f", len(word), ".0)"
+      write (style, "(a,i0,a)") "(f", len(word), ".0)"
       read (word, style, iostat=status) number
       good = status == 0 .and. abs(number) <= huge(number)
    end subroutine read_real
@@ -207,7 +207,7 @@ contains
 
       good = is_whole(word)
       if (.not. good) return
-      write (style, '(a,i0,a)') "(i", len(word), ")"
+      write (style, "(a,i0,a)") "(i", len(word), ")"
       read (word, style, iostat=status) whole
       good = status == 0
    end subroutine read_integer
@@ -237,14 +237,17 @@ contains
       select case (parameter%kind)
       case (kind_choice)
          if (index("|"//trim(parameter%choices)//"|", "|"//text//"|") == 0 &
-             .or. index(text, "|") > 0) &
+             .or. index(text, "|") > 0) then
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
+         end if
       case (kind_name)
-         if (len(text) > name_length .or. .not. is_identifier(text)) &
+         if (len(text) > name_length .or. .not. is_identifier(text)) then
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
+         end if
       case default
-         if (len(text) > text_length .or. .not. is_utf8(text)) &
+         if (len(text) > text_length .or. .not. is_utf8(text)) then
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
+         end if
       end select
    end subroutine check_text
 
@@ -268,8 +271,9 @@ contains
                  " characters in UTF-8"
       case default
          words = "a finite number like 4.0e10"
-         if (in_words(parameter%range, whole=.false.) /= "") &
+         if (in_words(parameter%range, whole=.false.) /= "") then
             words = "a finite number "//in_words(parameter%range, whole=.false.)
+         end if
          if (parameter%unit /= "-") words = words//" ["//trim(parameter%unit)//"]"
       end select
    end function wanted
@@ -329,8 +333,9 @@ contains
       if (point == 0) then
          is_decimal = is_whole(word)
       else
-         is_decimal = len(word(first:)) > 1 .and. verify(word(first:first + point - 2), "0123456789") == 0 &
-                      .and. verify(word(first + point:), "0123456789") == 0
+         is_decimal = len(word(first:)) > 1 .and. verify(word(first:first + point - 2), &
+                                                         "0123456789") == 0 .and. &
+                      verify(word(first + point:), "0123456789") == 0
       end if
    end function is_decimal
 

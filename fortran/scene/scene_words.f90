@@ -4,7 +4,8 @@ module scene_words
    implicit none(type, external)
    private
 
-   public :: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text, rounded_text
+   public :: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text, &
+             rounded_text
 
 contains
 
@@ -17,7 +18,7 @@ contains
       lower = word
       do i = 1, len(word)
          code = iachar(word(i:i))
-         if (code >= iachar('A') .and. code <= iachar('Z')) lower(i:i) = achar(code + 32)
+         if (code >= iachar("A") .and. code <= iachar("Z")) lower(i:i) = achar(code + 32)
       end do
    end function lower_case
 
@@ -36,8 +37,9 @@ contains
             cost = merge(0, 1, a(i:i) == b(j:j))
             d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, d(i - 1, j - 1) + cost)
             if (i > 1 .and. j > 1) then
-               if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) &
+               if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
                   d(i, j) = min(d(i, j), d(i - 2, j - 2) + 1)
+               end if
             end if
          end do
       end do
@@ -48,8 +50,8 @@ contains
    !> as part of a column name.
    pure logical function is_identifier(word)
       character(len=*), intent(in) :: word
-      character(len=*), parameter :: alphanumeric = &
-         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+      character(len=*), parameter :: alphanumeric = "abcdefghijklmnopqrstuvwxyz"// &
+                                     "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
 
       is_identifier = len(word) > 0 .and. verify(word, alphanumeric//"_-.") == 0
       if (is_identifier) is_identifier = index(alphanumeric, word(1:1)) > 0
@@ -91,7 +93,7 @@ contains
       character(len=:), allocatable :: text
       character(len=16) :: buffer
 
-      write (buffer, '(i0)') value
+      write (buffer, "(i0)") value
       text = trim(buffer)
    end function integer_text
 
@@ -106,9 +108,9 @@ contains
       integer :: n_digits, exponent, status, mark
 
       do n_digits = 1, 17  ! 17 digits determine any 64-bit number (IEEE 754)
-         write (style, '(a,i0,a)') "(es32.", n_digits - 1, "e3)"
+         write (style, "(a,i0,a)") "(es32.", n_digits - 1, "e3)"
          write (buffer, style) value
-         read (buffer, '(f32.0)', iostat=status) again
+         read (buffer, "(f32.0)", iostat=status) again
          if (status == 0 .and. transfer(again, 0_lk) == transfer(value, 0_lk)) exit
       end do
 
@@ -146,8 +148,8 @@ contains
       character(len=32) :: buffer
       real(rk) :: rounded
 
-      write (buffer, '(es32.3e3)') value
-      read (buffer, '(f32.0)') rounded
+      write (buffer, "(es32.3e3)") value
+      read (buffer, "(f32.0)") rounded
       text = real_text(rounded)
    end function rounded_text
 

@@ -31,7 +31,8 @@ contains
          call raise_error(error, "", trim(path)//": cannot be written: "//trim(reason))
          return
       end if
-      call put("! The scene as understood, every default written out: running it again gives the same run.")
+      call put("! The scene as understood, every default written out: running it again gives "// &
+               "the same run.")
       call put("! SI units; docs/input.md tells what each name means.")
       do i = 1, sheet%length
          call put("")
@@ -48,17 +49,21 @@ contains
       if (status == 0) then
          close (unit, iostat=status, iomsg=reason)
       else
-         close (unit, status="delete", iostat=i)
+         close (unit, status="delete")
       end if
-      if (status /= 0) call raise_error(error, "", trim(path)//": cannot be written: "//trim(reason))
+      if (status /= 0) call raise_error(error, "", trim(path)//": cannot be written: "// &
+                                        trim(reason))
 
    contains
 
       !> One line, unless a line before it failed.
       subroutine put(line)
          character(len=*), intent(in) :: line
+         integer :: status_now
 
-         if (status == 0) write (unit, '(a)', iostat=status, iomsg=reason) line
+         if (status /= 0) return
+         write (unit, "(a)", iostat=status_now, iomsg=reason) line
+         if (status_now /= 0) status = status_now
       end subroutine put
 
       !> `name = value`, with the unit as a comment.

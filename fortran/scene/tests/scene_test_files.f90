@@ -31,7 +31,7 @@ contains
 
       open (newunit=unit, file=path, action="write", status="replace")
       do i = 1, size(lines)
-         write (unit, '(a)') trim(lines(i))
+         write (unit, "(a)") trim(lines(i))
       end do
       close (unit)
    end subroutine put_lines
@@ -77,8 +77,10 @@ contains
       if (size(a%fractures) /= size(b%fractures)) return
       if (size(a%injections) /= size(b%injections)) return
       if (size(a%probes) /= size(b%probes)) return
-      if (.not. all([(same_fracture(a%fractures(i), b%fractures(i)), i=1, size(a%fractures))])) return
-      if (.not. all([(same_injection(a%injections(i), b%injections(i)), i=1, size(a%injections))])) return
+      if (.not. all([(same_fracture(a%fractures(i), b%fractures(i)), i=1, &
+                      size(a%fractures))])) return
+      if (.not. all([(same_injection(a%injections(i), b%injections(i)), i=1, &
+                      size(a%injections))])) return
       if (.not. all([(same_probe(a%probes(i), b%probes(i)), i=1, size(a%probes))])) return
       do i = 1, 4
          if (any(a%sides(i)%displacement_given .neqv. b%sides(i)%displacement_given)) return
@@ -89,7 +91,8 @@ contains
       if (a%initial%fracture_pressure /= b%initial%fracture_pressure) return
       if (.not. same(a%initial%pressure, b%initial%pressure)) return
       if (.not. same([a%time%end, a%time%step, a%time%growth_factor, a%time%smallest_factor], &
-                     [b%time%end, b%time%step, b%time%growth_factor, b%time%smallest_factor])) return
+                     [b%time%end, b%time%step, b%time%growth_factor, &
+                      b%time%smallest_factor])) return
       if (.not. same_levels(a, b)) return
       if (a%output%vtu .neqv. b%output%vtu) return
       if (.not. same(a%output%interval, b%output%interval)) return
@@ -99,23 +102,29 @@ contains
    pure logical function same_levels(a, b)
       type(scene_t), intent(in) :: a, b
 
-      associate (d => a%discretization, e => b%discretization, g => a%growth, h => b%growth)
-         same_levels = same([d%size_fracture, d%size_boundary, d%window, d%fine_ratio, d%newton_tolerance], &
-                            [e%size_fracture, e%size_boundary, e%window, e%fine_ratio, e%newton_tolerance]) &
-                       .and. d%rosette_sectors == e%rosette_sectors .and. d%newton_max == e%newton_max &
-                       .and. d%face_condition == e%face_condition &
-                       .and. (g%enabled .eqv. h%enabled) .and. (g%intensities .eqv. h%intensities) &
-                       .and. same([g%increment, g%exponent, g%threshold, g%new_aperture, g%stop_gain], &
-                                  [h%increment, h%exponent, h%threshold, h%new_aperture, h%stop_gain]) &
-                       .and. g%new_volume == h%new_volume
+      same_levels = .false.
+      associate (d => a%discretization, e => b%discretization)
+         if (.not. same([d%size_fracture, d%size_boundary, d%window, d%fine_ratio], &
+                        [e%size_fracture, e%size_boundary, e%window, e%fine_ratio])) return
+         if (.not. same(d%newton_tolerance, e%newton_tolerance)) return
+         if (d%rosette_sectors /= e%rosette_sectors .or. d%newton_max /= e%newton_max) return
+         if (d%face_condition /= e%face_condition) return
       end associate
+      associate (g => a%growth, h => b%growth)
+         if ((g%enabled .neqv. h%enabled) .or. (g%intensities .neqv. h%intensities)) return
+         if (.not. same([g%increment, g%exponent, g%threshold, g%new_aperture, g%stop_gain], &
+                        [h%increment, h%exponent, h%threshold, h%new_aperture, h%stop_gain])) return
+         if (g%new_volume /= h%new_volume) return
+      end associate
+      same_levels = .true.
    end function same_levels
 
    pure logical function same_fracture(a, b)
       type(fracture_t), intent(in) :: a, b
 
-      same_fracture = a%name == b%name .and. same(a%x, b%x) .and. same(a%y, b%y) .and. &
-                      same([a%friction, a%dilation, a%aperture], [b%friction, b%dilation, b%aperture])
+      same_fracture = a%name == b%name .and. same(a%x, b%x) .and. same(a%y, b%y)
+      same_fracture = same_fracture .and. same([a%friction, a%dilation, a%aperture], &
+                                               [b%friction, b%dilation, b%aperture])
    end function same_fracture
 
    pure logical function same_injection(a, b)

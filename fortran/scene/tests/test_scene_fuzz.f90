@@ -29,8 +29,8 @@ contains
       integer :: unit
       integer(lk) :: n_bytes
 
-      open (newunit=unit, file=source_path("inputs/paper_c/onset.nml"), action="read", status="old", &
-            access="stream", form="unformatted")
+      open (newunit=unit, file=source_path("inputs/paper_c/onset.nml"), action="read", &
+            status="old", access="stream", form="unformatted")
       inquire (unit=unit, size=n_bytes)
       allocate (character(len=n_bytes) :: good)
       read (unit) good
@@ -53,12 +53,13 @@ contains
    !> Cut behind the last required group, at blanks or in a comment, a file is complete.
    logical function complete_at(length)
       integer, intent(in) :: length
-      integer :: last_group
+      integer :: last_group, last_size
 
       last_group = index(good, "&fine") - 1
-      complete_at = length > index(good, "size_boundary") .and. length <= last_group
-      if (complete_at) complete_at = index(good(1:length), "/", back=.true.) > index(good, "size_boundary")
-      if (length > last_group) complete_at = length >= last_group + index(good(last_group + 1:), "/")
+      last_size = index(good, "size_boundary")
+      complete_at = length > last_size .and. length <= last_group
+      if (complete_at) complete_at = index(good(1:length), "/", back=.true.) > last_size
+      if (length > last_group) complete_at = index(good(last_group + 1:length), "/") > 0
    end function complete_at
 
    subroutine change_bytes()
@@ -81,7 +82,8 @@ contains
          end do
          if (settled(bytes)) n_survived = n_survived + 1
       end do
-      call checks%is_true(n_survived == 1500, "files with changed bytes are refused, or read and written to the same scene")
+      call checks%is_true(n_survived == 1500, "files with changed bytes are refused, or read "// &
+                          "and written to the same scene")
    end subroutine change_bytes
 
    subroutine random_bytes()
@@ -100,10 +102,13 @@ contains
 
    !> Pieces of the syntax in any order reach deeper than bytes do.
    subroutine random_pieces()
+      character(len=1), parameter :: quote = achar(39)
+      !&<
       character(len=16), parameter :: pieces(*) = [character(len=16) :: &
-                                                   "&material", "&fracture", "&side", "&", "/", "=", ",", "'", &
-                                                   "''", "'left'", "name", "x", "y =", "young =", "1*", "3*1.0", &
-                                                   "*", "1e400", "-", ".", "NaN", "T", "! remark", "x(1)", "0*1"]
+         "&material", "&fracture", "&side", "&", "/", "=", ",", quote, quote//quote, &
+         quote//"left"//quote, "name", "x", "y =", "young =", "1*", "3*1.0", "*", "1e400", &
+         "-", ".", "NaN", "T", "! remark", "x(1)", "0*1"]
+      !&>
       character(len=:), allocatable :: text
       integer :: i, k, n_refused
 
@@ -122,7 +127,8 @@ contains
    subroutine large_files()
       call checks%is_true(refused(repeat("&probe/", 100000)), "a great many groups")
       call checks%is_true(refused("&"//repeat("a", 200000)), "a very long name")
-      call checks%is_true(refused("&scene title = '"//repeat("a", 200000)//"' /"), "a very long text")
+      call checks%is_true(refused("&scene title = '"//repeat("a", 200000)//"' /"), &
+                          "a very long text")
       call checks%is_true(refused("&fracture x = "//repeat("1,", 150000)//" /"), "a very long list")
       call checks%is_true(refused(repeat(" ", 4000001)), "too large a file")
       call checks%is_true(refused(repeat("/", 100000)), "slashes")

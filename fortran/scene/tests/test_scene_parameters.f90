@@ -2,8 +2,8 @@
 program test_scene_parameters
    use base_checks, only: checks_t
    use scene_intervals, only: in_words
-   use scene_parameters, only: groups, kind_choice, kind_logical, kind_name, kind_text, need_always, &
-                               need_never, parameter_t, parameters
+   use scene_parameters, only: groups, kind_choice, kind_logical, kind_name, kind_text, &
+                               need_always, need_never, parameter_t, parameters
    use scene_values, only: default_value, read_value, value_t
    use scene_tokens, only: token_list_t, tokenize
    use base_kinds, only: ik
@@ -18,7 +18,8 @@ program test_scene_parameters
       call checks%is_true(all(parameters(first:last)%group == groups(i)%name), &
                           trim(groups(i)%name)//" has its parameters in one piece")
       call checks%is_true(groups(i)%meaning /= "", trim(groups(i)%name)//" has a meaning")
-      call checks%is_true(count(groups%name == groups(i)%name) == 1, trim(groups(i)%name)//" is one group")
+      call checks%is_true(count(groups%name == groups(i)%name) == 1, trim(groups(i)%name)// &
+                          " is one group")
    end do
    do i = 1, size(parameters)
       call check_parameter(parameters(i))
@@ -36,18 +37,25 @@ contains
 
       name = trim(item%group)//" "//trim(item%name)
       call checks%is_true(any(groups%name == item%group), name//" belongs to a group")
-      call checks%is_true(count(parameters%group == item%group .and. parameters%name == item%name) == 1, &
-                          name//" is one parameter")
+      call checks%is_true(count(parameters%group == item%group .and. &
+                                parameters%name == item%name) == 1, name//" is one parameter")
       call checks%is_true(item%meaning /= "", name//" has a meaning")
-      call checks%is_true(len_trim(item%meaning) < len(item%meaning), name//": its meaning is not cut off")
-      call checks%is_true((item%kind == kind_choice) .eqv. (item%choices /= ""), name//" and its choices")
-      if (any(item%kind == [kind_choice, kind_logical, kind_name, kind_text])) &
-         call checks%is_true(item%unit == "-" .and. in_words(item%range, whole=.false.) == "", name//" is no number")
-      if (item%need == need_always) &
+      call checks%is_true(len_trim(item%meaning) < len(item%meaning), name// &
+                          ": its meaning is not cut off")
+      call checks%is_true((item%kind == kind_choice) .eqv. (item%choices /= ""), name// &
+                          " and its choices")
+      if (any(item%kind == [kind_choice, kind_logical, kind_name, &
+                            kind_text])) call checks%is_true(item%unit == "-" .and. &
+                                                             in_words(item%range, &
+                                                                      whole=.false.) == "", name// &
+                                                             " is no number")
+      if (item%need == need_always) then
          call checks%is_true(item%default == "" .and. item%absent == "", name//" is required")
-      if (item%need == need_never) &
+      end if
+      if (item%need == need_never) then
          call checks%is_true((item%default == "") .neqv. (item%absent == ""), &
                              name//" has a default or tells what its absence means")
+      end if
       if (item%default == "") return
       call tokenize(trim(item%default), tokens, fault, fault_line)
       call read_value(item, item%default, tokens%items(1:tokens%length - 1), value, reason)

@@ -58,9 +58,11 @@ contains
 
       call read_word(kind_reals, "1.0, 2*3.0 4", value, reason)
       call checks%is_true(size(value%reals) == 4, "length of a list")
-      call checks%is_true(all(abs(value%reals - [1.0_rk, 3.0_rk, 3.0_rk, 4.0_rk]) <= 0.0_rk), "a list")
+      call checks%is_true(all(abs(value%reals - [1.0_rk, 3.0_rk, 3.0_rk, 4.0_rk]) <= 0.0_rk), &
+                          "a list")
       call read_word(kind_reals, "50*1.0 50*2.0", value, reason)
-      call checks%is_close(sum(value%reals), 150.0_rk, 0.0_rk, "a list longer than its first buffer")
+      call checks%is_close(sum(value%reals), 150.0_rk, 0.0_rk, &
+                           "a list longer than its first buffer")
       call refuses(kind_reals, "1.0,,2.0", "lacks a value before a comma")
       call refuses(kind_reals, "1.0 two", "is two but must be a finite number")
       call refuses(kind_reals, "999999999999*0.0", "has more than 100000 values")
@@ -92,15 +94,17 @@ contains
    end subroutine check_others
 
    subroutine check_intervals()
-      call checks%is_true(holds(share, 1.0_rk) .and. .not. holds(share, 0.0_rk), "ends of an interval")
+      call checks%is_true(holds(share, 1.0_rk) .and. .not. holds(share, 0.0_rk), &
+                          "ends of an interval")
       call checks%is_true(.not. holds(poisson_range, 0.5_rk), "Poisson's ratio stays below a half")
       call checks%is_true(.not. holds(interval_t(), ieee_value(0.0_rk, ieee_quiet_nan)), &
                           "NaN is in no interval")
-      call checks%is_true(in_words(positive, whole=.false.) == "greater than 0.0", "an open interval in words")
-      call checks%is_true(in_words(poisson_range, whole=.false.) == "greater than -1.0 and less than 0.5", &
-                          "a bounded interval in words")
-      call checks%is_true(in_words(interval_t(1.0_rk, 9.0_rk), whole=.true.) == "at least 1 and at most 9", &
-                          "an interval of whole numbers")
+      call checks%is_true(in_words(positive, whole=.false.) == "greater than 0.0", &
+                          "an open interval in words")
+      call checks%is_true(in_words(poisson_range, whole=.false.) == "greater than -1.0 and "// &
+                          "less than 0.5", "a bounded interval in words")
+      call checks%is_true(in_words(interval_t(1.0_rk, 9.0_rk), whole=.true.) == "at least 1 "// &
+                          "and at most 9", "an interval of whole numbers")
    end subroutine check_intervals
 
    subroutine accepts_real(word, expected)

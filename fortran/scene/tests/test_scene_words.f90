@@ -2,8 +2,8 @@
 program test_scene_words
    use base_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
-   use scene_words, only: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text, &
-                          rounded_text
+   use scene_words, only: edit_distance, integer_text, is_identifier, is_utf8, lower_case, &
+                          real_text, rounded_text
    implicit none(type, external)
    type(checks_t) :: checks
 

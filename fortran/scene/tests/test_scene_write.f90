@@ -9,7 +9,8 @@ program test_scene_write
    use scene_types, only: scene_t
    use scene_write, only: write_scene
    implicit none(type, external)
-   character(len=*), parameter :: path = "test_scene_write.nml", again = "test_scene_write_again.nml"
+   character(len=*), parameter :: path = "test_scene_write.nml", &
+                                  again = "test_scene_write_again.nml"
    type(checks_t) :: checks
    type(scene_t) :: scene
    type(error_t), allocatable :: error
@@ -22,7 +23,8 @@ program test_scene_write
    call check_angles()
    call check_completeness()
    call write_scene("no_such_folder/scene.nml", scene, error)
-   call checks%fails_with(error, "no_such_folder/scene.nml: cannot be written", "a folder that is missing")
+   call checks%fails_with(error, "no_such_folder/scene.nml: cannot be written", &
+                          "a folder that is missing")
    call delete_file(path)
    call delete_file(again)
    call checks%finish()
@@ -45,21 +47,25 @@ contains
       call checks%is_true(same_scene(first, second), name//" comes back the same")
    end subroutine round_trip
 
-   !> Numbers that short decimals cannot hold, quotes in texts, long polylines, a scene without fluid.
+   !> Numbers that no short decimal holds, quotes in texts, long polylines, a scene without fluid.
    subroutine check_odd_numbers()
-      call put_lines(path, [character(len=100) :: &
-                            "&scene name='odd' title='a ''quoted'' ""title"" &x = 1 / ! end' /", &
-                            "&domain x_min=-0.0 x_max=3.3333333333333335 y_min=-1e-3 y_max=1.0000000000000002 /", &
-                            "&material young=1.2345678901234567e10 poisson=0.1 biot=0.7000000000000001", &
-                            "  porosity=0.30000000000000004 permeability_xx=1.1e-19 permeability_yy=3.3e-20", &
+      call put_lines(path, [character(len=100) :: "&scene name='odd' title='a ''quoted'' "// &
+                            """title"" &x = 1 / ! end' /", &
+                            "&domain x_min=-0.0 x_max=3.3333333333333335 y_min=-1e-3 "// &
+                            "y_max=1.0000000000000002 /", &
+                            "&material young=1.2345678901234567e10 poisson=0.1 "// &
+                            "biot=0.7000000000000001", "  porosity=0.30000000000000004 "// &
+                            "permeability_xx=1.1e-19 permeability_yy=3.3e-20", &
                             "  permeability_xy=-1.7e-20 toughness=1.7976931348623155e308 /", &
                             "&fluid compressibility=4.4999999999999999e-10 viscosity=4.9e-324 /", &
-                            "&fracture name='long' x=0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1.1 1.2 1.3", &
-                            "  y=6*0.1 6*0.30000000000000004 friction=0.57735026918962573", &
-                            "  dilation_deg=1.2345678901234567 aperture=1.0000000000000001e-5 /", &
+                            "&fracture name='long' x=0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1.1 "// &
+                            "1.2 1.3", "  y=6*0.1 6*0.30000000000000004 "// &
+                            "friction=0.57735026918962573", "  dilation_deg=1.2345678901234567 "// &
+                            "aperture=1.0000000000000001e-5 /", &
                             "&side name='right' x_displacement=-0.0 pressure=0.1 /", &
                             "&side name='top' y_displacement=1e-300 x_traction=-0.0 /", &
-                            "&injection fracture='long' rate=-1e-9 x=0.1 y=0.1 end=3.0000000000000004 /", &
+                            "&injection fracture='long' rate=-1e-9 x=0.1 y=0.1 "// &
+                            "end=3.0000000000000004 /", &
                             "&time end=7.7 step=0.7 smallest_factor=1e-9 /", &
                             "&coarse size_fracture=0.05 size_boundary=0.1 /", &
                             "&probe name='A' x=0.123456789012345678 y=0.1 /"])
@@ -79,12 +85,13 @@ contains
 
       n_same = 0
       do i = 1, 200
-         write (angle, '(f20.16)') 45.0_rk*(sin(real(i, rk)))**2
+         write (angle, "(f20.16)") 45.0_rk*(sin(real(i, rk)))**2
          call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                                "&material young=1e9 poisson=0.2 /", &
                                "&side name='left' x_displacement=0 y_displacement=0 /", &
-                               "&fracture name='f' x=0.4 0.6 y=2*0.5 friction=0 dilation_deg="//trim(angle), &
-                               "/ &time end=1 step=1 /", "&coarse size_boundary=0.2 size_fracture=0.1 /"])
+                               "&fracture name='f' x=0.4 0.6 y=2*0.5 friction=0 dilation_deg="// &
+                               trim(angle), "/ &time end=1 step=1 /", &
+                               "&coarse size_boundary=0.2 size_fracture=0.1 /"])
          call read_scene(path, first, error)
          if (.not. allocated(error)) call write_scene(again, first, error)
          if (.not. allocated(error)) call read_scene(again, second, error)
@@ -111,7 +118,7 @@ contains
       group = ""
       open (newunit=unit, file=path, action="read", status="old")
       do
-         read (unit, '(a)', iostat=status) line
+         read (unit, "(a)", iostat=status) line
          if (status /= 0) exit
          if (line(1:1) == "&") group = line(2:)
          do i = 1, size(parameters)
@@ -122,7 +129,8 @@ contains
       end do
       close (unit)
       do i = 1, size(parameters)
-         call checks%is_true(seen(i), trim(parameters(i)%group)//" "//trim(parameters(i)%name)//" is written")
+         call checks%is_true(seen(i), trim(parameters(i)%group)//" "//trim(parameters(i)%name)// &
+                             " is written")
       end do
    end subroutine check_completeness
 
