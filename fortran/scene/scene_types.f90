@@ -27,7 +27,7 @@ module scene_types
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       logical :: plane_stress = .false.
-      character(len=name_length) :: storage = "thesis"  !< "thesis": (alpha-phi)/K_dr; "textbook": times (1-alpha)
+      character(len=name_length) :: storage = "thesis"  !< (alpha - phi)/K_dr; or "textbook"
    end type material_t
 
    !> Pore and fracture fluid.
@@ -45,7 +45,7 @@ module scene_types
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
    end type fracture_t
 
-   !> One side of the body. A component of displacement or of total traction is prescribed, not both.
+   !> One side of the body. Per component either displacement or total traction is prescribed.
    type :: boundary_side_t
       logical :: displacement_given(2) = .false.  !< x, y: else traction is given
       real(rk) :: displacement(2) = 0.0_rk  !< [m]
@@ -57,7 +57,8 @@ module scene_types
    !> A well: fluid injected into a fracture.
    type :: injection_t
       integer(ik) :: fracture = 0  !< index into scene%fractures
-      logical :: at_point = .false.  !< into the fracture cell nearest to (x, y), else spread over the fracture as it is at the start
+      !> Into the cell nearest to (x, y), else spread over the fracture as it is at the start.
+      logical :: at_point = .false.
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
       real(rk) :: rate = 0.0_rk  !< Q [m2/s] per metre of thickness, over the whole well
       real(rk) :: start = 0.0_rk, end = huge(1.0_rk)  !< [s]
@@ -65,7 +66,7 @@ module scene_types
 
    !> State before the first step.
    type :: initial_t
-      character(len=name_length) :: fracture_pressure = "equilibrated"  !< "equilibrated" or "undrained"
+      character(len=name_length) :: fracture_pressure = "equilibrated"  !< or "undrained"
       real(rk) :: pressure = 0.0_rk  !< pore pressure before the load acts [Pa]
    end type initial_t
 
@@ -74,7 +75,7 @@ module scene_types
       real(rk) :: end = 0.0_rk  !< [s]
       real(rk) :: step = 0.0_rk  !< regular step [s]
       real(rk) :: growth_factor = 0.01_rk  !< steps after growth are this much shorter [-]
-      real(rk) :: smallest_factor = 1.0e-6_rk  !< a step cut below this share of the regular one ends the run [-]
+      real(rk) :: smallest_factor = 1.0e-6_rk  !< of the regular step; below it a run ends [-]
    end type time_t
 
    !> Meshes and solvers of both levels.
@@ -84,7 +85,7 @@ module scene_types
       real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window [m]
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
       integer(ik) :: rosette_sectors = 12  !< elements around a tip
-      character(len=name_length) :: face_condition = "contact"  !< "contact", "jump" or "traction" on old faces
+      character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
    end type discretization_t
@@ -98,7 +99,7 @@ module scene_types
       real(rk) :: threshold = 0.5_rk  !< eps_p: growth is handed over at eps_p*dH [-]
       real(rk) :: new_aperture = 1.0e-5_rk  !< residual aperture of new fracture cells [m]
       character(len=name_length) :: new_volume = "conserved"  !< "conserved" or "prefilled"
-      real(rk) :: stop_gain = huge(1.0_rk)  !< the run ends when any fracture end has grown by this [m]
+      real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which a run ends [m]
    end type growth_t
 
    !> A point where the matrix state is recorded.
