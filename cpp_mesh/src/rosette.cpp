@@ -14,7 +14,7 @@ constexpr double largest_turn = 75.0 * pi / 180.0;
 // Room for the ring beside its own last segment. The crack may be a ring radius long, else the rest
 // of the segment must hold a cell of about the same length.
 double room_on_segment(double wanted, double segment_length, bool kink_is_gentle) {
-    if (kink_is_gentle && segment_length <= wanted)
+    if (kink_is_gentle && segment_length <= wanted * (1.0 + 1e-9))
         return segment_length;
     return std::min(wanted, 0.5 * segment_length);
 }

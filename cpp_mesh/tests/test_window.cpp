@@ -1,0 +1,146 @@
+// Windows: fractures cut by the edges, rosettes around the tips.
+#include "api_mesh.hpp"
+#include "checks.hpp"
+
+namespace {
+
+cm_spec window(double x_min, double x_max, double y_min, double y_max, double size, double radius) {
+    return {x_min, x_max, y_min, y_max, size, 4.0 * size, 1, radius > 0.0 ? 12 : 0, radius};
+}
+
+void cut_fractures(Checks& checks) {
+    // The first passes through, the second ends inside, the third leaves and returns, the fourth is
+    // outside.
+    TestNetwork network({{{-1.0, 0.3}, {2.0, 0.3}},
+                         {{0.5, 0.6}, {0.5, 2.0}},
+                         {{0.2, 0.9}, {-0.5, 0.9}, {-0.5, 0.6}, {0.2, 0.6}},
+                         {{1.2, 0.0}, {1.2, 1.0}}});
+    network.s_start = {10.0, 0.0, -1.0, 0.0};
+    ApiMesh mesh;
+    checks.is_true(mesh.create(window(0.0, 1.0, 0.0, 1.0, 0.05, 0.0), network), mesh.error);
+    checks.is_close(mesh.total_area(), 1.0, 1e-12, "cut: area");
+    checks.is_equal(mesh.euler(), 2, "cut: two parts");
+    checks.is_equal(mesh.side_faults(), 0, "cut: sides");
+    checks.is_equal(mesh.counts.n_tips, 3, "cut: tips");
+    checks.is_close(mesh.fracture_length(0), 1.0, 1e-13, "cut: length of the first");
+    checks.is_close(mesh.fracture_length(1), 0.4, 1e-13, "cut: length of the second");
+    checks.is_close(mesh.fracture_length(2), 0.4, 1e-13, "cut: length of the third");
+    checks.is_close(mesh.fracture_length(3), 0.0, 0.0, "cut: length of the fourth");
+    checks.is_equal(mesh.kind({0.0, 0.3}), 2, "cut: end on the left edge");
+    checks.is_equal(mesh.kind({0.5, 1.0}), 2, "cut: end on the top edge");
+    checks.is_equal(mesh.kind({0.0, 0.9}), 2, "cut: the third leaves");
+    checks.is_equal(mesh.kind({0.0, 0.6}), 2, "cut: the third returns");
+    for (int i = 0; i < mesh.counts.n_fracture_cells; ++i) {
+        // Arc lengths belong to the whole polyline.
+        const double s = mesh.fcell_s[2 * i];
+        const Point p = mesh.point(mesh.fcell_points[2 * i]);
+        const double expected = mesh.fcell_fracture[i] == 0   ? 10.0 + p[0] + 1.0
+                                : mesh.fcell_fracture[i] == 1 ? p[1] - 0.6
+                                : p[1] > 0.75                 ? -1.0 + 0.2 - p[0]
+                                                              : -1.0 + 1.0 + 0.5 + p[0];
+        checks.is_close(s, expected, 1e-13, "cut: arc length");
+    }
+}
+
+void check_rosette(Checks& checks, const ApiMesh& mesh, int t, double radius,
+                   const std::string& name) {
+    const int tip = mesh.tip_node[t];
+    const Point centre = mesh.node(tip);
+    checks.is_close(mesh.tip_radius[t], radius, 1e-12, name + ": radius");
+    int n_sectors = 0;
+    std::vector<double> angles;
+    for (int c = 0; c < mesh.counts.n_cells; ++c) {
+        bool has_tip = false;
+        for (int k = 0; k < 3; ++k)
+            has_tip = has_tip || mesh.cell_nodes[3 * c + k] == tip;
+        if (!has_tip)
+            continue;
+        ++n_sectors;
+        for (int k = 0; k < 3; ++k) {
+            const int n = mesh.cell_nodes[3 * c + k];
+            if (n == tip)
+                continue;
+            const double x = mesh.node(n)[0] - centre[0], y = mesh.node(n)[1] - centre[1];
+            checks.is_close(std::hypot(x, y), radius, 1e-10 * radius, name + ": equal spokes");
+            const double dx = mesh.tip_direction[2 * t], dy = mesh.tip_direction[2 * t + 1];
+            // In units of a sector, from straight ahead.
+            const double angle = std::atan2(dx * y - dy * x, dx * x + dy * y) * 12.0 / (2.0 * pi);
+            checks.is_close(angle, std::round(angle), 1e-9, name + ": equal angles");
+        }
+    }
+    checks.is_equal(n_sectors, 12, name + ": sectors");
+    // The crack is the spoke behind the tip: two nodes there, one for each side.
+    checks.is_equal(mesh.copies({centre[0] - radius * mesh.tip_direction[2 * t],
+                                 centre[1] - radius * mesh.tip_direction[2 * t + 1]}),
+                    2, name + ": two nodes on the crack");
+}
+
+void rosettes(Checks& checks) {
+    const double d = 0.05 * std::sqrt(0.5);
+    ApiMesh mesh;
+    checks.is_true(mesh.create(window(0.75, 1.25, 0.75, 1.25, 0.005, 0.005),
+                               TestNetwork({{{1.0 - d, 1.0 - d}, {1.0 + d, 1.0 + d}}})),
+                   mesh.error);
+    checks.is_equal(mesh.counts.n_tips, 2, "rosettes: tips");
+    for (int t = 0; t < mesh.counts.n_tips; ++t)
+        check_rosette(checks, mesh, t, 0.005, "rosettes");
+    checks.is_close(mesh.total_area(), 0.25, 0.25e-12, "rosettes: area");
+    checks.is_equal(mesh.euler(), 0, "rosettes: Euler characteristic");
+    checks.is_equal(mesh.side_faults(), 0, "rosettes: sides");
+    checks.is_close(mesh.fracture_length(0), 0.1, 1e-13, "rosettes: length");
+    checks.is_true(mesh.smallest_angle() > 20.0,
+                   "rosettes: shape, " + std::to_string(mesh.smallest_angle()));
+}
+
+// Wings at 70 degrees, one radius long: the ring touches the kink.
+void short_wings(Checks& checks) {
+    const double wing = 0.01, angle = 70.0 * pi / 180.0;
+    const Polyline line = {{0.4 - wing * std::cos(angle), 0.5 + wing * std::sin(angle)},
+                           {0.4, 0.5},
+                           {0.6, 0.5},
+                           {0.6 + wing * std::cos(angle), 0.5 - wing * std::sin(angle)}};
+    for (const double radius : {0.01, 0.02}) {
+        ApiMesh mesh;
+        checks.is_true(mesh.create(window(0.0, 1.0, 0.0, 1.0, 0.01, radius), TestNetwork({line})),
+                       mesh.error);
+        for (int t = 0; t < mesh.counts.n_tips; ++t)
+            check_rosette(checks, mesh, t, wing, "short wings");
+        checks.is_true(mesh.smallest_angle() > 15.0,
+                       "short wings: shape, " + std::to_string(mesh.smallest_angle()));
+    }
+}
+
+// Something near makes the ring smaller: another fracture, another tip, the edge, the fracture's
+// own length.
+void reduced_rosettes(Checks& checks) {
+    const auto first_radius = [&](const std::vector<Polyline>& fractures) {
+        ApiMesh mesh;
+        checks.is_true(mesh.create(window(0.0, 1.0, 0.0, 1.0, 0.02, 0.1), TestNetwork(fractures)),
+                       mesh.error);
+        check_rosette(checks, mesh, 0, mesh.tip_radius[0], "reduced");
+        checks.is_close(mesh.total_area(), 1.0, 1e-12, "reduced: area");
+        return mesh.tip_radius[0];
+    };
+    checks.is_close(first_radius({{{0.5, 0.5}, {0.9, 0.5}}}), 0.1, 0.0, "free: as wanted");
+    checks.is_close(first_radius({{{0.5, 0.5}, {0.9, 0.5}}, {{0.44, 0.2}, {0.44, 0.8}}}), 0.03,
+                    1e-12, "half the distance to another fracture");
+    checks.is_close(first_radius({{{0.5, 0.5}, {0.9, 0.5}}, {{0.44, 0.5}, {0.2, 0.5}}}), 0.02,
+                    1e-12, "a third of the distance to another tip");
+    checks.is_close(first_radius({{{0.08, 0.5}, {0.6, 0.5}}}), 0.04, 1e-12,
+                    "half the distance to the edge");
+    checks.is_close(first_radius({{{0.5, 0.5}, {0.62, 0.5}}}), 0.04, 1e-12,
+                    "a third of the fracture's length");
+    checks.is_close(first_radius({{{0.5, 0.5}, {0.6, 0.5}}, {{0.6, 0.2}, {0.6, 0.8}}}), 0.05, 1e-12,
+                    "half the distance to a joint");
+}
+
+} // namespace
+
+int main() {
+    Checks checks;
+    cut_fractures(checks);
+    rosettes(checks);
+    short_wings(checks);
+    reduced_rosettes(checks);
+    return checks.finish();
+}
