@@ -231,5 +231,5 @@ def test_a_failed_check_does_not_stop_the_others(own_tree: Tree) -> None:
     assert done.returncode == 1
     assert done.stdout.rindex("== pytest") > done.stdout.index("== fprettify")
     reason = done.stderr.splitlines()[-1]
-    for step in ("fprettify", "ruff check", "mypy", "CTest, debug build", "pytest"):
+    for step in ("fprettify", "ruff check", "mypy post", "CTest, debug build", "pytest"):
         assert step in reason
