@@ -50,11 +50,13 @@ contains
    pure real(rk) function lame_lambda(self)
       class(elasticity_t), intent(in) :: self
 
-      if (self%plane_stress) then
-         lame_lambda = self%young*self%poisson/(1.0_rk - self%poisson**2)
-      else
-         lame_lambda = self%young*self%poisson/((1.0_rk + self%poisson)*(1.0_rk - 2.0_rk*self%poisson))
-      end if
+      associate (nu => self%poisson)
+         if (self%plane_stress) then
+            lame_lambda = self%young*nu/(1.0_rk - nu**2)
+         else
+            lame_lambda = self%young*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu))
+         end if
+      end associate
    end function lame_lambda
 
    !> Kolosov's constant [-].

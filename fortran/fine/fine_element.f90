@@ -2,9 +2,9 @@
 !! at the quarter points of the two edges that meet there (Barsoum 1976; Henshell and Shaw 1975).
 !!
 !! Nodes 1 to 3 are the corners, node 3+k lies on edge k, which joins corners k and mod(k,3)+1.
-!! With t = 1 - lambda of the tip's corner and w running along the opposite edge, the quarter-point
-!! element maps to x = x_tip + t**2 (p(w) - x_tip), so that displacements, polynomials in t, hold the
-!! root of the distance from the tip along every ray.
+!! With t = 1 - lambda of the tip's corner and w running along the opposite edge p(w), the
+!! quarter-point element maps to x = x_tip + t**2 (p(w) - x_tip), so that displacements, polynomials
+!! in t, hold the root of the distance from the tip along every ray.
 module fine_element
    use base_kinds, only: ik, rk
    use fine_quadrature, only: collapsed_rule, triangle_rule_3
@@ -72,7 +72,7 @@ contains
       end if
    end subroutine evaluate_element
 
-   !> Stiffness matrix of an element, unit thickness; unknowns in the order u_x, u_y of node 1, 2, ...
+   !> Stiffness matrix of an element, unit thickness; unknowns u_x, u_y of node 1, then of 2, ...
    !!
    !! Three points are exact for an ordinary element. In a quarter-point element strain times t is a
    !! polynomial of degree 1 in t and 2 in w, and the area element is proportional to t**3 dt dw; so
@@ -84,7 +84,7 @@ contains
       real(rk), intent(out) :: stiffness(12, 12)  !< [Pa]
       integer(ik), parameter :: n_t = 2, n_w = 3
       real(rk) :: points(3, n_t*n_w), weights(n_t*n_w)
-      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, weight, uniaxial
       real(rk) :: products(6, 6, 2, 2)  ! integrals of dN_a/dx_i dN_b/dx_j
       integer(ik) :: n_points, point, a, b, i, j
 
@@ -98,26 +98,28 @@ contains
 
       products = 0.0_rk
       do point = 1, n_points
-         call evaluate_element(xy, tip_corner, points(:, point), values, gradients, area_coordinates, &
-                               determinant)
+         call evaluate_element(xy, tip_corner, points(:, point), values, gradients, &
+                               area_coordinates, determinant)
+         weight = weights(point)*determinant
          do j = 1, 2
             do i = 1, 2
                do b = 1, 6
                   products(:, b, i, j) = products(:, b, i, j) &
-                                         + (weights(point)*determinant*gradients(j, b))*gradients(i, :)
+                                         + (weight*gradients(j, b))*gradients(i, :)
                end do
             end do
          end do
       end do
 
+      uniaxial = lame_lambda + 2.0_rk*shear_modulus
       do b = 1, 6
          do a = 1, 6
-            stiffness(2*a - 1, 2*b - 1) = (lame_lambda + 2.0_rk*shear_modulus)*products(a, b, 1, 1) &
-                                          + shear_modulus*products(a, b, 2, 2)
-            stiffness(2*a, 2*b) = (lame_lambda + 2.0_rk*shear_modulus)*products(a, b, 2, 2) &
-                                  + shear_modulus*products(a, b, 1, 1)
-            stiffness(2*a - 1, 2*b) = lame_lambda*products(a, b, 1, 2) + shear_modulus*products(a, b, 2, 1)
-            stiffness(2*a, 2*b - 1) = lame_lambda*products(a, b, 2, 1) + shear_modulus*products(a, b, 1, 2)
+            associate (p => products(a, b, :, :))
+               stiffness(2*a - 1, 2*b - 1) = uniaxial*p(1, 1) + shear_modulus*p(2, 2)
+               stiffness(2*a, 2*b) = uniaxial*p(2, 2) + shear_modulus*p(1, 1)
+               stiffness(2*a - 1, 2*b) = lame_lambda*p(1, 2) + shear_modulus*p(2, 1)
+               stiffness(2*a, 2*b - 1) = lame_lambda*p(2, 1) + shear_modulus*p(1, 2)
+            end associate
          end do
       end do
    end subroutine stiffness_matrix

@@ -1,12 +1,14 @@
 !> Conditions on the fracture faces, and how they tie the displacements of both sides together.
 !!
-!! Where two nodes face each other across a fracture, u(+) = m - [u]/2 and u(-) = m + [u]/2 with their
-!! mean m and jump [u] = u(-) - u(+). A given jump leaves m as unknown; a slipping pair keeps m and the
-!! amount of slip d, with [u] = d*(tau + dilation*n). Every displacement is then linear in fewer
-!! unknowns, u = T q + c, and the stiffness becomes T' K T: definite, without penalty or multipliers.
+!! Where two nodes face each other across a fracture, u(+) = m - [u]/2 and u(-) = m + [u]/2 with
+!! their mean m and jump [u] = u(-) - u(+). A given jump leaves m as unknown; a slipping pair
+!! keeps m and the amount of slip d, with [u] = d*(tau + dilation*n). Every displacement is then
+!! linear in fewer unknowns, u = T q + c, and the stiffness becomes T' K T: definite, without
+!! penalty or multipliers.
 !!
-!! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free, whatever the
-!! conditions of the cells around, and so does a pair of which one node alone lies on the outer boundary.
+!! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
+!! whatever the conditions of the cells around, and so does a pair of which one node alone lies on
+!! the outer boundary.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -14,18 +16,18 @@ module fine_faces
    implicit none(type, external)
    private
 
-   public :: build_constraints, check_conditions, constraints_t, face_conditions_t, loaded_everywhere
-   public :: face_jump, face_loaded, face_slip, prescribe_jumps
+   public :: build_constraints, check_conditions, constraints_t, face_conditions_t
+   public :: face_jump, face_loaded, face_slip, loaded_everywhere, prescribe_jumps
 
    ! Conditions of a fracture cell. Where cells meet, the larger number holds at their common nodes.
    integer(ik), parameter :: face_loaded = 1  !< contact traction and fluid pressure given
-   integer(ik), parameter :: face_slip = 2  !< slip free, its traction given; opening tied to the slip
+   integer(ik), parameter :: face_slip = 2  !< slip free, opening tied to it; traction given
    integer(ik), parameter :: face_jump = 3  !< displacement jump given
 
    !> What holds on each fracture cell; the values belong to the loads.
    type :: face_conditions_t
-      integer(ik), allocatable :: condition(:)  !< (fracture cells) face_loaded, face_slip or face_jump
-      real(rk), allocatable :: dilation(:)  !< (fracture cells) sign of the slip * tan(psi) [-]; for face_slip
+      integer(ik), allocatable :: condition(:)  !< (fracture cells) face_loaded .. face_jump
+      real(rk), allocatable :: dilation(:)  !< (fracture cells) sign of slip * tan(psi) [-]
    end type face_conditions_t
 
    !> How displacements depend on the unknowns.
@@ -39,8 +41,8 @@ module fine_faces
       integer(ik) :: n_pairs = 0
       integer(ik), allocatable :: pair_nodes(:, :)  !< (2, n_pairs) on side +, -
       integer(ik), allocatable :: pair_condition(:)  !< (n_pairs)
-      integer(ik), allocatable :: face_pair(:, :)  !< (3, fracture cells) pair at start, end, mid; 0 at a tip or joint
-      logical, allocatable :: face_flipped(:, :)  !< (3, fracture cells) the cell sees the pair's sides exchanged
+      integer(ik), allocatable :: face_pair(:, :)  !< (3, fracture cells) start, end, mid; 0: none
+      logical, allocatable :: face_flipped(:, :)  !< the cell sees the pair's sides exchanged
    end type constraints_t
 
 contains
@@ -65,7 +67,7 @@ contains
          call raise_error(error, origin, "the face conditions have not been set")
       else if (size(conditions%condition) /= fine%fracture%n_cells &
                .or. size(conditions%dilation) /= fine%fracture%n_cells) then
-         call raise_error(error, origin, "the face conditions do not belong to this mesh: wrong number of cells")
+         call raise_error(error, origin, "the face conditions have the wrong number of cells")
       else if (any(conditions%condition < face_loaded .or. conditions%condition > face_jump)) then
          call raise_error(error, origin, "a fracture cell has an unknown face condition")
       else if (.not. sum(abs(conditions%dilation)) <= huge(1.0_rk)) then
@@ -79,7 +81,8 @@ contains
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(out) :: constraints
       real(rk), allocatable :: slip_direction(:, :)
-      integer(ik) :: node, pair, column
+      integer(ik), allocatable :: follows(:)
+      integer(ik) :: node, pair, column, plus, minus
 
       call find_pairs(fine, constraints)
       allocate (slip_direction(2, constraints%n_pairs))
@@ -93,32 +96,34 @@ contains
       constraints%prescribed = fine%on_boundary
       where (fine%on_boundary) constraints%n_columns = 0
 
+      ! The minus node of a tied pair takes the unknowns of its plus node.
+      allocate (follows(fine%n_nodes), source=0_ik)
       do pair = 1, constraints%n_pairs
-         associate (plus => constraints%pair_nodes(1, pair), minus => constraints%pair_nodes(2, pair))
-            if (constraints%pair_condition(pair) == face_jump) then
-               constraints%prescribed([plus, minus]) = .true.
-            else if (constraints%pair_condition(pair) == face_slip) then
-               constraints%n_columns([plus, minus]) = 3
-               constraints%basis(:, 3, plus) = -0.5_rk*slip_direction(:, pair)
-               constraints%basis(:, 3, minus) = 0.5_rk*slip_direction(:, pair)
-            end if
-         end associate
+         plus = constraints%pair_nodes(1, pair)
+         minus = constraints%pair_nodes(2, pair)
+         select case (constraints%pair_condition(pair))
+         case (face_jump)
+            constraints%prescribed([plus, minus]) = .true.
+            follows(minus) = plus
+         case (face_slip)
+            constraints%n_columns([plus, minus]) = 3
+            constraints%basis(:, 3, plus) = -0.5_rk*slip_direction(:, pair)
+            constraints%basis(:, 3, minus) = 0.5_rk*slip_direction(:, pair)
+            follows(minus) = plus
+         case default
+            cycle  ! both nodes keep their own unknowns
+         end select
       end do
 
-      ! The minus node of a tied pair takes the unknowns of its plus node.
-      do pair = 1, constraints%n_pairs
-         if (constraints%pair_condition(pair) /= face_loaded) constraints%dof(1, constraints%pair_nodes(2, pair)) = -1
-      end do
       do node = 1, fine%n_nodes
-         if (constraints%dof(1, node) < 0) cycle
+         if (follows(node) > 0) cycle
          do column = 1, constraints%n_columns(node)
             constraints%n_dofs = constraints%n_dofs + 1
             constraints%dof(column, node) = constraints%n_dofs
          end do
       end do
-      do pair = 1, constraints%n_pairs
-         if (constraints%pair_condition(pair) == face_loaded) cycle
-         constraints%dof(:, constraints%pair_nodes(2, pair)) = constraints%dof(:, constraints%pair_nodes(1, pair))
+      do node = 1, fine%n_nodes
+         if (follows(node) > 0) constraints%dof(:, node) = constraints%dof(:, follows(node))
       end do
    end subroutine build_constraints
 
@@ -164,8 +169,8 @@ contains
       end do
    end subroutine find_pairs
 
-   !> The condition of each pair, and the direction in which a slipping pair moves. At a kink the frame is
-   !! the mean of the frames of the slipping cells.
+   !> The condition of each pair, and the direction in which a slipping pair moves. At a kink the
+   !! frame is the mean of the frames of the slipping cells.
    pure subroutine combine_conditions(fine, conditions, constraints, slip_direction)
       type(fine_mesh_t), intent(in) :: fine
       type(face_conditions_t), intent(in) :: conditions
@@ -183,7 +188,9 @@ contains
          do k = 1, 3
             pair = constraints%face_pair(k, cell)
             if (pair == 0) cycle
-            constraints%pair_condition(pair) = max(constraints%pair_condition(pair), conditions%condition(cell))
+            associate (strictest => constraints%pair_condition(pair))
+               strictest = max(strictest, conditions%condition(cell))
+            end associate
             if (conditions%condition(cell) /= face_slip) cycle
             ! Seen from the other side tau, n and the jump all change sign: its components do not.
             tau = fine%face_tangent(:, cell)
@@ -196,24 +203,26 @@ contains
 
       slip_direction = 0.0_rk
       do pair = 1, constraints%n_pairs
-         if (any(fine%on_boundary(constraints%pair_nodes(:, pair)))) constraints%pair_condition(pair) = face_loaded
-         if (constraints%pair_condition(pair) /= face_slip) cycle
+         associate (condition => constraints%pair_condition(pair))
+            if (any(fine%on_boundary(constraints%pair_nodes(:, pair)))) condition = face_loaded
+            if (condition /= face_slip) cycle
+         end associate
          tau = tangent(:, pair)/norm2(tangent(:, pair))
          slip_direction(:, pair) = tau + dilation(pair)/n_slipping(pair)*[-tau(2), tau(1)]
       end do
    end subroutine combine_conditions
 
-   !> Add half of the given jumps to the given part of the displacements of both sides. Where two cells
-   !! meet, the mean of what they say is taken.
+   !> Add half of the given jumps to the given part of the displacements of both sides. Where two
+   !! cells meet, the mean of what they say is taken.
    pure subroutine prescribe_jumps(fine, conditions, constraints, jump, displacement)
       type(fine_mesh_t), intent(in) :: fine
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(in) :: constraints
-      real(rk), intent(in) :: jump(:, :, :)  !< (2, 3, fracture cells) in tau and n at start, end, mid [m]
+      real(rk), intent(in) :: jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
       real(rk), intent(inout) :: displacement(:, :)  !< (2, n_nodes) [m]
       real(rk), allocatable :: total(:, :)
       integer(ik), allocatable :: n_given(:)
-      real(rk) :: tau(2), vector(2)
+      real(rk) :: tau(2), vector(2), half(2)
       integer(ik) :: cell, k, pair
 
       allocate (total(2, constraints%n_pairs), source=0.0_rk)
@@ -232,7 +241,8 @@ contains
       end do
       do pair = 1, constraints%n_pairs
          if (constraints%pair_condition(pair) /= face_jump) cycle
-         associate (half => 0.5_rk*total(:, pair)/n_given(pair), nodes => constraints%pair_nodes(:, pair))
+         half = 0.5_rk*total(:, pair)/n_given(pair)
+         associate (nodes => constraints%pair_nodes(:, pair))
             displacement(:, nodes(1)) = displacement(:, nodes(1)) - half
             displacement(:, nodes(2)) = displacement(:, nodes(2)) + half
          end associate

@@ -8,15 +8,16 @@ module fine_loads
    implicit none(type, external)
    private
 
-   public :: add_face_forces, add_pore_pressure_forces, check_loads, fine_loads_t, no_loads
+   public :: add_face_forces, add_pore_pressure_forces, check_loads, face_shares
+   public :: fine_loads_t, no_loads, pore_pressure_forces
 
    !> Values that may change from one solution to the next.
    type :: fine_loads_t
-      real(rk), allocatable :: boundary_displacement(:, :)  !< (2, n_nodes) [m]; read on the outer boundary only
+      real(rk), allocatable :: boundary_displacement(:, :)  !< (2, n_nodes) [m]; boundary only
       real(rk), allocatable :: pore_pressure(:)  !< (n_vertices) in the matrix [Pa]
-      real(rk), allocatable :: traction(:, :)  !< (2, fracture cells) contact traction f_tau, f_n [Pa]
+      real(rk), allocatable :: traction(:, :)  !< (2, fracture cells) contact f_tau, f_n [Pa]
       real(rk), allocatable :: fluid_pressure(:)  !< (fracture cells) [Pa]
-      real(rk), allocatable :: jump(:, :, :)  !< (2, 3, fracture cells) [u] in tau, n at start, end, mid [m]; face_jump only
+      real(rk), allocatable :: jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
    end type fine_loads_t
 
 contains
@@ -27,8 +28,10 @@ contains
       type(fine_loads_t) :: loads
 
       associate (n => fine%fracture%n_cells)
-         allocate (loads%boundary_displacement(2, fine%n_nodes), loads%pore_pressure(fine%n_vertices), &
-                   loads%traction(2, n), loads%fluid_pressure(n), loads%jump(2, 3, n), source=0.0_rk)
+         allocate (loads%boundary_displacement(2, fine%n_nodes), source=0.0_rk)
+         allocate (loads%pore_pressure(fine%n_vertices), source=0.0_rk)
+         allocate (loads%traction(2, n), loads%jump(2, 3, n), source=0.0_rk)
+         allocate (loads%fluid_pressure(n), source=0.0_rk)
       end associate
    end function no_loads
 
@@ -49,7 +52,8 @@ contains
                .or. size(loads%fluid_pressure) /= fine%fracture%n_cells &
                .or. any(shape(loads%jump) /= [2_ik, 3_ik, fine%fracture%n_cells])) then
          call raise_error(error, origin, "the loads do not belong to this mesh: wrong array sizes")
-      else if (.not. sum(abs(loads%boundary_displacement)) + sum(abs(loads%jump)) <= huge(1.0_rk)) then
+      else if (.not. sum(abs(loads%boundary_displacement)) &
+               + sum(abs(loads%jump)) <= huge(1.0_rk)) then
          call raise_error(error, origin, "a given displacement is not a finite number")
       else if (.not. sum(abs(loads%pore_pressure)) + sum(abs(loads%fluid_pressure)) &
                + sum(abs(loads%traction)) <= huge(1.0_rk)) then
@@ -57,25 +61,21 @@ contains
       end if
    end subroutine check_loads
 
-   !> Contact traction and fluid pressure on both faces: f - p n acts on side +, its opposite on side -.
-   !!
-   !! With the node at the quarter point (x = s**2 * length from the tip) a uniform load gives 0, 1/3, 2/3
-   !! of its resultant to tip, end and quarter-point node; else it is 1/6, 1/6, 2/3.
+   !> Contact traction and fluid pressure on both faces: f - p n acts on side +, its opposite on
+   !! side -.
    pure subroutine add_face_forces(fine, traction, fluid_pressure, force)
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(in) :: traction(:, :)  !< (2, fracture cells) f_tau, f_n [Pa]
       real(rk), intent(in) :: fluid_pressure(:)  !< (fracture cells) [Pa]
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-      real(rk) :: share(3), resultant(2), tau(2)
+      real(rk) :: share(3), resultant(2), tau(2), normal_part
       integer(ik) :: cell, k
 
       do cell = 1, fine%fracture%n_cells
          tau = fine%face_tangent(:, cell)
-         resultant = fine%face_length(cell)*(traction(1, cell)*tau &
-                                             + (traction(2, cell) - fluid_pressure(cell))*[-tau(2), tau(1)])
-         share = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk
-         if (fine%face_tip(cell) == 1) share(1:2) = [0.0_rk, 1.0_rk]/3.0_rk
-         if (fine%face_tip(cell) == 2) share(1:2) = [1.0_rk, 0.0_rk]/3.0_rk
+         normal_part = traction(2, cell) - fluid_pressure(cell)
+         resultant = fine%face_length(cell)*(traction(1, cell)*tau + normal_part*[-tau(2), tau(1)])
+         share = face_shares(fine%face_tip(cell))
          do k = 1, 3
             associate (plus => fine%face_nodes(k, 1, cell), minus => fine%face_nodes(k, 2, cell))
                force(:, plus) = force(:, plus) + share(k)*resultant
@@ -85,36 +85,61 @@ contains
       end do
    end subroutine add_face_forces
 
-   !> The initial stress -biot*p of the pore pressure, p linear in each element: the forces are the
-   !! integrals of biot * p * grad N, so no pressure gradient is formed. Both rules are exact.
+   !> Shares of start, end and middle node in the resultant of a uniform load on a face. With the
+   !! middle node at the quarter point (x = s**2 * length from the tip) the tip has none.
+   pure function face_shares(tip_end) result(share)
+      integer(ik), intent(in) :: tip_end  !< tip at the start (1) or end (2), else 0
+      real(rk) :: share(3)
+
+      share = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk
+      if (tip_end == 1) share(1:2) = [0.0_rk, 1.0_rk]/3.0_rk
+      if (tip_end == 2) share(1:2) = [1.0_rk, 0.0_rk]/3.0_rk
+   end function face_shares
+
+   !> Forces of the pore pressure on all nodes.
    pure subroutine add_pore_pressure_forces(fine, biot, pressure, force)
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(in) :: biot  !< [-]
       real(rk), intent(in) :: pressure(:)  !< (n_vertices) [Pa]
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-      real(rk) :: ordinary(3, 3), ordinary_weights(3), points(3, 9), weights(9)
-      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, factor
-      integer(ik) :: cell, point, n_points, nodes(6)
+      integer(ik) :: cell
 
-      call triangle_rule_3(ordinary, ordinary_weights)
       do cell = 1, fine%n_cells
-         nodes = fine%cell_nodes(:, cell)
-         if (.not. any(abs(pressure(nodes(1:3))) > 0.0_rk)) cycle
-         if (fine%tip_corner(cell) > 0) then
-            n_points = 9
-            call collapsed_rule(fine%tip_corner(cell), 3_ik, 3_ik, points, weights)
-         else
-            n_points = 3
-            points(:, 1:3) = ordinary
-            weights(1:3) = ordinary_weights
-         end if
-         do point = 1, n_points
-            call evaluate_element(fine%xy(:, nodes), fine%tip_corner(cell), points(:, point), values, &
-                                  gradients, area_coordinates, determinant)
-            factor = weights(point)*determinant*biot*dot_product(area_coordinates, pressure(nodes(1:3)))
-            force(:, nodes) = force(:, nodes) + factor*gradients
-         end do
+         associate (nodes => fine%cell_nodes(:, cell))
+            if (.not. any(abs(pressure(nodes(1:3))) > 0.0_rk)) cycle
+            force(:, nodes) = force(:, nodes) &
+                              + pore_pressure_forces(fine, cell, biot, pressure(nodes(1:3)))
+         end associate
       end do
    end subroutine add_pore_pressure_forces
+
+   !> The initial stress -biot*p of the pore pressure in one element, p linear in space: the
+   !! forces are the integrals of biot * p * grad N, so no pressure gradient is formed. Both rules
+   !! are exact.
+   pure function pore_pressure_forces(fine, cell, biot, pressure) result(force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: biot  !< [-]
+      real(rk), intent(in) :: pressure(3)  !< at the corners [Pa]
+      real(rk) :: force(2, 6)  !< [N/m]
+      real(rk) :: points(3, 9), weights(9)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, stress
+      integer(ik) :: point, n_points
+
+      if (fine%tip_corner(cell) > 0) then
+         n_points = 9
+         call collapsed_rule(fine%tip_corner(cell), 3_ik, 3_ik, points, weights)
+      else
+         n_points = 3
+         call triangle_rule_3(points(:, 1:3), weights(1:3))
+      end if
+      force = 0.0_rk
+      do point = 1, n_points
+         call evaluate_element(fine%xy(:, fine%cell_nodes(:, cell)), fine%tip_corner(cell), &
+                               points(:, point), values, gradients, area_coordinates, determinant)
+         stress = biot*dot_product(area_coordinates, pressure)
+         force = force + (weights(point)*determinant*stress)*gradients
+      end do
+   end function pore_pressure_forces
 
 end module fine_loads

@@ -8,21 +8,22 @@ module fine_mesh
 
    public :: build_fine_mesh, fine_mesh_t
 
-   !> Six-node triangles. The first n_vertices nodes are those of the mesh they come from, in its order;
-   !! node n_vertices + f lies on its face f. Both sides of a fracture have nodes of their own.
+   !> Six-node triangles. The first n_vertices nodes are those of the mesh they come from, in its
+   !! order; node n_vertices + f lies on its face f. Both sides of a fracture have nodes of their
+   !! own.
    type :: fine_mesh_t
       integer(ik) :: n_vertices = 0
       integer(ik) :: n_nodes = 0
       integer(ik) :: n_cells = 0
       real(rk), allocatable :: xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then the node on face k
-      integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner at a free tip, 0 for an ordinary element
+      integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner at a free tip, else 0
       logical, allocatable :: on_boundary(:)  !< (n_nodes) on the outer boundary
-      integer(ik), allocatable :: boundary_faces(:, :)  !< (2, n) end nodes of the outer boundary's faces
-      integer(ik), allocatable :: face_nodes(:, :, :)  !< (3, 2, fracture cells) start, end, mid; side +, -
+      integer(ik), allocatable :: boundary_faces(:, :)  !< (2, n) end nodes on the outer boundary
+      integer(ik), allocatable :: face_nodes(:, :, :)  !< (start end mid, side + -, fracture cell)
       integer(ik), allocatable :: face_cells(:, :)  !< (2, fracture cells) element on side +, -
-      integer(ik), allocatable :: face_tip(:)  !< (fracture cells) free tip at the start (1) or end (2), else 0
-      real(rk), allocatable :: face_s(:, :)  !< (3, fracture cells) arc length of start, end, mid node [m]
+      integer(ik), allocatable :: face_tip(:)  !< (fracture cells) tip at start (1), end (2) or 0
+      real(rk), allocatable :: face_s(:, :)  !< (3, fracture cells) start, end, mid [m]
       real(rk), allocatable :: face_tangent(:, :)  !< (2, fracture cells) unit vector tau
       real(rk), allocatable :: face_length(:)  !< (fracture cells) [m]
       type(fracture_mesh_t) :: fracture  !< as in the mesh this one comes from
@@ -36,6 +37,7 @@ contains
       type(fine_mesh_t), intent(out) :: fine
       type(error_t), allocatable, intent(out) :: error
       logical, allocatable :: is_tip(:)
+      integer(ik), allocatable :: outer(:)
       integer(ik) :: face, tip, tip_end, cell, k
       real(rk) :: ends(2, 2), near_start
 
@@ -57,7 +59,8 @@ contains
          ends = mesh%xy(:, mesh%face_nodes(:, face))
          near_start = 0.5_rk
          if (all(is_tip(mesh%face_nodes(:, face)))) then
-            call raise_error(error, "build_fine_mesh", "one edge joins two tips: the mesh around them is too coarse")
+            call raise_error(error, "build_fine_mesh", &
+                             "one edge joins two tips: the mesh around them is too coarse")
             return
          else if (is_tip(mesh%face_nodes(1, face))) then
             near_start = 0.75_rk
@@ -80,7 +83,8 @@ contains
       if (allocated(error)) return
 
       allocate (fine%on_boundary(fine%n_nodes), source=.false.)
-      fine%boundary_faces = mesh%face_nodes(:, pack([(face, face=1, mesh%n_faces)], mesh%face_side > 0))
+      outer = pack([(face, face=1, mesh%n_faces)], mesh%face_side > 0)
+      fine%boundary_faces = mesh%face_nodes(:, outer)
       do face = 1, mesh%n_faces
          if (mesh%face_side(face) == 0) cycle
          fine%on_boundary(mesh%face_nodes(:, face)) = .true.
@@ -98,12 +102,13 @@ contains
          near_start = 0.5_rk
          if (fine%face_tip(face) == 1) near_start = 0.75_rk
          if (fine%face_tip(face) == 2) near_start = 0.25_rk
-         fine%face_s(3, face) = near_start*fine%face_s(1, face) + (1.0_rk - near_start)*fine%face_s(2, face)
+         fine%face_s(3, face) = near_start*fine%face_s(1, face) &
+                                + (1.0_rk - near_start)*fine%face_s(2, face)
       end do
    end subroutine build_fine_mesh
 
-   !> Every element must be counter-clockwise and not flat. The quarter-point map of a straight-edged
-   !! triangle is one to one if the triangle is, so the corners decide.
+   !> Every element must be counter-clockwise and not flat. The quarter-point map of a straight-
+   !! edged triangle is one to one if the triangle is, so the corners decide.
    pure subroutine check_cells(fine, error)
       type(fine_mesh_t), intent(in) :: fine
       type(error_t), allocatable, intent(out) :: error
@@ -118,7 +123,8 @@ contains
          edge(:, 3) = -edge(:, 1) - edge(:, 2)
          double_area = edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2)
          if (double_area > flattest*maxval(sum(edge**2, dim=1))) cycle
-         write (place, '(a,i0,a,2(es12.5,a))') "element ", cell, " at (", fine%xy(1, fine%cell_nodes(1, cell)), &
+         write (place, "(a,i0,a,2(es12.5,a))") "element ", cell, " at (", &
+            fine%xy(1, fine%cell_nodes(1, cell)), &
             ", ", fine%xy(2, fine%cell_nodes(1, cell)), ")"
          call raise_error(error, "build_fine_mesh", trim(place)//" is inverted or flat")
          return
@@ -131,7 +137,7 @@ contains
       type(fine_mesh_t), intent(inout) :: fine
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: match = 1.0e-9_rk  ! of the cell's length
-      real(rk) :: chord(2), along(2), middle
+      real(rk) :: chord(2), along(2), middle, places(2, 2)
       integer(ik) :: cell, side, face, ends(2)
       character(len=16) :: number
 
@@ -146,9 +152,10 @@ contains
             middle = 0.5_rk*dot_product(chord, points(:, 1) + points(:, 2))
          end associate
          fine%face_length(cell) = norm2(chord)
-         write (number, '(i0)') cell
+         write (number, "(i0)") cell
          if (.not. fine%face_length(cell) > 0.0_rk) then
-            call raise_error(error, "build_fine_mesh", "fracture cell "//trim(number)//" has no length")
+            call raise_error(error, "build_fine_mesh", &
+                             "fracture cell "//trim(number)//" has no length")
             return
          end if
          fine%face_tangent(:, cell) = chord/fine%face_length(cell)
@@ -159,9 +166,11 @@ contains
             if (along(1) > along(2)) ends = ends([2, 1])
             fine%face_nodes(:, side, cell) = [ends, mesh%n_nodes + face]
             fine%face_cells(side, cell) = mesh%face_cells(1, face)
-            if (any(abs(mesh%xy(:, ends) - fine%fracture%point_xy(:, fine%fracture%cell_points(:, cell))) &
-                    > match*fine%face_length(cell)) .or. mesh%face_cells(2, face) /= 0) then
-               call raise_error(error, "build_fine_mesh", "fracture cell "//trim(number)//" does not match its mesh faces")
+            places = fine%fracture%point_xy(:, fine%fracture%cell_points(:, cell))
+            if (any(abs(mesh%xy(:, ends) - places) > match*fine%face_length(cell)) &
+                .or. mesh%face_cells(2, face) /= 0) then
+               call raise_error(error, "build_fine_mesh", &
+                                "fracture cell "//trim(number)//" does not match its mesh faces")
                return
             end if
          end do

@@ -5,7 +5,8 @@ module fine_model
    use base_mumps, only: mumps_definite, mumps_t
    use fine_elasticity, only: check_elasticity, elasticity_t
    use fine_element, only: evaluate_element, stiffness_matrix
-   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, prescribe_jumps
+   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, &
+                         prescribe_jumps
    use fine_loads, only: add_face_forces, add_pore_pressure_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
    use mesh_types, only: mesh_t
@@ -27,13 +28,14 @@ module fine_model
       procedure :: set_mesh
       procedure :: prepare
       procedure :: solve
+      procedure :: element_forces
       procedure :: displacement_gradient
-      procedure :: pore_pressure_at
    end type fine_model_t
 
 contains
 
-   !> Number the nodes, so that conditions and loads can be set up for them, and form the element matrices.
+   !> Number the nodes, so that conditions and loads can be set up for them, and form the element
+   !! matrices.
    subroutine set_mesh(self, mesh, elasticity, error)
       class(fine_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -52,7 +54,8 @@ contains
       lame_lambda = elasticity%lame_lambda()
       shear_modulus = elasticity%shear_modulus()
       do cell = 1, self%mesh%n_cells
-         call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), self%mesh%tip_corner(cell), &
+         call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), &
+                               self%mesh%tip_corner(cell), &
                                lame_lambda, shear_modulus, self%stiffness(:, :, cell))
       end do
    end subroutine set_mesh
@@ -88,7 +91,7 @@ contains
       class(fine_model_t), intent(in) :: self
       integer(ik), allocatable, intent(out) :: row(:), col(:)
       real(rk), allocatable, intent(out) :: values(:)
-      real(rk) :: tie(12, 18), tied(12, 18), reduced(18, 18)
+      real(rk) :: ties(12, 18), products(12, 18), reduced(18, 18)
       integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(18)
 
       n_entries = 0
@@ -102,20 +105,22 @@ contains
       do cell = 1, self%mesh%n_cells
          associate (nodes => self%mesh%cell_nodes(:, cell), constraints => self%constraints)
             n_columns = 0
-            tie = 0.0_rk
+            ties = 0.0_rk
             do k = 1, 6
                do column = 1, constraints%n_columns(nodes(k))
                   n_columns = n_columns + 1
                   dofs(n_columns) = constraints%dof(column, nodes(k))
-                  tie(2*k - 1:2*k, n_columns) = constraints%basis(:, column, nodes(k))
+                  ties(2*k - 1:2*k, n_columns) = constraints%basis(:, column, nodes(k))
                end do
             end do
-            if (all(constraints%n_columns(nodes) == 2)) then
-               reduced(1:12, 1:12) = self%stiffness(:, :, cell)
-            else
-               tied(:, :n_columns) = matmul(self%stiffness(:, :, cell), tie(:, :n_columns))
-               reduced(:n_columns, :n_columns) = matmul(transpose(tie(:, :n_columns)), tied(:, :n_columns))
-            end if
+            associate (tie => ties(:, :n_columns), tied => products(:, :n_columns))
+               if (all(constraints%n_columns(nodes) == 2)) then
+                  reduced(:12, :12) = self%stiffness(:, :, cell)
+               else
+                  tied = matmul(self%stiffness(:, :, cell), tie)
+                  reduced(:n_columns, :n_columns) = matmul(transpose(tie), tied)
+               end if
+            end associate
          end associate
          do j = 1, n_columns
             do i = j, n_columns
@@ -134,8 +139,8 @@ contains
       type(fine_loads_t), intent(in) :: loads
       real(rk), allocatable, intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: force(:, :), x(:, :)
-      integer(ik) :: node, column, cell
+      real(rk), allocatable :: force(:, :)
+      integer(ik) :: cell
 
       if (.not. self%ready) then
          call raise_error(error, "fine_model_t%solve", "prepare has to come first")
@@ -146,9 +151,7 @@ contains
 
       ! The given part of the displacements.
       allocate (displacement(2, self%mesh%n_nodes), source=0.0_rk)
-      do node = 1, self%mesh%n_nodes
-         if (self%mesh%on_boundary(node)) displacement(:, node) = loads%boundary_displacement(:, node)
-      end do
+      where (spread(self%mesh%on_boundary, 1, 2)) displacement = loads%boundary_displacement
       call prescribe_jumps(self%mesh, self%conditions, self%constraints, loads%jump, displacement)
 
       ! Forces, less those that the given displacements take.
@@ -158,59 +161,72 @@ contains
       do cell = 1, self%mesh%n_cells
          associate (nodes => self%mesh%cell_nodes(:, cell))
             if (.not. any(self%constraints%prescribed(nodes))) cycle
-            force(:, nodes) = force(:, nodes) &
-                              - reshape(matmul(self%stiffness(:, :, cell), &
-                                               reshape(displacement(:, nodes), [12])), [2, 6])
+            force(:, nodes) = force(:, nodes) - self%element_forces(displacement, cell)
          end associate
       end do
 
-      if (self%constraints%n_dofs > 0) then
-         allocate (x(self%constraints%n_dofs, 1), source=0.0_rk)
+      if (self%constraints%n_dofs > 0) call solve_free_part(self, force, displacement, error)
+      if (allocated(error)) return
+      if (.not. sum(abs(displacement)) <= huge(1.0_rk)) then
+         call raise_error(error, "fine_model_t%solve", "a displacement is not a finite number")
+      end if
+   end subroutine solve
+
+   !> Add what the forces do to the given part of the displacements.
+   subroutine solve_free_part(self, force, displacement, error)
+      class(fine_model_t), intent(inout) :: self
+      real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk), intent(inout) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: x(:, :)
+      integer(ik) :: node, column
+
+      allocate (x(self%constraints%n_dofs, 1), source=0.0_rk)
+      associate (n_columns => self%constraints%n_columns, dof => self%constraints%dof, &
+                 basis => self%constraints%basis)
          do node = 1, self%mesh%n_nodes
-            do column = 1, self%constraints%n_columns(node)
-               associate (dof => self%constraints%dof(column, node))
-                  x(dof, 1) = x(dof, 1) + dot_product(self%constraints%basis(:, column, node), force(:, node))
-               end associate
+            do column = 1, n_columns(node)
+               x(dof(column, node), 1) = x(dof(column, node), 1) &
+                                         + dot_product(basis(:, column, node), force(:, node))
             end do
          end do
          call self%solver%solve(x, error)
          if (allocated(error)) return
          do node = 1, self%mesh%n_nodes
-            do column = 1, self%constraints%n_columns(node)
-               displacement(:, node) = displacement(:, node) + x(self%constraints%dof(column, node), 1) &
-                                       *self%constraints%basis(:, column, node)
+            do column = 1, n_columns(node)
+               displacement(:, node) = displacement(:, node) &
+                                       + x(dof(column, node), 1)*basis(:, column, node)
             end do
          end do
-      end if
-      if (.not. sum(abs(displacement)) <= huge(1.0_rk)) then
-         call raise_error(error, "fine_model_t%solve", "a displacement is not a finite number")
-      end if
-   end subroutine solve
+      end associate
+   end subroutine solve_free_part
+
+   !> Forces on the nodes of an element that strain it as it is, without pore pressure.
+   pure function element_forces(self, displacement, cell) result(force)
+      class(fine_model_t), intent(in) :: self
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      integer(ik), intent(in) :: cell
+      real(rk) :: force(2, 6)  !< [N/m]
+      real(rk) :: nodal(12)
+
+      nodal = reshape(displacement(:, self%mesh%cell_nodes(:, cell)), [12])
+      force = reshape(matmul(self%stiffness(:, :, cell), nodal), [2, 6])
+   end function element_forces
 
    !> Displacement gradient d u_i / d x_j at a point of an element.
    pure function displacement_gradient(self, displacement, cell, lambda) result(gradient)
       class(fine_model_t), intent(in) :: self
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle; not the tip itself
+      real(rk), intent(in) :: lambda(3)  !< reference coordinates; not those of the tip
       real(rk) :: gradient(2, 2)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
 
       associate (nodes => self%mesh%cell_nodes(:, cell))
-         call evaluate_element(self%mesh%xy(:, nodes), self%mesh%tip_corner(cell), lambda, values, gradients, &
-                               area_coordinates, determinant)
+         call evaluate_element(self%mesh%xy(:, nodes), self%mesh%tip_corner(cell), lambda, &
+                               values, gradients, area_coordinates, determinant)
          gradient = matmul(displacement(:, nodes), transpose(gradients))
       end associate
    end function displacement_gradient
-
-   !> Pore pressure [Pa] at a point of an element.
-   pure real(rk) function pore_pressure_at(self, pressure, cell, area_coordinates)
-      class(fine_model_t), intent(in) :: self
-      real(rk), intent(in) :: pressure(:)  !< (n_vertices) [Pa]
-      integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: area_coordinates(3)  !< barycentric coordinates in space
-
-      pore_pressure_at = dot_product(area_coordinates, pressure(self%mesh%cell_nodes(1:3, cell)))
-   end function pore_pressure_at
 
 end module fine_model

@@ -74,9 +74,9 @@ contains
       end do
    end subroutine triangle_rule_7
 
-   !> Gauss points in polar-like coordinates about one corner: t runs from that corner to the opposite
-   !! edge, w along that edge. What is a polynomial in t and w, as all fields of a quarter-point
-   !! element are, is integrated exactly.
+   !> Gauss points in polar-like coordinates about one corner: t runs from that corner to the
+   !! opposite edge, w along that edge. What is a polynomial in t and w, as all fields of a
+   !! quarter-point element are, is integrated exactly.
    pure subroutine collapsed_rule(corner, n_t, n_w, points, weights)
       integer(ik), intent(in) :: corner  !< 1, 2 or 3
       integer(ik), intent(in) :: n_t, n_w  !< points in each direction

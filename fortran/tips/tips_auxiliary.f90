@@ -16,7 +16,7 @@ module tips_auxiliary
    type :: auxiliary_field_t
       real(rk) :: stress(2, 2)  !< [Pa per Pa m^1/2]
       real(rk) :: slope(2)  !< du/dx1 [1 per Pa m^1/2]
-      real(rk) :: dilation_slope  !< derivative by x1 of the in-plane strain trace [1/m per Pa m^1/2]
+      real(rk) :: dilation_slope  !< d(in-plane strain trace)/dx1 [1/m per Pa m^1/2]
    end type auxiliary_field_t
 
 contains
@@ -31,7 +31,7 @@ contains
       type(auxiliary_field_t) :: field
       complex(rk) :: factor, phi, phi_slope, omega, bent, traction, slope
 
-      factor = merge(cmplx(1.0_rk, 0.0_rk, rk), cmplx(0.0_rk, -1.0_rk, rk), mode == 1)/(2.0_rk*sqrt(2.0_rk*pi))
+      factor = merge((1.0_rk, 0.0_rk), (0.0_rk, -1.0_rk), mode == 1)/(2.0_rk*sqrt(2.0_rk*pi))
       phi = factor/root_z
       phi_slope = -0.5_rk*phi/root_z**2
       omega = factor/conjg(root_z)

@@ -1,6 +1,6 @@
 !> Stress intensity factors from the displacements of the crack faces next to the tip.
 module tips_displacement
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use tips_types, only: tip_frame_t
@@ -21,12 +21,14 @@ contains
       real(rk), intent(out) :: k1, k2  !< [Pa m^1/2]
       real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk) :: quarter(2), far(2), combination(2), factor
+      integer(ik) :: far_end
 
-      associate (nodes => fine%face_nodes(:, :, frame%face), far_end => 3 - fine%face_tip(frame%face))
+      far_end = 3 - fine%face_tip(frame%face)
+      associate (nodes => fine%face_nodes(:, :, frame%face))
          quarter = displacement(:, nodes(3, 2)) - displacement(:, nodes(3, 1))
          far = displacement(:, nodes(far_end, 2)) - displacement(:, nodes(far_end, 1))
       end associate
-      factor = elasticity%young/(6.0_rk*(1.0_rk + elasticity%poisson)*(1.0_rk + elasticity%kolosov())) &
+      factor = elasticity%shear_modulus()/(3.0_rk*(1.0_rk + elasticity%kolosov())) &
                *sqrt(2.0_rk*pi/fine%face_length(frame%face))
       ! Upper minus lower face in the tip's axes.
       combination = frame%upper*matmul(frame%axes, 8.0_rk*quarter - far)

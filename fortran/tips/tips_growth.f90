@@ -4,22 +4,22 @@ module tips_growth
    implicit none(type, external)
    private
 
-   public :: advances, carry_over, energy_release_rate, equivalent_intensity, growth_drive, growth_drive_t
-   public :: kink_angle, kinked_intensities, new_tip
+   public :: advances, carry_over, energy_release_rate, equivalent_intensity, growth_drive
+   public :: growth_drive_t, kink_angle, kinked_intensities, new_tip
 
    real(rk), parameter :: smallest_advance = 0.4_rk  !< of the rosette radius; less is carried over
 
    !> What drives a tip.
    type :: growth_drive_t
-      real(rk) :: angle = 0.0_rk  !< from the old crack to its extension, anticlockwise positive [rad]
+      real(rk) :: angle = 0.0_rk  !< of the kink, anticlockwise positive [rad]
       real(rk) :: intensity = 0.0_rk  !< K_eq at that angle [Pa m^1/2]
       real(rk) :: energy = 0.0_rk  !< G at that angle [J/m2]
    end type growth_drive_t
 
 contains
 
-   !> Angle at which the tangential stress is largest (Erdogan and Sih 1963), in a form that divides by
-   !! nothing that vanishes with k2. Zero where nothing drives the tip.
+   !> Angle at which the tangential stress is largest (Erdogan and Sih 1963), in a form that
+   !! divides by nothing that vanishes with k2. Zero where nothing drives the tip.
    elemental real(rk) function kink_angle(k1, k2)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
 
@@ -34,7 +34,8 @@ contains
       equivalent_intensity = cos(0.5_rk*angle)*(k1*cos(0.5_rk*angle)**2 - 1.5_rk*k2*sin(angle))
    end function equivalent_intensity
 
-   !> Intensities of a vanishingly short kink, to first order in its angle (Cotterell and Rice 1980).
+   !> Intensities of a vanishingly short kink, to first order in its angle (Cotterell and Rice
+   !! 1980).
    elemental subroutine kinked_intensities(k1, k2, angle, kinked_1, kinked_2)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       real(rk), intent(in) :: angle  !< [rad]
@@ -58,8 +59,8 @@ contains
       energy_release_rate = (kinked_1**2 + kinked_2**2)/crack_modulus
    end function energy_release_rate
 
-   !> Direction and strength of what drives a tip. A negative k1 means faces that overlap or a solver's
-   !! error at closed ones, and counts as zero.
+   !> Direction and strength of what drives a tip. A negative k1 means faces that overlap or a
+   !! solver's error at closed ones, and counts as zero.
    elemental function growth_drive(k1, k2, crack_modulus) result(drive)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]

@@ -28,25 +28,30 @@ contains
       type(intensity_t), intent(out) :: intensity
       type(error_t), allocatable, intent(out) :: error
       type(tip_frame_t) :: frame
+      real(rk) :: size_of_all
       character(len=16) :: number
 
       if (tip < 1 .or. tip > model%mesh%fracture%n_tips) then
-         write (number, '(i0)') tip
+         write (number, "(i0)") tip
          call raise_error(error, "tip_intensity", "the window has no tip number "//trim(number))
          return
       end if
       frame = frame_of_tip(model%mesh, tip)
-      call displacement_correlation(model%mesh, model%elasticity, displacement, frame, intensity%k1_dc, &
-                                    intensity%k2_dc)
-      intensity%radius = min(largest_radius(model%mesh, frame), reach*rosette_size(model%mesh, frame))
+      intensity%radius = min(largest_radius(model%mesh, frame), &
+                             reach*rosette_size(model%mesh, frame))
       intensity%radius_inner = inner_share*intensity%radius
-      call interaction_integral(model, loads, displacement, frame, intensity%radius, plateau, intensity%k1, &
-                                intensity%k2)
-      call interaction_integral(model, loads, displacement, frame, intensity%radius_inner, plateau, &
-                                intensity%k1_inner, intensity%k2_inner)
-      if (.not. abs(intensity%k1) + abs(intensity%k2) + abs(intensity%k1_dc) + abs(intensity%k2_dc) &
-          + abs(intensity%k1_inner) + abs(intensity%k2_inner) <= huge(1.0_rk)) then
-         call raise_error(error, "tip_intensity", "a stress intensity factor is not a finite number")
+      associate (result => intensity)
+         call displacement_correlation(model%mesh, model%elasticity, displacement, frame, &
+                                       result%k1_dc, result%k2_dc)
+         call interaction_integral(model, loads, displacement, frame, result%radius, plateau, &
+                                   result%k1, result%k2)
+         call interaction_integral(model, loads, displacement, frame, result%radius_inner, &
+                                   plateau, result%k1_inner, result%k2_inner)
+         size_of_all = sum(abs([result%k1, result%k2, result%k1_inner, result%k2_inner, &
+                                result%k1_dc, result%k2_dc]))
+      end associate
+      if (.not. size_of_all <= huge(1.0_rk)) then
+         call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if
    end subroutine tip_intensity
 

@@ -7,8 +7,8 @@ module tips_types
 
    public :: frame_of_tip, intensity_t, tip_frame_t
 
-   !> Stress intensity factors of a tip [Pa m^1/2]. k1 > 0 opens; k2 > 0 where the shear stress ahead of the
-   !! tip is positive in the tip's own axes (x ahead, y to its left).
+   !> Stress intensity factors of a tip [Pa m^1/2]. k1 > 0 opens; k2 > 0 where the shear stress
+   !! ahead of the tip is positive in the tip's own axes (x ahead, y to its left).
    type :: intensity_t
       real(rk) :: k1 = 0.0_rk, k2 = 0.0_rk  !< interaction integral, larger domain
       real(rk) :: k1_inner = 0.0_rk, k2_inner = 0.0_rk  !< interaction integral, smaller domain
@@ -19,8 +19,8 @@ module tips_types
    !> A free tip with its own axes.
    type :: tip_frame_t
       real(rk) :: origin(2)  !< [m]
-      real(rk) :: axes(2, 2)  !< row 1: unit vector ahead; row 2: to its left, so that axes*v is v in tip axes
-      real(rk) :: upper  !< +1 if side - of the fracture is the upper one in these axes (end 2), else -1
+      real(rk) :: axes(2, 2)  !< unit vectors in rows: ahead, to its left; axes*v is v there
+      real(rk) :: upper  !< +1 if side - is the upper one in these axes (end 2), else -1
       integer(ik) :: node  !< mesh node
       integer(ik) :: fracture  !< index in the network
       integer(ik) :: face  !< fracture cell that ends at the tip

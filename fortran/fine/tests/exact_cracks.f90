@@ -1,4 +1,5 @@
-!> Closed solutions for a straight crack of half-length a in an infinite plane (Muskhelishvili 1953).
+!> Closed solutions for a straight crack of half-length a in an infinite plane (Muskhelishvili
+!! 1953).
 module exact_cracks
    use base_kinds, only: rk
    use fine_elasticity, only: elasticity_t
@@ -9,10 +10,12 @@ module exact_cracks
 
 contains
 
-   !> Displacement [m] at a point, crack on |x| < a, y = 0, remote stress zero, the faces loaded by the
-   !! tractions that drop the normal stress by `normal` and the shear stress by `shear`: stress on the line
-   !! of the crack -normal, -shear within it, K_I = normal sqrt(pi a), K_II = shear sqrt(pi a).
-   pure function centre_crack(elasticity, half_length, normal, shear, xy, above) result(displacement)
+   !> Displacement [m] at a point, crack on |x| < a, y = 0, remote stress zero, the faces loaded
+   !! by the tractions that drop the normal stress by `normal` and the shear stress by `shear`:
+   !! stress on the line of the crack -normal, -shear within it, K_I = normal sqrt(pi a), K_II =
+   !! shear sqrt(pi a).
+   pure function centre_crack(elasticity, half_length, normal, shear, xy, &
+                              above) result(displacement)
       type(elasticity_t), intent(in) :: elasticity
       real(rk), intent(in) :: half_length  !< a [m]
       real(rk), intent(in) :: normal, shear  !< [Pa]
@@ -43,7 +46,7 @@ contains
             crack_root = cmplx(0.0_rk, sqrt(half_length**2 - real(z, rk)**2), rk)
             if (.not. above) crack_root = -crack_root
          else
-            crack_root = sqrt(z - half_length)*sqrt(z + half_length)  ! left of the crack both cuts cancel
+            crack_root = sqrt(z - half_length)*sqrt(z + half_length)  ! cuts cancel left of it
          end if
       end function crack_root
 
@@ -58,7 +61,8 @@ contains
       real(rk) :: strain(2, 2), mean, mu
 
       mu = elasticity%shear_modulus()
-      mean = elasticity%lame_lambda()*(stress(1) + stress(2))/(2.0_rk*(elasticity%lame_lambda() + mu))
+      mean = elasticity%lame_lambda()*(stress(1) &
+                                       + stress(2))/(2.0_rk*(elasticity%lame_lambda() + mu))
       strain(1, 1) = (stress(1) - mean)/(2.0_rk*mu)
       strain(2, 2) = (stress(2) - mean)/(2.0_rk*mu)
       strain(1, 2) = stress(3)/(2.0_rk*mu)

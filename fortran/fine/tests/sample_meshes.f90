@@ -9,9 +9,10 @@ module sample_meshes
 
 contains
 
-   !> A rectangle of n(1) by n(2) boxes, each cut into four triangles by its diagonals, and one crack in
-   !! x direction along the grid line on top of box row `row`, from the right end of box first-1 to that of
-   !! box last; no crack if last < first. Ends on the outer boundary are split, others are tips.
+   !> A rectangle of n(1) by n(2) boxes, each cut into four triangles by its diagonals, and one
+   !! crack in x direction along the grid line on top of box row `row`, from the right end of box
+   !! first-1 to that of box last; no crack if last < first. Ends on the outer boundary are split,
+   !! others are tips.
    function cracked_rectangle(x_range, y_range, n, row, first, last) result(mesh)
       real(rk), intent(in) :: x_range(2), y_range(2)  !< [m]
       integer(ik), intent(in) :: n(2), row, first, last
@@ -128,7 +129,8 @@ contains
             fracture%point_xy(:, point) = mesh%xy(:, below(i))
             fracture%point_kind(point) = point_interior
             if (point == 1 .or. point == n + 1) then
-               fracture%point_kind(point) = merge(point_boundary, point_tip, i == 0 .or. i == n_boxes)
+               fracture%point_kind(point) = merge(point_boundary, point_tip, i == 0 &
+                                                  .or. i == n_boxes)
             end if
             fracture%point_first(point) = k + 1
             if (point > 1) fracture%point_cells(k + 1) = point - 1
@@ -153,7 +155,8 @@ contains
          fracture%tip_node = below(first - 2 + fracture%tip_point)
          fracture%tip_end = merge(1_ik, 2_ik, fracture%tip_point == 1)
          allocate (fracture%tip_fracture(fracture%n_tips), source=1_ik)
-         allocate (fracture%tip_direction(2, fracture%n_tips), fracture%tip_radius(fracture%n_tips), source=0.0_rk)
+         allocate (fracture%tip_direction(2, fracture%n_tips), &
+                   fracture%tip_radius(fracture%n_tips), source=0.0_rk)
          do tip = 1, fracture%n_tips
             fracture%tip_direction(1, tip) = merge(-1.0_rk, 1.0_rk, fracture%tip_end(tip) == 1)
             fracture%tip_radius(tip) = fracture%cell_s(2, 1) - fracture%cell_s(1, 1)
@@ -172,8 +175,10 @@ contains
       face_between = 0
       do face = 1, mesh%n_faces
          if (mesh%face_cells(2, face) /= 0 .or. mesh%face_side(face) /= 0) cycle
-         if (any(mesh%face_nodes(:, face) /= [a, b]) .and. any(mesh%face_nodes(:, face) /= [b, a])) cycle
-         height = sum(mesh%xy(2, mesh%cell_nodes(:, mesh%face_cells(1, face))))/3.0_rk - mesh%xy(2, a)
+         if (any(mesh%face_nodes(:, face) /= [a, b]) &
+             .and. any(mesh%face_nodes(:, face) /= [b, a])) cycle
+         height = sum(mesh%xy(2, mesh%cell_nodes(:, mesh%face_cells(1, face))))/3.0_rk &
+                  - mesh%xy(2, a)
          if ((height > 0.0_rk) .eqv. element_above) face_between = face
       end do
    end function face_between
@@ -187,7 +192,8 @@ contains
 
       rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
       if (mirrored) then
-         ! Corners 2 and 3 change places to stay counter-clockwise; the sides of the fracture change too.
+         ! Corners 2 and 3 change places to stay counter-clockwise; the sides of the fracture
+         ! change too.
          rotation(:, 2) = -rotation(:, 2)
          mesh%cell_nodes = mesh%cell_nodes([1, 3, 2], :)
          mesh%cell_faces = mesh%cell_faces([3, 2, 1], :)

@@ -6,7 +6,8 @@ program test_fine_element
    use fine_quadrature, only: collapsed_rule
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: corners(2, 3) = reshape([0.3_rk, -0.2_rk, 1.4_rk, 0.1_rk, 0.5_rk, 0.9_rk], [2, 3])
+   real(rk), parameter :: corners(2, 3) = reshape([0.3_rk, -0.2_rk, 1.4_rk, 0.1_rk, 0.5_rk, &
+                                                   0.9_rk], [2, 3])
    integer(ik) :: corner
 
    do corner = 0, 3
@@ -38,36 +39,45 @@ contains
    !> Shape functions are 1 at their node, 0 at the others; x and its gradient are reproduced.
    subroutine check_shapes(tip_corner)
       integer(ik), intent(in) :: tip_corner
-      real(rk), parameter :: nodes(3, 6) = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, &
-                                                    0.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.0_rk, &
-                                                    0.0_rk, 0.5_rk, 0.5_rk, 0.5_rk, 0.0_rk, 0.5_rk], [3, 6])
-      real(rk) :: xy(2, 6), values(6), gradients(2, 6), area_coordinates(3), determinant, identity(2, 2)
+      real(rk), parameter :: nodes(3, 6) = reshape([1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, &
+                                                    0.0_rk, &
+                                                    0.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, &
+                                                    0.0_rk, &
+                                                    0.0_rk, 0.5_rk, 0.5_rk, 0.5_rk, 0.0_rk, &
+                                                    0.5_rk], [3, 6])
+      real(rk) :: xy(2, 6), values(6), gradients(2, 6), area_coordinates(3), determinant, &
+                  identity(2, 2)
       integer(ik) :: k, j
 
       do k = 1, 6
          values = shape_values(nodes(:, k))
          do j = 1, 6
-            call checks%is_close(values(j), merge(1.0_rk, 0.0_rk, j == k), 1.0e-15_rk, "shape function at a node")
+            call checks%is_close(values(j), merge(1.0_rk, 0.0_rk, j == k), 1.0e-15_rk, &
+                                 "shape function at a node")
          end do
       end do
       xy = element_nodes(tip_corner)
-      call evaluate_element(xy, tip_corner, [0.23_rk, 0.41_rk, 0.36_rk], values, gradients, area_coordinates, determinant)
+      call evaluate_element(xy, tip_corner, [0.23_rk, 0.41_rk, 0.36_rk], values, gradients, &
+                            area_coordinates, determinant)
       identity = matmul(xy, transpose(gradients))
       call checks%is_close(identity(1, 1), 1.0_rk, 1.0e-14_rk, "dx/dx")
       call checks%is_close(identity(1, 2), 0.0_rk, 1.0e-14_rk, "dx/dy")
       call checks%is_close(identity(2, 1), 0.0_rk, 1.0e-14_rk, "dy/dx")
       call checks%is_close(identity(2, 2), 1.0_rk, 1.0e-14_rk, "dy/dy")
-      call checks%is_close(norm2(matmul(xy, values) - matmul(corners, area_coordinates)), 0.0_rk, 1.0e-15_rk, &
+      call checks%is_close(norm2(matmul(xy, values) - matmul(corners, area_coordinates)), 0.0_rk, &
+                           1.0e-15_rk, &
                            "area coordinates give the place")
    end subroutine check_shapes
 
-   !> The rule in use is exact: twelve times as many points change nothing. No force for rigid motions.
+   !> The rule in use is exact: twelve times as many points change nothing. No force for rigid
+   !! motions.
    subroutine check_stiffness(tip_corner)
       integer(ik), intent(in) :: tip_corner
       real(rk), parameter :: lambda = 1.3_rk, mu = 0.7_rk
       integer(ik), parameter :: n = 8
       real(rk) :: stiffness(12, 12), reference(12, 12), xy(2, 6), points(3, n*n), weights(n*n)
-      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, strain(3, 12), elastic(3, 3)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, strain(3, 12), &
+                  elastic(3, 3)
       real(rk) :: motion(12, 3)
       integer(ik) :: point, k
 
@@ -81,25 +91,30 @@ contains
       call collapsed_rule(max(1_ik, tip_corner), n, n, points, weights)
       reference = 0.0_rk
       do point = 1, n*n
-         call evaluate_element(xy, tip_corner, points(:, point), values, gradients, area_coordinates, determinant)
+         call evaluate_element(xy, tip_corner, points(:, point), values, gradients, &
+                               area_coordinates, determinant)
          strain = 0.0_rk
          do k = 1, 6
             strain(1, 2*k - 1) = gradients(1, k)
             strain(2, 2*k) = gradients(2, k)
             strain(3, 2*k - 1:2*k) = [gradients(2, k), gradients(1, k)]
          end do
-         reference = reference + weights(point)*determinant*matmul(transpose(strain), matmul(elastic, strain))
+         reference = reference + weights(point)*determinant*matmul(transpose(strain), &
+                                                                   matmul(elastic, strain))
       end do
-      call checks%is_close(maxval(abs(stiffness - reference)), 0.0_rk, 2.0e-14_rk*maxval(abs(reference)), &
+      call checks%is_close(maxval(abs(stiffness - reference)), 0.0_rk, &
+                           2.0e-14_rk*maxval(abs(reference)), &
                            "stiffness is integrated exactly")
 
       motion = 0.0_rk
-      motion(1::2, 1) = 1.0_rk
-      motion(2::2, 2) = 1.0_rk
-      motion(1::2, 3) = -xy(2, :)
-      motion(2::2, 3) = xy(1, :)
-      call checks%is_close(maxval(abs(matmul(stiffness, motion))), 0.0_rk, 2.0e-14_rk, "rigid motions cost no force")
-      call checks%is_close(maxval(abs(stiffness - transpose(stiffness))), 0.0_rk, 1.0e-14_rk, "stiffness is symmetric")
+      motion(1 :: 2, 1) = 1.0_rk
+      motion(2 :: 2, 2) = 1.0_rk
+      motion(1 :: 2, 3) = -xy(2, :)
+      motion(2 :: 2, 3) = xy(1, :)
+      call checks%is_close(maxval(abs(matmul(stiffness, motion))), 0.0_rk, 2.0e-14_rk, &
+                           "rigid motions cost no force")
+      call checks%is_close(maxval(abs(stiffness - transpose(stiffness))), 0.0_rk, 1.0e-14_rk, &
+                           "stiffness is symmetric")
    end subroutine check_stiffness
 
    !> a + b*sqrt(r) + c*r along every ray from the tip is reproduced, with its derivative.
@@ -119,12 +134,15 @@ contains
          lambda = 0.0_rk
          lambda(tip_corner) = 1.0_rk - t
          lambda(next) = t
-         call evaluate_element(xy, tip_corner, lambda, values, gradients, area_coordinates, determinant)
+         call evaluate_element(xy, tip_corner, lambda, values, gradients, area_coordinates, &
+                               determinant)
          place = matmul(xy, values) - corners(:, tip_corner)
          distance = norm2(place)
-         call checks%is_close(dot_product(values, nodal), field(distance), 1.0e-14_rk, "root field along the edge")
+         call checks%is_close(dot_product(values, nodal), field(distance), 1.0e-14_rk, &
+                              "root field along the edge")
          call checks%is_close(dot_product(matmul(gradients, nodal), place/distance), &
-                              1.0_rk/sqrt(distance) - 0.6_rk, 1.0e-12_rk, "its slope along the edge")
+                              1.0_rk/sqrt(distance) - 0.6_rk, 1.0e-12_rk, &
+                              "its slope along the edge")
       end do
    end subroutine check_root_field
 

@@ -1,5 +1,5 @@
-!> Conditions on fracture faces against fields that hold them exactly: two blocks in contact that slide
-!! and turn on each other under a uniform stress.
+!> Conditions on fracture faces against fields that hold them exactly: two blocks in contact that
+!! slide and turn on each other under a uniform stress.
 program test_fine_faces
    use base_checks, only: checks_t
    use base_errors, only: error_t
@@ -18,10 +18,15 @@ program test_fine_faces
    real(rk), parameter :: stress(3) = [-3.0e6_rk, -5.0e6_rk, 1.5e6_rk]
    real(rk), parameter :: dilation = 0.15_rk, slip = 3.0e-5_rk, pressure = 1.0e6_rk
    real(rk), parameter :: turn = 2.0e-5_rk  ! relative rotation of the blocks [rad]
+   logical :: opposed = .false.  ! the crack is two fractures that run towards each other
+   integer(ik) :: i
 
-   call compare("loaded", face_loaded, 0.0_rk)
-   call compare("jump", face_jump, 1.0_rk)
-   call compare("slip", face_slip, 0.0_rk)
+   do i = 1, 2
+      opposed = i == 2
+      call compare("loaded", face_loaded, 0.0_rk)
+      call compare("jump", face_jump, 1.0_rk)
+      call compare("slip", face_slip, 0.0_rk)
+   end do
    call mixed()
    call inside()
    call refusals()
@@ -29,7 +34,8 @@ program test_fine_faces
 
 contains
 
-   !> A block cut through along a line at an angle: below it u = uniform field, above it the same plus a jump.
+   !> A block cut through along a line at an angle: below it u = uniform field, above it the same
+   !! plus a jump.
    subroutine compare(name, condition, turning)
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: condition
@@ -49,7 +55,8 @@ contains
       call block_loads(model, exact, condition, turning, loads)
       call model%solve(loads, displacement, error)
       call checks%no_error(error, name//" is solved")
-      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, 1.0e-12_rk*maxval(abs(exact)), name)
+      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, &
+                           1.0e-12_rk*maxval(abs(exact)), name)
    end subroutine compare
 
    !> Mesh and exact displacements.
@@ -62,6 +69,7 @@ contains
       integer(ik) :: cell, k
 
       mesh = cracked_rectangle([-1.0_rk, 1.0_rk], [-1.0_rk, 1.0_rk], [5_ik, 4_ik], 2_ik, 1_ik, 5_ik)
+      if (opposed) call turn_cells(mesh, 4_ik)
       call rotate_mesh(mesh, angle, .false.)
       call model%set_mesh(mesh, elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.), error)
       call checks%no_error(error, "a block that is cut through")
@@ -73,12 +81,28 @@ contains
          associate (nodes => model%mesh%cell_nodes(:, cell))
             if (dot_product(n, sum(model%mesh%xy(:, nodes(1:3)), dim=2)) < 0.0_rk) cycle
             do k = 1, 6
-               exact(:, nodes(k)) = uniform_field(model%elasticity, stress, model%mesh%xy(:, nodes(k))) &
+               exact(:, nodes(k)) = uniform_field(model%elasticity, stress, &
+                                                  model%mesh%xy(:, nodes(k))) &
                                     + jump_at(model%mesh%xy(:, nodes(k)), turning)
             end do
          end associate
       end do
    end subroutine cut_block
+
+   !> Make a second fracture of the cells from `first` on, which runs the other way: its sides, and
+   !! tau and n, are exchanged, but not the components of tractions and jumps.
+   subroutine turn_cells(mesh, first)
+      type(mesh_t), intent(inout) :: mesh
+      integer(ik), intent(in) :: first
+
+      associate (fracture => mesh%fracture)
+         fracture%cell_fracture(first:) = 2
+         fracture%cell_points(:, first:) = fracture%cell_points([2, 1], first:)
+         fracture%cell_faces(:, first:) = fracture%cell_faces([2, 1], first:)
+         fracture%cell_s(:, first:) = fracture%cell_s(2, size(fracture%cell_s, 2)) &
+                                      - fracture%cell_s([2, 1], first:)
+      end associate
+   end subroutine turn_cells
 
    !> Rigid motion of the upper block relative to the lower one.
    pure function jump_at(xy, turning) result(jump)
@@ -88,7 +112,8 @@ contains
       jump = slip*(tau + dilation*n) + turning*turn*[-xy(2), xy(1)]
    end function jump_at
 
-   !> Loads that go with the exact field; where a condition leaves a value without meaning, a wrong one.
+   !> Loads that go with the exact field; where a condition leaves a value without meaning, a wrong
+   !! one.
    subroutine block_loads(model, exact, condition, turning, loads)
       type(fine_model_t), intent(in) :: model
       real(rk), intent(in) :: exact(:, :)
@@ -139,9 +164,12 @@ contains
       loads%jump = jumps%jump
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "mixed conditions are solved")
-      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, 1.0e-12_rk*maxval(abs(exact)), "mixed conditions")
-      call checks%is_true(count(model%constraints%pair_condition == face_jump) == 3, "jump holds at both ends of its cell")
-      call checks%is_true(count(model%constraints%pair_condition == face_slip) == 4, "slip holds where no jump is given")
+      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, &
+                           1.0e-12_rk*maxval(abs(exact)), "mixed conditions")
+      call checks%is_true(count(model%constraints%pair_condition == face_jump) == 3, &
+                          "jump holds at both ends of its cell")
+      call checks%is_true(count(model%constraints%pair_condition == face_slip) == 4, &
+                          "slip holds where no jump is given")
    end subroutine mixed
 
    !> A crack with two tips held together by zero jumps is no crack.
@@ -162,7 +190,8 @@ contains
       call model%prepare(conditions, error)
       loads = no_loads(model%mesh)
       do node = 1, model%mesh%n_nodes
-         loads%boundary_displacement(:, node) = uniform_field(model%elasticity, stress, model%mesh%xy(:, node))
+         loads%boundary_displacement(:, node) = uniform_field(model%elasticity, stress, &
+                                                              model%mesh%xy(:, node))
       end do
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "closed crack is solved")
@@ -171,7 +200,8 @@ contains
          exact = uniform_field(model%elasticity, stress, model%mesh%xy(:, node))
          largest = max(largest, norm2(displacement(:, node) - exact))
       end do
-      call checks%is_close(largest, 0.0_rk, 1.0e-12_rk*maxval(abs(displacement)), "a crack held closed")
+      call checks%is_close(largest, 0.0_rk, 1.0e-12_rk*maxval(abs(displacement)), &
+                           "a crack held closed")
    end subroutine inside
 
    subroutine refusals()

@@ -26,8 +26,8 @@ program test_fine_model
 
 contains
 
-   !> Uniform stress, carried across a crack by contact traction and fluid pressure on its faces, with
-   !! quarter-point elements at both tips.
+   !> Uniform stress, carried across a crack by contact traction and fluid pressure on its faces,
+   !! with quarter-point elements at both tips.
    subroutine patch_test(plane_stress)
       logical, intent(in) :: plane_stress
       real(rk), parameter :: stress(3) = [-3.0e6_rk, -5.0e6_rk, 1.5e6_rk], pressure = 2.0e6_rk
@@ -54,12 +54,15 @@ contains
       loads%traction(2, :) = stress(2) + pressure
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "patch test is solved")
-      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, 1.0e-12_rk*maxval(abs(exact)), "patch test")
+      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, &
+                           1.0e-12_rk*maxval(abs(exact)), "patch test")
       largest = 0.0_rk
       do cell = 1, model%mesh%n_cells
          found = model%elasticity%total_stress(model%displacement_gradient(displacement, cell, &
-                                                                           [0.2_rk, 0.3_rk, 0.5_rk]), 0.0_rk)
-         largest = max(largest, abs(found(1, 1) - stress(1)), abs(found(2, 2) - stress(2)), abs(found(1, 2) - stress(3)))
+                                                                           [0.2_rk, 0.3_rk, &
+                                                                            0.5_rk]), 0.0_rk)
+         largest = max(largest, abs(found(1, 1) - stress(1)), abs(found(2, 2) - stress(2)), &
+                       abs(found(1, 2) - stress(3)))
       end do
       call checks%is_close(largest, 0.0_rk, 1.0e-4_rk, "patch test: stress")
    end subroutine patch_test
@@ -73,14 +76,16 @@ contains
       type(fine_loads_t) :: loads
       type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
-      real(rk) :: energy(n_meshes), norm(n_meshes), points(3, 7), weights(7), values(6), gradients(2, 6)
+      real(rk) :: energy(n_meshes), norm(n_meshes), points(3, 7), weights(7), values(6), &
+                  gradients(2, 6)
       real(rk) :: area_coordinates(3), determinant, difference(2), gradient(2, 2), step(2), order
       real(rk), parameter :: delta = 1.0e-6_rk
       integer(ik) :: level, node, cell, point, j
 
       call triangle_rule_7(points, weights)
       do level = 1, n_meshes
-         mesh = cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [2_ik, 2_ik]*2_ik**level, 1_ik, 1_ik, 0_ik)
+         mesh = cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [2_ik, 2_ik]*2_ik**level, &
+                                  1_ik, 1_ik, 0_ik)
          call model%set_mesh(mesh, elasticity_t(1.0_rk, 0.3_rk, 1.0_rk, .false.), error)
          call model%prepare(loaded_everywhere(model%mesh), error)
          loads = no_loads(model%mesh)
@@ -94,21 +99,25 @@ contains
          do cell = 1, model%mesh%n_cells
             associate (nodes => model%mesh%cell_nodes(:, cell))
                do point = 1, 7
-                  call evaluate_element(model%mesh%xy(:, nodes), 0_ik, points(:, point), values, gradients, &
+                  call evaluate_element(model%mesh%xy(:, nodes), 0_ik, points(:, point), values, &
+                                        gradients, &
                                         area_coordinates, determinant)
                   associate (place => matmul(model%mesh%xy(:, nodes), values))
-                     difference = matmul(displacement(:, nodes), values) - smooth(model%elasticity, place)
+                     difference = matmul(displacement(:, nodes), values) &
+                                  - smooth(model%elasticity, place)
                      gradient = matmul(displacement(:, nodes), transpose(gradients))
                      do j = 1, 2
                         step = 0.0_rk
                         step(j) = delta
                         gradient(:, j) = gradient(:, j) - (smooth(model%elasticity, place + step) &
-                                                           - smooth(model%elasticity, place - step))/(2.0_rk*delta)
+                                                           - smooth(model%elasticity, &
+                                                                    place - step))/(2.0_rk*delta)
                      end do
                   end associate
                   norm(level) = norm(level) + weights(point)*determinant*sum(difference**2)
                   energy(level) = energy(level) + weights(point)*determinant &
-                                  *0.5_rk*sum(model%elasticity%total_stress(gradient, 0.0_rk)*gradient)
+                                  *0.5_rk*sum(model%elasticity%total_stress(gradient, &
+                                                                            0.0_rk)*gradient)
                end do
             end associate
          end do
@@ -119,7 +128,8 @@ contains
          order = 0.5_rk*log(norm(level - 1)/norm(level))/log(2.0_rk)
          call checks%is_close(order, 3.0_rk, 0.1_rk, "order of convergence in displacement")
       end do
-      print '(a,3es11.3,a,3es11.3)', "energy norm of the error:", sqrt(energy), "   L2 norm:", sqrt(norm)
+      print "(a,3es11.3,a,3es11.3)", "energy norm of the error:", sqrt(energy), "   L2 norm:", &
+         sqrt(norm)
    end subroutine convergence
 
    pure function smooth(elasticity, xy) result(displacement)
@@ -129,19 +139,20 @@ contains
       complex(rk) :: z, value
 
       z = cmplx(xy(1), xy(2), rk)
-      value = (elasticity%kolosov()*exp(z) - z*conjg(exp(z)) - conjg(exp(z)))/(2.0_rk*elasticity%shear_modulus())
+      value = (elasticity%kolosov()*exp(z) - z*conjg(exp(z)) &
+               - conjg(exp(z)))/(2.0_rk*elasticity%shear_modulus())
       displacement = [real(value, rk), aimag(value)]
    end function smooth
 
-   !> A uniform pore pressure in a fixed box, cracked and with the same fluid pressure times Biot's coefficient
-   !! on its faces, moves nothing; the total stress is -biot*p.
+   !> A uniform pore pressure in a fixed box, cracked and with the same fluid pressure times
+   !! Biot's coefficient on its faces, moves nothing; the total stress is -biot*p.
    subroutine initial_stress()
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
-      real(rk) :: stress(2, 2)
+      real(rk) :: stress(2, 2), gradient(2, 2)
 
       mesh = cracked_rectangle([-1.0_rk, 2.0_rk], [0.0_rk, 2.0_rk], [6_ik, 5_ik], 2_ik, 3_ik, 5_ik)
       call model%set_mesh(mesh, elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.), error)
@@ -151,16 +162,18 @@ contains
       loads%fluid_pressure = 0.8_rk*7.0e6_rk
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "initial stress is solved")
-      call checks%is_close(maxval(abs(displacement)), 0.0_rk, 1.0e-17_rk, "uniform pressure moves nothing")
-      stress = model%elasticity%total_stress(model%displacement_gradient(displacement, 3_ik, [0.2_rk, 0.3_rk, 0.5_rk]), &
-                                             7.0e6_rk)
+      call checks%is_close(maxval(abs(displacement)), 0.0_rk, 1.0e-17_rk, &
+                           "uniform pressure moves nothing")
+      gradient = model%displacement_gradient(displacement, 3_ik, [0.2_rk, 0.3_rk, 0.5_rk])
+      stress = model%elasticity%total_stress(gradient, 7.0e6_rk)
       call checks%is_close(stress(1, 1), -5.6e6_rk, 1.0e-3_rk, "total stress xx")
       call checks%is_close(stress(2, 2), -5.6e6_rk, 1.0e-3_rk, "total stress yy")
       call checks%is_close(stress(1, 2), 0.0_rk, 1.0e-3_rk, "total stress xy")
    end subroutine initial_stress
 
-   !> p = p0 + g x between fixed walls: (lambda + 2 mu) u'' = biot g, so u = biot g x (x - L)/(2 (lambda + 2 mu)),
-   !! a quadratic that the elements hold exactly, with quarter-point elements too where they reproduce x.
+   !> p = p0 + g x between fixed walls: (lambda + 2 mu) u'' = biot g, so u = biot g x (x - L)/(2
+   !! (lambda + 2 mu)), a quadratic that the elements hold exactly, with quarter-point elements
+   !! too where they reproduce x.
    subroutine linear_pressure()
       real(rk), parameter :: slope = 3.0e6_rk
       type(mesh_t) :: mesh
@@ -181,7 +194,8 @@ contains
       loads%boundary_displacement = exact
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "linear pressure is solved")
-      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, 1.0e-12_rk*maxval(abs(exact)), "linear pressure")
+      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, &
+                           1.0e-12_rk*maxval(abs(exact)), "linear pressure")
    end subroutine linear_pressure
 
    !> Wrong order of calls, and input that makes no sense.

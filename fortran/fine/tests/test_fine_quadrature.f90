@@ -5,7 +5,8 @@ program test_fine_quadrature
    use fine_quadrature, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk) :: points_3(3, 3), weights_3(3), points_7(3, 7), weights_7(7), points_c(3, 12), weights_c(12)
+   real(rk) :: points_3(3, 3), weights_3(3), points_7(3, 7), weights_7(7), points_c(3, 12), &
+               weights_c(12)
    integer(ik) :: corner
 
    call check_gauss(1_ik)
@@ -33,7 +34,7 @@ contains
 
       call gauss_rule(n, points, weights)
       do k = 0, 2*n - 1
-         write (name, '(2(a,i0))') "Gauss rule, points ", n, ", degree ", k
+         write (name, "(2(a,i0))") "Gauss rule, points ", n, ", degree ", k
          call checks%is_close(sum(weights*points**k), 1.0_rk/(k + 1), 4.0e-15_rk, trim(name))
       end do
       call checks%is_true(abs(sum(weights*points**(2*n)) - 1.0_rk/(2*n + 1)) > 1.0e-12_rk, &
