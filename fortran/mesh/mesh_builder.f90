@@ -6,7 +6,8 @@ module mesh_builder
                              cm_destroy, cm_last_error, cm_locate, cm_map_copy, cm_map_sizes, &
                              cm_network_t, cm_remesh, cm_sizes, cm_spec_t
    use mesh_types, only: mesh_map_t, mesh_t, network_t
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_null_ptr, &
+                                                                             c_ptr
    implicit none(type, external)
    private
 
@@ -24,8 +25,8 @@ module mesh_builder
       real(rk) :: rosette_radius = 0.0_rk  !< [m]; less where something is near
    end type mesh_spec_t
 
-   !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side empty; use
-   !! transfer_mesher to move one.
+   !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
+   !! empty; use transfer_mesher to move one.
    type :: mesher_t
       private
       type(c_ptr) :: handle = c_null_ptr
@@ -68,13 +69,13 @@ contains
       call copy_mesh(mesher, mesh, error)
    end subroutine build_mesh
 
-   !> A mesh that differs from an old one only near the given centres, where fractures have grown. The old
-   !! mesher stays as it is.
+   !> A mesh that differs from an old one only near the given centres, where fractures have grown.
+   !! The old mesher stays as it is.
    subroutine remesh(mesher_old, network, centres, radius, size, mesher_new, mesh, map, error)
       type(mesher_t), intent(in) :: mesher_old
-      type(network_t), intent(in) :: network  !< the old one with vertices added at the ends of fractures
+      type(network_t), intent(in) :: network  !< the old one, vertices added at its ends
       real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
-      real(rk), intent(in) :: radius  !< of the patches [m]; they are enlarged to hold new segments
+      real(rk), intent(in) :: radius  !< of the patches [m]; enlarged to hold new segments
       real(rk), intent(in) :: size  !< length of new fracture cells [m]
       type(mesher_t), intent(inout) :: mesher_new  !< what it held before is released
       type(mesh_t), intent(out) :: mesh
@@ -176,19 +177,11 @@ contains
       end if
       c_network%n_fractures = n
       c_network%first = c_loc(first)
-      c_network%xy = address_or_null(xy)
-      c_network%s_start = c_null_ptr
-      if (n > 0) c_network%s_start = c_loc(s_start)
+      if (n > 0) then
+         c_network%xy = c_loc(xy)
+         c_network%s_start = c_loc(s_start)
+      end if
    end subroutine prepare_network
-
-   !> Address of a matrix; null if it is empty.
-   function address_or_null(matrix) result(address)
-      real(rk), allocatable, target, intent(in) :: matrix(:, :)
-      type(c_ptr) :: address
-
-      address = c_null_ptr
-      if (ubound(matrix, 2) > 0) address = c_loc(matrix)
-   end function address_or_null
 
    !> Take the mesh over from C++.
    subroutine copy_mesh(mesher, mesh, error)
@@ -203,37 +196,18 @@ contains
          return
       end if
       call allocate_mesh(counts, mesh)
+      call point_to_matrix(mesh, arrays)
+      call point_to_fractures(mesh, arrays)
+      if (cm_copy(mesher%handle, arrays) /= 0) then
+         call raise_library_error(error, "copy_mesh")
+         return
+      end if
+      mesh%cell_nodes = mesh%cell_nodes + 1
+      mesh%cell_faces = mesh%cell_faces + 1
+      mesh%face_nodes = mesh%face_nodes + 1
+      mesh%face_cells = mesh%face_cells + 1
+      mesh%face_fracture_cell = mesh%face_fracture_cell + 1
       associate (f => mesh%fracture)
-         arrays%xy = c_loc(mesh%xy)
-         arrays%cell_nodes = c_loc(mesh%cell_nodes)
-         arrays%cell_faces = c_loc(mesh%cell_faces)
-         arrays%face_nodes = c_loc(mesh%face_nodes)
-         arrays%face_cells = c_loc(mesh%face_cells)
-         arrays%face_side = c_loc(mesh%face_side)
-         arrays%face_fracture_cell = c_loc(mesh%face_fracture_cell)
-         arrays%fcell_fracture = c_loc(mesh%fracture%cell_fracture)
-         arrays%fcell_points = c_loc(mesh%fracture%cell_points)
-         arrays%fcell_faces = c_loc(mesh%fracture%cell_faces)
-         arrays%fcell_s = c_loc(mesh%fracture%cell_s)
-         arrays%point_xy = c_loc(mesh%fracture%point_xy)
-         arrays%point_kind = c_loc(mesh%fracture%point_kind)
-         arrays%point_first = c_loc(mesh%fracture%point_first)
-         arrays%point_cells = c_loc(mesh%fracture%point_cells)
-         arrays%tip_point = c_loc(mesh%fracture%tip_point)
-         arrays%tip_node = c_loc(mesh%fracture%tip_node)
-         arrays%tip_fracture = c_loc(mesh%fracture%tip_fracture)
-         arrays%tip_end = c_loc(mesh%fracture%tip_end)
-         arrays%tip_direction = c_loc(mesh%fracture%tip_direction)
-         arrays%tip_radius = c_loc(mesh%fracture%tip_radius)
-         if (cm_copy(mesher%handle, arrays) /= 0) then
-            call raise_library_error(error, "copy_mesh")
-            return
-         end if
-         mesh%cell_nodes = mesh%cell_nodes + 1
-         mesh%cell_faces = mesh%cell_faces + 1
-         mesh%face_nodes = mesh%face_nodes + 1
-         mesh%face_cells = mesh%face_cells + 1
-         mesh%face_fracture_cell = mesh%face_fracture_cell + 1
          f%cell_fracture = f%cell_fracture + 1
          f%cell_points = f%cell_points + 1
          f%cell_faces = f%cell_faces + 1
@@ -244,6 +218,45 @@ contains
          f%tip_fracture = f%tip_fracture + 1
       end associate
    end subroutine copy_mesh
+
+   !> Where C++ puts nodes, cells and faces.
+   subroutine point_to_matrix(mesh, arrays)
+      type(mesh_t), intent(in), target :: mesh
+      type(cm_arrays_t), intent(inout) :: arrays
+
+      arrays%xy = c_loc(mesh%xy)
+      arrays%cell_nodes = c_loc(mesh%cell_nodes)
+      arrays%cell_faces = c_loc(mesh%cell_faces)
+      arrays%face_nodes = c_loc(mesh%face_nodes)
+      arrays%face_cells = c_loc(mesh%face_cells)
+      arrays%face_side = c_loc(mesh%face_side)
+      arrays%face_fracture_cell = c_loc(mesh%face_fracture_cell)
+   end subroutine point_to_matrix
+
+   !> Where C++ puts fracture cells, points and tips; an empty array has no address.
+   subroutine point_to_fractures(mesh, arrays)
+      type(mesh_t), intent(in), target :: mesh
+      type(cm_arrays_t), intent(inout) :: arrays
+
+      arrays%point_first = c_loc(mesh%fracture%point_first)
+      if (mesh%fracture%n_cells > 0) then
+         arrays%fcell_fracture = c_loc(mesh%fracture%cell_fracture)
+         arrays%fcell_points = c_loc(mesh%fracture%cell_points)
+         arrays%fcell_faces = c_loc(mesh%fracture%cell_faces)
+         arrays%fcell_s = c_loc(mesh%fracture%cell_s)
+         arrays%point_xy = c_loc(mesh%fracture%point_xy)
+         arrays%point_kind = c_loc(mesh%fracture%point_kind)
+         arrays%point_cells = c_loc(mesh%fracture%point_cells)
+      end if
+      if (mesh%fracture%n_tips > 0) then
+         arrays%tip_point = c_loc(mesh%fracture%tip_point)
+         arrays%tip_node = c_loc(mesh%fracture%tip_node)
+         arrays%tip_fracture = c_loc(mesh%fracture%tip_fracture)
+         arrays%tip_end = c_loc(mesh%fracture%tip_end)
+         arrays%tip_direction = c_loc(mesh%fracture%tip_direction)
+         arrays%tip_radius = c_loc(mesh%fracture%tip_radius)
+      end if
+   end subroutine point_to_fractures
 
    !> Make room.
    subroutine allocate_mesh(counts, mesh)

@@ -1,6 +1,7 @@
-!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only mesh_builder uses this.
+!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only mesh_builder uses
+!! this.
 module mesh_c_binding
-   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_int32_t, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_null_ptr, c_ptr, c_size_t
    implicit none(type, external)
    private
 
@@ -11,9 +12,9 @@ module mesh_c_binding
    !> Fracture polylines.
    type, bind(C) :: cm_network_t
       integer(c_int32_t) :: n_fractures
-      type(c_ptr) :: first
-      type(c_ptr) :: xy
-      type(c_ptr) :: s_start
+      type(c_ptr) :: first = c_null_ptr
+      type(c_ptr) :: xy = c_null_ptr
+      type(c_ptr) :: s_start = c_null_ptr
    end type cm_network_t
 
    !> What to mesh.
@@ -33,38 +34,40 @@ module mesh_c_binding
 
    !> Arrays of the caller that cm_copy fills.
    type, bind(C) :: cm_arrays_t
-      type(c_ptr) :: xy
-      type(c_ptr) :: cell_nodes
-      type(c_ptr) :: cell_faces
-      type(c_ptr) :: face_nodes
-      type(c_ptr) :: face_cells
-      type(c_ptr) :: face_side
-      type(c_ptr) :: face_fracture_cell
-      type(c_ptr) :: fcell_fracture
-      type(c_ptr) :: fcell_points
-      type(c_ptr) :: fcell_faces
-      type(c_ptr) :: fcell_s
-      type(c_ptr) :: point_xy
-      type(c_ptr) :: point_kind
-      type(c_ptr) :: point_first
-      type(c_ptr) :: point_cells
-      type(c_ptr) :: tip_point
-      type(c_ptr) :: tip_node
-      type(c_ptr) :: tip_fracture
-      type(c_ptr) :: tip_end
-      type(c_ptr) :: tip_direction
-      type(c_ptr) :: tip_radius
+      type(c_ptr) :: xy = c_null_ptr
+      type(c_ptr) :: cell_nodes = c_null_ptr
+      type(c_ptr) :: cell_faces = c_null_ptr
+      type(c_ptr) :: face_nodes = c_null_ptr
+      type(c_ptr) :: face_cells = c_null_ptr
+      type(c_ptr) :: face_side = c_null_ptr
+      type(c_ptr) :: face_fracture_cell = c_null_ptr
+      type(c_ptr) :: fcell_fracture = c_null_ptr
+      type(c_ptr) :: fcell_points = c_null_ptr
+      type(c_ptr) :: fcell_faces = c_null_ptr
+      type(c_ptr) :: fcell_s = c_null_ptr
+      type(c_ptr) :: point_xy = c_null_ptr
+      type(c_ptr) :: point_kind = c_null_ptr
+      type(c_ptr) :: point_first = c_null_ptr
+      type(c_ptr) :: point_cells = c_null_ptr
+      type(c_ptr) :: tip_point = c_null_ptr
+      type(c_ptr) :: tip_node = c_null_ptr
+      type(c_ptr) :: tip_fracture = c_null_ptr
+      type(c_ptr) :: tip_end = c_null_ptr
+      type(c_ptr) :: tip_direction = c_null_ptr
+      type(c_ptr) :: tip_radius = c_null_ptr
    end type cm_arrays_t
 
    interface
       !> Why the last call of this thread failed, ended by a null character.
       function cm_last_error() result(text) bind(C, name="cm_last_error")
          import :: c_ptr
+         implicit none(type, external)
          type(c_ptr) :: text
       end function cm_last_error
 
       function cm_create(spec, network, mesh) result(status) bind(C, name="cm_create")
          import :: c_int, c_ptr, cm_network_t, cm_spec_t
+         implicit none(type, external)
          type(cm_spec_t), intent(in) :: spec
          type(cm_network_t), intent(in) :: network
          type(c_ptr), intent(out) :: mesh
@@ -74,10 +77,11 @@ module mesh_c_binding
       function cm_remesh(old_mesh, network, n_centres, centres, radius, size, new_mesh) &
          result(status) bind(C, name="cm_remesh")
          import :: c_double, c_int, c_int32_t, c_ptr, cm_network_t
+         implicit none(type, external)
          type(c_ptr), value :: old_mesh
          type(cm_network_t), intent(in) :: network
          integer(c_int32_t), value :: n_centres
-         real(c_double), intent(in) :: centres(2, *)
+         real(c_double), intent(in) :: centres(2, n_centres)
          real(c_double), value :: radius, size
          type(c_ptr), intent(out) :: new_mesh
          integer(c_int) :: status
@@ -85,6 +89,7 @@ module mesh_c_binding
 
       function cm_sizes(mesh, counts) result(status) bind(C, name="cm_sizes")
          import :: c_int, c_ptr, cm_counts_t
+         implicit none(type, external)
          type(c_ptr), value :: mesh
          type(cm_counts_t), intent(out) :: counts
          integer(c_int) :: status
@@ -92,6 +97,7 @@ module mesh_c_binding
 
       function cm_copy(mesh, arrays) result(status) bind(C, name="cm_copy")
          import :: c_int, c_ptr, cm_arrays_t
+         implicit none(type, external)
          type(c_ptr), value :: mesh
          type(cm_arrays_t), intent(in) :: arrays
          integer(c_int) :: status
@@ -99,14 +105,18 @@ module mesh_c_binding
 
       function cm_map_sizes(new_mesh, n_overlaps) result(status) bind(C, name="cm_map_sizes")
          import :: c_int, c_int32_t, c_ptr
+         implicit none(type, external)
          type(c_ptr), value :: new_mesh
          integer(c_int32_t), intent(out) :: n_overlaps
          integer(c_int) :: status
       end function cm_map_sizes
 
+      ! The caller has the sizes from cm_sizes and cm_map_sizes.
+      ! allow(assumed-size)
       function cm_map_copy(new_mesh, cell_old, overlap_first, overlap_cell, overlap_area, &
                            fcell_old) result(status) bind(C, name="cm_map_copy")
          import :: c_double, c_int, c_int32_t, c_ptr
+         implicit none(type, external)
          type(c_ptr), value :: new_mesh
          integer(c_int32_t), intent(out) :: cell_old(*), overlap_first(*), overlap_cell(*)
          real(c_double), intent(out) :: overlap_area(*)
@@ -116,22 +126,24 @@ module mesh_c_binding
 
       function cm_locate(mesh, n_points, xy, cells) result(status) bind(C, name="cm_locate")
          import :: c_double, c_int, c_int32_t, c_ptr
+         implicit none(type, external)
          type(c_ptr), value :: mesh
          integer(c_int32_t), value :: n_points
-         real(c_double), intent(in) :: xy(2, *)
-         integer(c_int32_t), intent(out) :: cells(*)
+         real(c_double), intent(in) :: xy(2, n_points)
+         integer(c_int32_t), intent(out) :: cells(n_points)
          integer(c_int) :: status
       end function cm_locate
 
       subroutine cm_destroy(mesh) bind(C, name="cm_destroy")
          import :: c_ptr
+         implicit none(type, external)
          type(c_ptr), intent(inout) :: mesh
       end subroutine cm_destroy
 
       !> strlen of the C library.
       function c_string_length(text) result(n) bind(C, name="strlen")
-         use, intrinsic :: iso_c_binding, only: c_size_t
-         import :: c_ptr
+         import :: c_ptr, c_size_t
+         implicit none(type, external)
          type(c_ptr), value :: text
          integer(c_size_t) :: n
       end function c_string_length
