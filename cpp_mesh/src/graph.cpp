@@ -62,18 +62,8 @@ private:
         for (int k = 0; k < static_cast<int>(graph_.points.size()); ++k)
             if (distance(at(k), p) <= tolerances_.same)
                 return k;
-        bool on_boundary = false;
-        const auto snap = [&](double& coordinate, double side) {
-            if (std::abs(coordinate - side) <= tolerances_.same) {
-                coordinate = side;
-                on_boundary = true;
-            }
-        };
-        snap(p.x, rectangle_.x_min);
-        snap(p.x, rectangle_.x_max);
-        snap(p.y, rectangle_.y_min);
-        snap(p.y, rectangle_.y_max);
-        graph_.points.push_back({p, on_boundary});
+        p = snapped(p);
+        graph_.points.push_back({p, rectangle_.depth(p) == 0.0});
         return static_cast<int>(graph_.points.size()) - 1;
     }
 
@@ -86,33 +76,15 @@ private:
             throw MeshError(fracture_name(segment.fracture) + " has a segment of length " +
                             number_text(distance(a, b)) + " m" + place_text(a) +
                             ", which is too short to be meshed; remove a vertex");
-        double t_in = 0.0, t_out = 1.0;
+        Vec2 p = snapped(a), q = snapped(b);
         if (clip_) {
-            const auto cut = [&](double speed, double room) {
-                if (speed == 0.0) {
-                    if (room < 0.0)
-                        t_out = -1.0;
-                } else if (speed < 0.0) {
-                    t_in = std::max(t_in, room / speed);
-                } else {
-                    t_out = std::min(t_out, room / speed);
-                }
-            };
-            const double slack = tolerances_.same;
-            cut(a.x - b.x, a.x - rectangle_.x_min + slack);
-            cut(b.x - a.x, rectangle_.x_max - a.x + slack);
-            cut(a.y - b.y, a.y - rectangle_.y_min + slack);
-            cut(b.y - a.y, rectangle_.y_max - a.y + slack);
-            if ((t_out - t_in) * distance(a, b) <= 4.0 * slack)
+            if (!clip(p, q))
                 return;
-        } else if (rectangle_.depth(a) < -tolerances_.same ||
-                   rectangle_.depth(b) < -tolerances_.same) {
-            const Vec2 outside = rectangle_.depth(a) < rectangle_.depth(b) ? a : b;
+        } else if (rectangle_.depth(p) < 0.0 || rectangle_.depth(q) < 0.0) {
+            const Vec2 outside = rectangle_.depth(p) < rectangle_.depth(q) ? a : b;
             throw MeshError(fracture_name(segment.fracture) + " leaves the domain" +
                             place_text(outside) + "; shorten it or enlarge the domain");
         }
-        const Vec2 p = t_in > 0.0 ? onto_side(along(a, b, t_in)) : a;
-        const Vec2 q = t_out < 1.0 ? onto_side(along(a, b, t_out)) : b;
         const int k = point_at(p), l = point_at(q);
         check_depth(segment, k);
         check_depth(segment, l);
@@ -124,11 +96,36 @@ private:
         cuts_[i] = {{0.0, k}, {distance(at(k), at(l)), l}};
     }
 
-    // Clipping leaves the tolerance as a rest, which would be mistaken for a near miss.
-    Vec2 onto_side(Vec2 p) const {
-        const double slack = 4.0 * tolerances_.same;
-        const auto snap = [slack](double& coordinate, double side) {
-            if (std::abs(coordinate - side) <= slack)
+    // Cut the segment p-q at the rectangle's sides (Liang and Barsky 1984); false if nothing is
+    // left.
+    bool clip(Vec2& p, Vec2& q) const {
+        double t_in = 0.0, t_out = 1.0;
+        const auto cut = [&](double speed, double room) { // towards a side, room up to it
+            if (speed < 0.0)
+                t_in = std::max(t_in, room / speed);
+            else if (speed > 0.0)
+                t_out = std::min(t_out, room / speed);
+            else if (room < 0.0)
+                t_out = -1.0;
+        };
+        const Vec2 a = p, b = q;
+        cut(a.x - b.x, a.x - rectangle_.x_min);
+        cut(b.x - a.x, rectangle_.x_max - a.x);
+        cut(a.y - b.y, a.y - rectangle_.y_min);
+        cut(b.y - a.y, rectangle_.y_max - a.y);
+        if ((t_out - t_in) * distance(a, b) <= tolerances_.same)
+            return false;
+        if (t_in > 0.0)
+            p = snapped(along(a, b, t_in));
+        if (t_out < 1.0)
+            q = snapped(along(a, b, t_out));
+        return true;
+    }
+
+    // Points within the tolerance of a side lie on it.
+    Vec2 snapped(Vec2 p) const {
+        const auto snap = [this](double& coordinate, double side) {
+            if (std::abs(coordinate - side) <= tolerances_.same)
                 coordinate = side;
         };
         snap(p.x, rectangle_.x_min);

@@ -42,6 +42,24 @@ void cut_fractures(Checks& checks) {
     }
 }
 
+// Cutting loses no length, also of short and oblique pieces.
+void cut_lengths(Checks& checks) {
+    const double slope = 0.72 / 1.58;
+    ApiMesh mesh;
+    checks.is_true(mesh.create(window(0.0, 1.0, 0.0, 1.0, 0.05, 0.0),
+                               TestNetwork({{{-0.37, 0.11}, {1.21, 0.83}},
+                                            {{0.97, 0.1}, {2.97, 0.1 + 2.0 * slope}},
+                                            {{0.5, -7.0}, {0.5, 0.001}},
+                                            {{0.2, 1.0}, {0.2, 3.0}}})),
+                   mesh.error);
+    const double oblique = std::sqrt(1.0 + slope * slope);
+    checks.is_close(mesh.fracture_length(0), oblique, 1e-14, "cut lengths: through");
+    checks.is_close(mesh.fracture_length(1), 0.03 * oblique, 1e-15, "cut lengths: short");
+    checks.is_close(mesh.fracture_length(2), 0.001, 1e-15, "cut lengths: very short");
+    checks.is_close(mesh.fracture_length(3), 0.0, 0.0, "cut lengths: from the edge outwards");
+    checks.is_equal(mesh.counts.n_tips, 2, "cut lengths: tips");
+}
+
 void check_rosette(Checks& checks, const ApiMesh& mesh, int t, double radius,
                    const std::string& name) {
     const int tip = mesh.tip_node[t];
@@ -139,6 +157,7 @@ void reduced_rosettes(Checks& checks) {
 int main() {
     Checks checks;
     cut_fractures(checks);
+    cut_lengths(checks);
     rosettes(checks);
     short_wings(checks);
     reduced_rosettes(checks);

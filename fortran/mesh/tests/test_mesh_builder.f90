@@ -31,7 +31,7 @@ contains
       integer :: f, n
 
       n = ubound(ends, 3)
-      network%first = [(1_ik + 2_ik*f, f=0, n)]
+      allocate (network%first, source=[(1_ik + 2_ik*f, f=0, n)])
       allocate (network%xy, source=reshape(ends, [2, 2*n]))
       allocate (network%s_start(n), source=0.0_rk)
    end function straight_network
