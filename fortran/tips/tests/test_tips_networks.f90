@@ -12,6 +12,7 @@ program test_tips_networks
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
+   use sample_meshes, only: cracked_rectangle
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
    implicit none(type, external)
@@ -28,6 +29,7 @@ program test_tips_networks
    call kinked(70.5288_rk, 0.3_rk, [0.0_rk, 0.0_rk, 1.0e6_rk], &
                [-1.086233605_rk, -0.05605287735_rk, -0.03944285304_rk, 1.104433988_rk])
    call crossing()
+   call kink_behind()
    call checks%finish()
 
 contains
@@ -156,8 +158,8 @@ contains
       type(intensity_t) :: intensity
       type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
-      real(rk) :: total(2), tau(2), largest
-      integer(ik) :: node, cell, tip
+      real(rk) :: largest
+      integer(ik) :: tip
 
       allocate (network%first, source=[1_ik, 3_ik, 5_ik, 7_ik])
       allocate (network%xy, source=reshape([-1.0_rk, -0.5_rk, 1.0_rk, 0.5_rk, -0.4_rk, 1.0_rk, &
@@ -175,15 +177,7 @@ contains
       call model%prepare(conditions, error)
       call checks%no_error(error, "crossing is set up")
       loads = no_loads(model%mesh)
-      do node = 1, model%mesh%n_nodes
-         loads%boundary_displacement(:, node) = uniform_field(rock, remote, model%mesh%xy(:, node))
-      end do
-      do cell = 1, model%mesh%fracture%n_cells
-         tau = model%mesh%face_tangent(:, cell)
-         total = matmul(reshape([remote(1), remote(3), remote(3), remote(2)], [2, 2]), &
-                        [-tau(2), tau(1)])
-         loads%traction(:, cell) = [dot_product(total, tau), dot_product(total, [-tau(2), tau(1)])]
-      end do
+      call set_uniform(model, remote, loads)
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "crossing is solved")
       largest = maxval(norm2(displacement - loads%boundary_displacement, dim=1))
@@ -198,5 +192,64 @@ contains
       end do
       call checks%is_true(model%mesh%fracture%n_tips == 4, "four free tips")
    end subroutine crossing
+
+   !> A coarse mesh in which an element of the domain reaches behind a kink across the prolongation of
+   !! the tip's segment, where the angle of the auxiliary field has to be continued. Under a
+   !! uniform stress, carried across the crack, K = 0 up to the error of integration.
+   subroutine kink_behind()
+      real(rk), parameter :: remote(3) = [1.0_rk, 2.0_rk, 0.7_rk], slope = -1.5_rk
+      type(mesh_t) :: mesh
+      type(fine_model_t) :: model
+      type(fine_loads_t) :: loads
+      type(intensity_t) :: intensity
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :)
+      integer(ik) :: node
+
+      ! The tip is at (2, 0), the kink at (1, 0).
+      mesh = cracked_rectangle([-4.0_rk, 4.0_rk], [-4.0_rk, 4.0_rk], [8_ik, 8_ik], 4_ik, 3_ik, 6_ik)
+      node = minloc((mesh%xy(1, :) - 1.0_rk)**2 + (mesh%xy(2, :) + 1.0_rk)**2, dim=1)
+      mesh%xy(:, node) = [1.15_rk, -0.3_rk]
+      call bend(slope, mesh%xy)
+      call bend(slope, mesh%fracture%point_xy)
+      call model%set_mesh(mesh, rock, error)
+      call checks%no_error(error, "bent mesh")
+      call model%prepare(loaded_everywhere(model%mesh), error)
+      loads = no_loads(model%mesh)
+      call set_uniform(model, remote, loads)
+      call model%solve(loads, displacement, error)
+      call checks%no_error(error, "bent mesh is solved")
+      call tip_intensity(model, loads, displacement, 2_ik, intensity, error)
+      call checks%is_close(intensity%radius, 1.0_rk, 1.0e-12_rk, "the domain ends at the kink")
+      call checks%is_close(intensity%k1, 0.0_rk, 5.0e-4_rk, "no K_I beside a kink")
+      call checks%is_close(intensity%k2, 0.0_rk, 5.0e-4_rk, "no K_II beside a kink")
+   end subroutine kink_behind
+
+   !> Shear what lies left of a kink at x = 1.
+   subroutine bend(slope, xy)
+      real(rk), intent(in) :: slope
+      real(rk), intent(inout) :: xy(:, :)
+
+      xy(2, :) = xy(2, :) + slope*min(0.0_rk, xy(1, :) - 1.0_rk)
+   end subroutine bend
+
+   !> Displacements and face tractions of a uniform stress.
+   subroutine set_uniform(model, stress, loads)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: stress(3)
+      type(fine_loads_t), intent(inout) :: loads
+      real(rk) :: total(2), tau(2), n(2)
+      integer(ik) :: node, cell
+
+      do node = 1, model%mesh%n_nodes
+         loads%boundary_displacement(:, node) = uniform_field(rock, stress, model%mesh%xy(:, node))
+      end do
+      do cell = 1, model%mesh%fracture%n_cells
+         tau = model%mesh%face_tangent(:, cell)
+         n = [-tau(2), tau(1)]
+         total = [stress(1)*n(1) + stress(3)*n(2), stress(3)*n(1) + stress(2)*n(2)]
+         loads%traction(:, cell) = [dot_product(total, tau), dot_product(total, n)]
+      end do
+   end subroutine set_uniform
 
 end program test_tips_networks
