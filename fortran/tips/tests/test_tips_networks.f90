@@ -193,8 +193,8 @@ contains
       call checks%is_true(model%mesh%fracture%n_tips == 4, "four free tips")
    end subroutine crossing
 
-   !> A coarse mesh in which an element of the domain reaches behind a kink across the prolongation of
-   !! the tip's segment, where the angle of the auxiliary field has to be continued. Under a
+   !> A coarse mesh in which an element of the domain reaches behind a kink, across the prolongation
+   !! of the tip's segment, where the angle of the auxiliary field has to be continued. Under a
    !! uniform stress, carried across the crack, K = 0 up to the error of integration.
    subroutine kink_behind()
       real(rk), parameter :: remote(3) = [1.0_rk, 2.0_rk, 0.7_rk], slope = -1.5_rk
