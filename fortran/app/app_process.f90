@@ -1,0 +1,36 @@
+!> Interrupts and memory of the process.
+module app_process
+   use, intrinsic :: iso_c_binding, only: c_int
+   implicit none(type, external)
+   private
+
+   public :: catch_interrupts, interrupted, keep_heap
+
+   interface
+      !> From now on the first two interrupts are noted; a third one ends the program.
+      subroutine catch_interrupts() bind(C, name="app_catch_interrupts")
+         implicit none(type, external)
+      end subroutine catch_interrupts
+
+      !> Keep freed memory for the next factorization.
+      subroutine keep_heap() bind(C, name="app_keep_heap")
+         implicit none(type, external)
+      end subroutine keep_heap
+
+      function c_interrupted() result(answer) bind(C, name="app_interrupted")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int) :: answer
+      end function c_interrupted
+   end interface
+
+contains
+
+   !> The user has asked the run to stop.
+   function interrupted()
+      logical :: interrupted
+
+      interrupted = c_interrupted() /= 0
+   end function interrupted
+
+end module app_process

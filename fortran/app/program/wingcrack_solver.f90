@@ -1,0 +1,121 @@
+!> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
+program wingcrack_solver
+   use app_check, only: describe_scene, require_supported
+   use app_process, only: catch_interrupts, keep_heap
+   use app_run, only: run_scene
+   use app_version, only: version
+   use base_errors, only: error_t
+   use scene_describe, only: describe_input
+   use scene_namelist, only: read_scene
+   use scene_types, only: scene_t
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   implicit none(type, external)
+
+   integer, parameter :: exit_failed = 1, exit_usage = 2, exit_interrupted = 130
+   character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] [--quiet] | " &
+      //"check SCENE.nml | name SCENE.nml | --describe-input | --version"
+
+   select case (argument(1))
+   case ("run")
+      call run()
+   case ("check")
+      call check()
+   case ("name")
+      call print_name()
+   case ("--describe-input")
+      call describe_input(output_unit)
+   case ("--version")
+      write (output_unit, '(2a)') "wingcrack ", version
+   case ("--help")
+      write (output_unit, '(a)') usage
+   case default
+      call leave(usage, exit_usage)
+   end select
+
+contains
+
+   subroutine run()
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: directory
+      logical :: quiet, refused, was_interrupted
+      integer :: i
+
+      quiet = .false.
+      directory = ""
+      i = 3
+      do while (i <= command_argument_count())
+         select case (argument(i))
+         case ("--quiet")
+            quiet = .true.
+         case ("--out")
+            i = i + 1
+            directory = argument(i)
+            if (len(directory) == 0) call leave("--out needs a directory", exit_usage)
+         case default
+            call leave("unknown argument "//argument(i)//"; "//usage, exit_usage)
+         end select
+         i = i + 1
+      end do
+      call read_scene(argument(2), scene, error)
+      if (.not. allocated(error)) call require_supported(scene, argument(2), error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+      if (len(directory) == 0) directory = "out/"//trim(scene%name)
+
+      call keep_heap()
+      call catch_interrupts()
+      call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
+      if (allocated(error)) then
+         if (refused) call leave(argument(2)//": "//error%message, exit_usage)
+         call leave(error%message, exit_failed)
+      end if
+      if (was_interrupted) call leave("interrupted; the last state is in "//directory, exit_interrupted)
+      if (.not. quiet) write (output_unit, '(2a)') "results in ", directory
+   end subroutine run
+
+   subroutine check()
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
+      call read_scene(argument(2), scene, error)
+      if (.not. allocated(error)) call require_supported(scene, argument(2), error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+      call describe_scene(scene, output_unit)
+   end subroutine check
+
+   !> The scene's name, of which the default directory is made.
+   subroutine print_name()
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call read_scene(argument(2), scene, error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+      write (output_unit, '(a)') trim(scene%name)
+   end subroutine print_name
+
+   !> A command-line argument; empty where there is none.
+   function argument(i) result(text)
+      integer, intent(in) :: i
+      character(len=:), allocatable :: text
+      integer :: length
+
+      if (i > command_argument_count()) then
+         text = ""
+         return
+      end if
+      call get_command_argument(i, length=length)
+      allocate (character(len=length) :: text)
+      call get_command_argument(i, text)
+   end function argument
+
+   !> End the program; the reason is the last line on stderr.
+   subroutine leave(reason, status)
+      character(len=*), intent(in) :: reason
+      integer, intent(in) :: status
+
+      write (error_unit, '(2a)') "wingcrack: ", reason
+      stop status, quiet=.true.
+   end subroutine leave
+
+end program wingcrack_solver
