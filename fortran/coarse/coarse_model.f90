@@ -33,6 +33,7 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       logical :: drained = .false.  !< fluid may cross the outer boundary
+      real(rk), allocatable :: source(:, :)  !< (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
    contains
       procedure :: set_mesh
       procedure :: equilibrate
@@ -140,6 +141,10 @@ contains
       rhs = self%matrix%elastic_known
       rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
       rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - state%content
+      if (allocated(self%source)) then
+         rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
+         rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*self%source(3, :)
+      end if
       call timers%stop(phase_assemble)
       call timers%start(phase_solve)
       call self%condensed%condense(rhs, g, error)
@@ -186,6 +191,7 @@ contains
             + after%aperture*self%settings%compressibility*(after%pressure - before%pressure))) &
             - dt*sum(self%cells%injection)
       end if
+      if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
       if (self%drained) then
          allocate (outflow(mesh%n_cells))
          call cell_outflow(mesh, self%regions, after%unknowns, outflow)
