@@ -13,6 +13,8 @@ module app_journal
    use output_record, only: run_record_t
    use output_run, only: run_output_t
    use output_tables, only: event_arrest, event_growth, event_opening, event_remesh, event_slip_onset
+   use tips_growth, only: growth_drive_t
+   use tips_types, only: intensity_t
    use twolevel_network, only: total_length
    use twolevel_simulation, only: simulation_t
    implicit none(type, external)
@@ -243,7 +245,7 @@ contains
       end associate
    end subroutine write_fields
 
-   !> A row of tips.csv for each tip.
+   !> A row of tips.csv for each tip: where it was before it grew, if it did.
    subroutine tips_done(self, simulation, timers)
       class(journal_t), intent(inout) :: self
       type(simulation_t), intent(in) :: simulation
@@ -254,13 +256,29 @@ contains
       call timers%start(phase_output)
       do i = 1, size(simulation%tips%tip)
          associate (tip => simulation%tips%tip(i))
-            call self%files%tip_row(tip_row_t(time=simulation%state%time, tip=i, fracture=tip%fracture, &
-               xy=tip%xy, k1=tip%intensity%k1, k2=tip%intensity%k2, k1_dc=tip%intensity%k1_dc, &
-               k2_dc=tip%intensity%k2_dc, keq=tip%drive%intensity, g=tip%drive%energy, &
-               angle=tip%drive%angle, advance=tip%advance))
+            if (tip%advance > 0.0_rk) then
+               call add_row(tip%origin, tip%intensity_before, tip%drive_before, tip%kink, tip%advance)
+            else
+               call add_row(tip%xy, tip%intensity, tip%drive, tip%drive%angle, 0.0_rk)
+            end if
          end associate
       end do
       call timers%stop(phase_output)
+
+   contains
+
+      subroutine add_row(xy, intensity, drive, angle, advance)
+         real(rk), intent(in) :: xy(2)
+         type(intensity_t), intent(in) :: intensity
+         type(growth_drive_t), intent(in) :: drive
+         real(rk), intent(in) :: angle, advance
+
+         call self%files%tip_row(tip_row_t(time=simulation%state%time, tip=i, &
+            fracture=simulation%tips%tip(i)%fracture, xy=xy, k1=intensity%k1, k2=intensity%k2, &
+            k1_dc=intensity%k1_dc, k2_dc=intensity%k2_dc, keq=drive%intensity, g=drive%energy, &
+            angle=angle, advance=advance))
+      end subroutine add_row
+
    end subroutine tips_done
 
    !> Events of the tips that have just grown, stopped, or been handed to the coarse level.
@@ -283,7 +301,7 @@ contains
          associate (tip => simulation%tips%tip(i))
             if (tip%advance > 0.0_rk) then
                write (detail, '(a,es10.3,a,f7.2,a)') "advance ", tip%advance, " m, kink ", &
-                  tip%drive%angle*45.0_rk/atan(1.0_rk), " deg"
+                  tip%kink*45.0_rk/atan(1.0_rk), " deg"
                call self%files%event_row(simulation%state%time, event_growth, trim(detail), tip%fracture, &
                   tip%xy)
             else if (allocated(tip%arrest_reason)) then

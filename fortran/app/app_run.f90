@@ -195,11 +195,12 @@ contains
          increment = scene%growth%increment
          if (.not. increment > 0.0_rk) increment = scene%discretization%fine_ratio &
             *scene%discretization%size_fracture
+         call simulation%evaluate_tips(timers, error)
          do
-            call simulation%evaluate_tips(timers, error)
             if (allocated(error)) return
             any_grew = .false.
-            if (scene%growth%enabled) call simulation%tips%grow(scene, increment, any_grew)
+            if (scene%growth%enabled) call simulation%grow_tips(increment, any_grew, timers, error)
+            if (allocated(error)) return
             call journal%tips_done(simulation, timers)
             call journal%growth_done(simulation, .false.)
             if (.not. any_grew) return

@@ -34,25 +34,32 @@ module coarse_contact
 contains
 
    !> Normal and tangential equation with their derivatives.
-   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, state, residual, &
+   !!
+   !! A cell that slipped one way in the last iteration and would slip the other way now is tried as sticking:
+   !! without this the iteration may go to and fro between the two.
+   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
       by_traction, by_jump)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
       real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
       real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
+      integer(ik), intent(inout) :: way  !< direction of slip in this iteration: -1, 1, or 0 for none
       integer(ik), intent(out) :: state
       real(rk), intent(out) :: residual(2)  !< [Pa]
       real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j
       real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
 
-      real(rk) :: gap_slope, pressure, shear, way
+      real(rk) :: gap_slope, pressure, shear
+      integer(ik) :: way_before
 
       shear = traction(2) + stiffness*(jump(2) - slip_before)
       gap_slope = law%dilation*sign(1.0_rk, merge(jump(2), shear, abs(jump(2)) > 0.0_rk))
       pressure = -traction(1) - stiffness*(jump(1) - gap_slope*jump(2))
       by_traction = 0.0_rk
       by_jump = 0.0_rk
+      way_before = way
+      way = 0
       if (.not. pressure > 0.0_rk) then
          state = state_open
          residual = traction
@@ -62,13 +69,14 @@ contains
       end if
       residual(1) = stiffness*(jump(1) - gap_slope*jump(2))
       by_jump(1, :) = stiffness*[1.0_rk, -gap_slope]
-      if (abs(shear) < law%friction*pressure) then
+      if (.not. abs(shear) < law%friction*pressure) way = merge(1, -1, shear > 0.0_rk)
+      if (way*way_before < 0 .and. law%friction > 0.0_rk) way = 0
+      if (way == 0) then
          state = state_stick
          residual(2) = stiffness*(jump(2) - slip_before)
          by_jump(2, 2) = stiffness
       else
          state = state_slip
-         way = sign(1.0_rk, shear)
          residual(2) = traction(2) - law%friction*pressure*way
          by_traction(2, :) = [law%friction*way, 1.0_rk]
          by_jump(2, :) = law%friction*way*stiffness*[1.0_rk, -gap_slope]

@@ -74,7 +74,7 @@ contains
       type(equations_t) :: eq
       real(rk), allocatable :: x(:), step(:, :), traction(:, :, :)
       real(rk) :: worst
-      integer(ik), allocatable :: contact(:, :), before(:, :), pivots(:)
+      integer(ik), allocatable :: contact(:, :), before(:, :), way(:, :), pivots(:)
       integer(ik) :: i, info, n, n_all
 
       n = condensed%n
@@ -82,6 +82,7 @@ contains
       call prepare(condensed, settings, dt, n_all, eq)
       allocate (x(n_all), source=0.0_rk)
       allocate (step(n_all, 1), pivots(n_all), traction(2, 2, n), contact(2, n))
+      allocate (way(2, n), source=0_ik)
       before = state%contact
       do i = 1, n
          x(7*i - 6:7*i - 5) = state%jump(:, 1, i)*eq%stiffness
@@ -90,7 +91,7 @@ contains
       end do
 
       do while (report%iterations <= settings%iterations_max)
-         call evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, contact)
+         call evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, contact)
          report%stress_scale = max(maxval(abs(traction)), maxval(abs(x(7:per_cell*n:7))), 1.0_rk)
          worst = maxval(abs(eq%residual))/report%stress_scale
          if (.not. worst <= huge(1.0_rk)) then
@@ -180,7 +181,8 @@ contains
    end subroutine prepare
 
    !> Residuals [Pa] and their derivatives at x.
-   subroutine evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, contact)
+   subroutine evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, &
+      contact)
       type(condensed_t), intent(in) :: condensed
       type(fracture_cells_t), intent(in) :: cells
       integer(ik), intent(in) :: connections(:, :)
@@ -189,6 +191,7 @@ contains
       type(state_t), intent(in) :: state
       type(equations_t), intent(inout) :: eq
       real(rk), intent(out) :: q(:), traction(:, :, :)
+      integer(ik), intent(inout) :: way(:, :)  !< direction of slip at the ends of each cell
       integer(ik), intent(out) :: contact(:, :)
 
       integer(ik) :: end, i, k
@@ -202,7 +205,7 @@ contains
       do i = 1, condensed%n
          do end = 1, 2
             call contact_rows(cells%law(i), i, end, 0.5_rk*condensed%length(i), state%jump(2, end, i), &
-               q, x, eq, traction(:, end, i), contact(end, i))
+               q, x, eq, traction(:, end, i), way(end, i), contact(end, i))
          end do
          if (settings%equilibrate) then
             call equilibrium_rows(i, x, eq)
@@ -217,12 +220,13 @@ contains
    end subroutine evaluate
 
    !> The two contact equations at one end of cell i.
-   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, contact)
+   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, way, contact)
       type(contact_law_t), intent(in) :: law
       integer(ik), intent(in) :: i, end
       real(rk), intent(in) :: half_length, slip_before, q(:), x(:)
       type(equations_t), intent(inout) :: eq
       real(rk), intent(out) :: traction(:)
+      integer(ik), intent(inout) :: way
       integer(ik), intent(out) :: contact
 
       real(rk) :: by_traction(2, 2), by_jump(2, 2)
@@ -232,8 +236,8 @@ contains
       at = 6*i - 5 + 3*(end - 1)
       row = 7*i - 6 + 3*(end - 1)
       traction = [x(7*i), 0.0_rk] - eq%force(at:at + 1)/half_length
-      call contact_equations(law, eq%stiffness, traction, q(at:at + 1), slip_before, contact, &
-         eq%residual(row:row + 1), by_traction, by_jump)
+      call contact_equations(law, eq%stiffness, traction, q(at:at + 1), slip_before, way, &
+         contact, eq%residual(row:row + 1), by_traction, by_jump)
       do k = 1, 2
          associate (slope => eq%jacobian(:, row + k - 1))
             do m = 1, 2

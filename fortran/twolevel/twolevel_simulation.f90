@@ -44,6 +44,7 @@ module twolevel_simulation
       procedure :: step
       procedure :: update_level
       procedure :: evaluate_tips
+      procedure :: grow_tips
       procedure :: grow_coarse
       procedure :: rate
       procedure :: next_switch
@@ -236,6 +237,31 @@ contains
       call self%tips%evaluate(self%scene, self%mesher, self%mesh, self%level, self%state, error)
       call timers%stop(phase_tips)
    end subroutine evaluate_tips
+
+   !> Advance the tips that grow, in the direction in which they go on straight (twolevel_tips), and
+   !! evaluate them there.
+   subroutine grow_tips(self, increment, any_grew, timers, error)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: increment  !< l_max [m]
+      logical, intent(out) :: any_grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: corrections = 3
+      integer :: k
+      logical :: any_turned
+
+      call self%tips%grow(self%scene, increment, any_grew)
+      if (.not. any_grew) return
+      call self%evaluate_tips(timers, error)
+      do k = 1, corrections
+         if (allocated(error)) return
+         call self%tips%correct(any_turned)
+         if (.not. any_turned) exit
+         call self%evaluate_tips(timers, error)
+      end do
+      where (self%tips%tip%advance > 0.0_rk) self%tips%tip%has_wing = .true.
+   end subroutine grow_tips
 
    !> Let the coarse level follow what the tips have grown, if that has reached its threshold.
    subroutine grow_coarse(self, increment, grew, timers, error)

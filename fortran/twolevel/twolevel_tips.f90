@@ -1,4 +1,11 @@
 !> All free tips with their windows: intensities, growth, and what the coarse level has yet to learn of it.
+!!
+!! Direction of growth. A tip kinks by the angle of the largest tangential stress. Under a strong stress along the
+!! crack this angle is right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the
+!! crack less the one across it; Cotterell and Rice 1980), here a few millimetres: longer explicit steps
+!! overshoot to and fro, and the path meanders more and more. So each step but the first kink of a
+!! fracture's end is corrected until the kink angle at the new tip vanishes, that is, until the
+!! criterion holds at the end of the step (backward Euler for the path; local symmetry).
 module twolevel_tips
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -24,11 +31,17 @@ module twolevel_tips
       real(rk) :: carried = 0.0_rk  !< growth too short for the mesh, kept [m]
       real(rk) :: pending = 0.0_rk  !< growth that the coarse level does not know yet [m]
       real(rk) :: advance = 0.0_rk  !< of the last call of `grow` [m]
+      real(rk) :: kink = 0.0_rk  !< of that advance, anticlockwise [rad]
+      real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
+      logical :: has_wing = .false.  !< has grown before
+      real(rk) :: tried_kink = 0.0_rk, tried_drive = 0.0_rk  !< last try of `correct` [rad]
       integer(ik) :: pending_vertices = 0
       logical :: arrested = .false.
       character(len=:), allocatable :: arrest_reason
-      type(intensity_t) :: intensity
+      type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
+      type(intensity_t) :: intensity_before  !< what made it grow
+      type(growth_drive_t) :: drive_before
    end type tip_t
 
    !> The tips and the network on the fine level, which is ahead of the coarse one.
@@ -40,6 +53,7 @@ module twolevel_tips
    contains
       procedure :: evaluate
       procedure :: grow
+      procedure :: correct
       procedure :: coarse_changed
       procedure :: hand_over
    end type tips_t
@@ -95,7 +109,6 @@ contains
             if (allocated(error)) return
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
                window%model%elasticity%crack_modulus())
-            tip%advance = 0.0_rk
          end associate
       end do
    end subroutine evaluate
@@ -130,15 +143,59 @@ contains
             if (tip%arrested) cycle
             call extend(self%network, tip%fracture, tip%end, to)
             call forget_windows(self, tip%xy, to)
+            tip%origin = tip%xy
+            tip%heading = tip%direction
             tip%direction = (to - tip%xy)/norm2(to - tip%xy)
             tip%xy = to
             tip%advance = applied
+            tip%kink = tip%drive%angle
+            tip%intensity_before = tip%intensity
+            tip%drive_before = tip%drive
+            ! Going straight on would leave the drive about as it is.
+            tip%tried_kink = 0.0_rk
+            tip%tried_drive = tip%drive%angle
             tip%pending = tip%pending + applied
             tip%pending_vertices = tip%pending_vertices + 1
             any_grew = .true.
          end associate
       end do
    end subroutine grow
+
+   !> Turn the last advance of each tip so that the kink angle at its new end vanishes, by a secant step.
+   !! The tips have to be evaluated before and after.
+   subroutine correct(self, any_turned)
+      class(tips_t), intent(inout) :: self
+      logical, intent(out) :: any_turned
+
+      real(rk), parameter :: enough = 0.035_rk  !< two degrees
+      real(rk), parameter :: largest = 1.23_rk  !< pure sliding [rad]
+      real(rk) :: kink, to(2)
+      integer(ik) :: at, i
+
+      any_turned = .false.
+      do i = 1, size(self%tip)
+         associate (tip => self%tip(i))
+            if (.not. (tip%advance > 0.0_rk .and. tip%has_wing)) cycle
+            if (abs(tip%drive%angle) < enough) cycle
+            if (.not. abs(tip%drive%angle - tip%tried_drive) > 1.0e-3_rk) cycle
+            kink = tip%kink - tip%drive%angle*(tip%kink - tip%tried_kink) &
+               /(tip%drive%angle - tip%tried_drive)
+            kink = min(largest, max(-largest, kink))
+            to = new_tip(tip%origin, tip%heading, kink, tip%advance)
+            at = merge(self%network%first(tip%fracture), self%network%first(tip%fracture + 1) - 1, &
+               tip%end == 1)
+            call forget_windows(self, tip%origin, tip%xy)
+            call forget_windows(self, tip%origin, to)
+            self%network%xy(:, at) = to
+            tip%xy = to
+            tip%direction = (to - tip%origin)/tip%advance
+            tip%tried_kink = tip%kink
+            tip%tried_drive = tip%drive%angle
+            tip%kink = kink
+            any_turned = .true.
+         end associate
+      end do
+   end subroutine correct
 
    !> A tip that comes nearer to another fracture or to the boundary than the coarse cells can resolve stops.
    subroutine find_obstacle(network, scene, tip, to)
