@@ -32,7 +32,7 @@ contains
          self%n_passed = self%n_passed + 1
       else
          self%n_failed = self%n_failed + 1
-         write (error_unit, '(2a)') "FAILED: ", name
+         write (error_unit, "(2a)") "FAILED: ", name
       end if
    end subroutine is_true
 
@@ -45,7 +45,7 @@ contains
       character(len=96) :: numbers
 
       if (.not. abs(value - expected) <= tolerance) then
-         write (numbers, '(a,es22.14,a,es22.14,a,es9.2)') ": ", value, " /=", expected, " within", tolerance
+         write (numbers, "(3(a,es22.14))") ": ", value, " /=", expected, " within", tolerance
          call self%is_true(.false., name//trim(numbers))
       else
          call self%is_true(.true., name)
@@ -83,8 +83,8 @@ contains
    subroutine finish(self)
       class(checks_t), intent(in) :: self
 
-      print '(i0,a,i0,a)', self%n_passed, " passed, ", self%n_failed, " failed"
-      if (self%n_failed > 0 .or. self%n_passed == 0) error stop 1, quiet=.true.
+      print "(i0,a,i0,a)", self%n_passed, " passed, ", self%n_failed, " failed"
+      if (self%n_failed > 0 .or. self%n_passed == 0) error stop 1, quiet = .true.
    end subroutine finish
 
 end module base_checks

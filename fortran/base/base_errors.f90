@@ -15,7 +15,7 @@ contains
    !> Raise an error: where it happened, then what the user can do about it.
    pure subroutine raise_error(error, origin, message)
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: origin  !< procedure that gives up; empty for messages meant for the user
+      character(len=*), intent(in) :: origin  !< procedure that gives up; empty: written for users
       character(len=*), intent(in) :: message  !< the offending value and the remedy
 
       allocate (error)

@@ -1,9 +1,9 @@
 !> Sparse symmetric systems by MUMPS: analysed once per pattern, factorized once per set of values,
 !! solved many times; on request condensed onto a few unknowns (Schur complement).
 !!
-!! Settings follow measurements on systems of this kind: approximate minimum degree (ordering costs more
-!! than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS reports an exactly singular
-!! matrix only with null-pivot detection, which is therefore on.
+!! Settings follow measurements on systems of this kind: approximate minimum degree (a better
+!! ordering costs more than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS
+!! reports an exactly singular matrix only with null-pivot detection, which is therefore on.
 module base_mumps
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -13,7 +13,7 @@ module base_mumps
    public :: mumps_t
    public :: mumps_definite, mumps_indefinite
 
-   include 'dmumps_struc.h'
+   include "dmumps_struc.h"
 
    integer(ik), parameter :: mumps_definite = 1  !< symmetric positive definite (SYM=1)
    integer(ik), parameter :: mumps_indefinite = 2  !< general symmetric (SYM=2)
@@ -100,11 +100,13 @@ contains
       integer :: attempt
 
       if (.not. self%active .or. size(values) /= size(self%id%a)) then
-         call raise_error(error, "mumps_t%factorize", "the matrix has not been analysed for these entries")
+         call raise_error(error, "mumps_t%factorize", &
+                          "the matrix has not been analysed for these entries")
          return
       end if
       if (.not. sum(abs(values)) <= huge(1.0_rk)) then
-         call raise_error(error, "mumps_t%factorize", "the matrix has an entry that is not a finite number")
+         call raise_error(error, "mumps_t%factorize", &
+                          "the matrix has an entry that is not a finite number")
          return
       end if
       do attempt = 1, 3
@@ -116,7 +118,9 @@ contains
       end do
       call check_status(self, "factorization", error)
       if (allocated(error)) return
-      if (self%id%infog(28) > 0) call raise_error(error, "mumps_t%factorize", "the matrix is singular")
+      if (self%id%infog(28) > 0) then
+         call raise_error(error, "mumps_t%factorize", "the matrix is singular")
+      end if
    end subroutine factorize
 
    !> Solve for one or more right-hand sides, which are overwritten by the solutions.
@@ -239,7 +243,7 @@ contains
       case (-13, -9)
          call raise_error(error, "mumps_t", "not enough memory for the "//phase//" of the matrix")
       case default
-         write (text, '(a,i0,a,i0,a)') " failed (INFOG(1)=", self%id%infog(1), ", INFOG(2)=", &
+         write (text, "(a,i0,a,i0,a)") " failed (INFOG(1)=", self%id%infog(1), ", INFOG(2)=", &
             self%id%infog(2), ")"
          call raise_error(error, "mumps_t", phase//trim(text))
       end select

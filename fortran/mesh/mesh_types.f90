@@ -1,7 +1,8 @@
 !> What a mesh is: triangles that conform to the fractures and are split along them.
 !!
-!! Orientation: a fracture is a polyline; tau is its direction and n = tau turned by +90 degrees points
-!! from side + (on the right) to side - (on the left). The jump is [u] = u(-) - u(+): [u]_n > 0 opens.
+!! Orientation: a fracture is a polyline; tau is its direction and n = tau turned by +90 degrees
+!! points from side + (on the right) to side - (on the left). The jump is [u] = u(-) - u(+):
+!! [u]_n > 0 opens.
 module mesh_types
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -13,21 +14,23 @@ module mesh_types
    ! Kinds of fracture points. A joint is where fracture cells of more than one fracture meet.
    integer(ik), parameter :: point_interior = 0  !< inside one polyline (a kink too)
    integer(ik), parameter :: point_tip = 1  !< free tip: a single node of the mesh
-   integer(ik), parameter :: point_boundary = 2  !< end on the outer boundary (or cut by a window's edge)
+   integer(ik), parameter :: point_boundary = 2  !< end on the outer boundary or a window's edge
    integer(ik), parameter :: point_joint_t = 3  !< end of one fracture inside another
    integer(ik), parameter :: point_joint_x = 4  !< two fractures cross (or more cells meet)
    integer(ik), parameter :: point_corner = 5  !< ends of two fractures meet (V)
 
-   integer(ik), parameter :: side_count = 4  !< a rectangle's sides: 1 left, 2 right, 3 bottom, 4 top
+   integer(ik), parameter :: side_count = 4  !< of a rectangle: 1 left, 2 right, 3 bottom, 4 top
 
    !> Fractures as polylines.
    type :: network_t
-      integer(ik), allocatable :: first(:)  !< (n+1) vertices of fracture f: first(f) .. first(f+1)-1
+      integer(ik), allocatable :: first(:)  !< (n+1) fracture f: vertices first(f) .. first(f+1)-1
       real(rk), allocatable :: xy(:, :)  !< (2, n_vertices) [m]
-      real(rk), allocatable :: s_start(:)  !< (n) arc length of the first vertex [m]; below 0 after growth there
+      !> (n) arc length of the first vertex [m]; below 0 after growth there
+      real(rk), allocatable :: s_start(:)
    end type network_t
 
-   !> The fractures' own mesh, one dimension lower. Cells are stored along each fracture's direction.
+   !> The fractures' own mesh, one dimension lower. Cells are stored along each fracture's
+   !! direction.
    type :: fracture_mesh_t
       integer(ik) :: n_cells = 0
       integer(ik) :: n_points = 0
@@ -46,20 +49,21 @@ module mesh_types
       integer(ik), allocatable :: tip_fracture(:)  !< (n_tips) index in the network
       integer(ik), allocatable :: tip_end(:)  !< (n_tips) 1: start of the polyline, 2: its end
       real(rk), allocatable :: tip_direction(:, :)  !< (2, n_tips) unit vector, ahead of the tip
-      real(rk), allocatable :: tip_radius(:)  !< (n_tips) rosette radius [m]; 0 where there is no rosette
+      real(rk), allocatable :: tip_radius(:)  !< (n_tips) rosette radius [m]; 0: no rosette
    end type fracture_mesh_t
 
-   !> Triangles, split along the fractures: both sides of a fracture have nodes and faces of their own,
-   !! but a free tip is one node.
+   !> Triangles, split along the fractures: both sides of a fracture have nodes and faces of their
+   !! own, but a free tip is one node.
    type :: mesh_t
       integer(ik) :: n_nodes = 0
       integer(ik) :: n_cells = 0
       integer(ik) :: n_faces = 0
       real(rk), allocatable :: xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (3, n_cells) counter-clockwise
-      integer(ik), allocatable :: cell_faces(:, :)  !< (3, n_cells) face k joins nodes k and mod(k,3)+1
+      integer(ik), allocatable :: cell_faces(:, :)  !< (3, n_cells) face k: nodes k and mod(k,3)+1
       integer(ik), allocatable :: face_nodes(:, :)  !< (2, n_faces)
-      integer(ik), allocatable :: face_cells(:, :)  !< (2, n_faces); second is 0 on boundary and fracture faces
+      !> (2, n_faces); the second is 0 on boundary and fracture faces
+      integer(ik), allocatable :: face_cells(:, :)
       integer(ik), allocatable :: face_side(:)  !< (n_faces) outer boundary side 1..4; 0 elsewhere
       integer(ik), allocatable :: face_fracture_cell(:)  !< (n_faces) fracture cell; 0 elsewhere
       type(fracture_mesh_t) :: fracture
@@ -67,11 +71,14 @@ module mesh_types
 
    !> From an old mesh to a new one that differs in a patch only.
    type :: mesh_map_t
-      integer(ik), allocatable :: cell_old(:)  !< (new n_cells) the same cell in the old mesh; 0 inside the patch
-      integer(ik), allocatable :: overlap_first(:)  !< (new n_cells+1) into the two arrays below; empty if cell_old > 0
+      !> (new n_cells) the same cell in the old mesh; 0 inside the patch
+      integer(ik), allocatable :: cell_old(:)
+      !> (new n_cells+1) into the two arrays below; empty if cell_old > 0
+      integer(ik), allocatable :: overlap_first(:)
       integer(ik), allocatable :: overlap_cell(:)  !< old cells that a new cell covers
       real(rk), allocatable :: overlap_area(:)  !< [m2]; they add up to the new cell's area
-      integer(ik), allocatable :: fracture_cell_old(:)  !< (new fracture n_cells) the same cell before; 0 for a new one
+      !> (new fracture n_cells) the same cell before; 0 for a new one
+      integer(ik), allocatable :: fracture_cell_old(:)
    end type mesh_map_t
 
 end module mesh_types

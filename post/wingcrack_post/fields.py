@@ -88,7 +88,7 @@ def read_matrix(path: Path) -> MatrixField:
     """Read a file of the matrix series, which holds triangles only."""
     mesh = read_grid(path)
     triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
-    cell = {name: np.asarray(mesh.cell_data[name], dtype=float) for name in mesh.cell_data.keys()}  # noqa: SIM118
+    cell = {name: np.asarray(array, dtype=float) for name, array in mesh.cell_data.items()}
     return MatrixField(np.asarray(mesh.points, dtype=float)[:, :2], triangles, cell)
 
 

@@ -1,9 +1,10 @@
 // The border between Fortran and the C++ mesh library. The header is the contract.
 //
-// Every function returns 0 for success, else cm_last_error() says why. No exception crosses. Handles are
-// opaque and C++ owns what is behind them; every array belongs to the caller, who asks for sizes first.
-// Indices count from 0; -1 means "none". Lengths are in metres. Orientation of fractures: side + on the
-// right of the polyline's direction, side - on the left (fortran/mesh/mesh_types.f90 says the same).
+// Every function returns 0 for success, else cm_last_error() says why. No exception crosses.
+// Handles are opaque and C++ owns what is behind them; every array belongs to the caller, who asks
+// for sizes first. Indices count from 0; -1 means "none". Lengths are in metres. Orientation of
+// fractures: side + on the right of the polyline's direction, side - on the left
+// (fortran/mesh/mesh_types.f90 says the same).
 #ifndef CPP_MESH_C_API_H
 #define CPP_MESH_C_API_H
 
@@ -18,22 +19,23 @@ typedef struct cm_mesh cm_mesh;
 /* Fracture polylines: vertices of fracture f are first[f] .. first[f+1]-1. */
 typedef struct {
     int32_t n_fractures;
-    const int32_t* first;   /* [n_fractures + 1] */
-    const double* xy;       /* [n_vertices][2] */
-    const double* s_start;  /* [n_fractures] arc length of the first vertex */
+    const int32_t* first;  /* [n_fractures + 1] */
+    const double* xy;      /* [n_vertices][2] */
+    const double* s_start; /* [n_fractures] arc length of the first vertex */
 } cm_network;
 
-/* What to mesh: a rectangle, cut by the part of the network that lies in it. Cell sizes grow linearly
-   from size_fracture at the fractures to size_boundary, reached at half the distance to the point of the
-   rectangle farthest from them, so that most of the boundary has it.
-   With is_window, fractures may be cut by the edges (those ends become boundary points), and every free
-   tip gets a rosette of `rosette_sectors` triangles with radius `rosette_radius` (made smaller where another
-   fracture, tip, kink or edge is near); without it a fracture that leaves the rectangle is refused. */
+/* What to mesh: a rectangle, cut by the part of the network that lies in it. Cell sizes grow
+   linearly from size_fracture at the fractures to size_boundary, reached at half the distance to
+   the point of the rectangle farthest from them, so that most of the boundary has it. With
+   is_window, fractures may be cut by the edges (those ends become boundary points), and every free
+   tip gets a rosette of `rosette_sectors` triangles with radius `rosette_radius` (made smaller
+   where another fracture, tip, kink or edge is near); without it a fracture that leaves the
+   rectangle is refused. */
 typedef struct {
     double x_min, x_max, y_min, y_max;
     double size_fracture, size_boundary;
     int32_t is_window;
-    int32_t rosette_sectors;  /* 0: no rosettes */
+    int32_t rosette_sectors; /* 0: no rosettes */
     double rosette_radius;
 } cm_spec;
 
@@ -44,40 +46,41 @@ typedef struct {
 
 /* Arrays to fill; shapes follow cm_counts. */
 typedef struct {
-    double* xy;                    /* [n_nodes][2] */
-    int32_t* cell_nodes;           /* [n_cells][3] counter-clockwise */
-    int32_t* cell_faces;           /* [n_cells][3] face k joins nodes k and (k+1)%3 */
-    int32_t* face_nodes;           /* [n_faces][2] */
-    int32_t* face_cells;           /* [n_faces][2] */
-    int32_t* face_side;            /* [n_faces] 1 left, 2 right, 3 bottom, 4 top, 0 elsewhere */
-    int32_t* face_fracture_cell;   /* [n_faces] */
-    int32_t* fcell_fracture;       /* [n_fracture_cells] */
-    int32_t* fcell_points;         /* [n_fracture_cells][2] */
-    int32_t* fcell_faces;          /* [n_fracture_cells][2] side +, side - */
-    double* fcell_s;               /* [n_fracture_cells][2] */
-    double* point_xy;              /* [n_fracture_points][2] */
-    int32_t* point_kind;           /* [n_fracture_points] 0 interior 1 tip 2 boundary 3 T 4 X 5 corner */
-    int32_t* point_first;          /* [n_fracture_points + 1] */
-    int32_t* point_cells;          /* [n_point_cells] */
-    int32_t* tip_point;            /* [n_tips] */
-    int32_t* tip_node;             /* [n_tips] */
-    int32_t* tip_fracture;         /* [n_tips] */
-    int32_t* tip_end;              /* [n_tips] 1 start, 2 end */
-    double* tip_direction;         /* [n_tips][2] */
-    double* tip_radius;            /* [n_tips] */
+    double* xy;                  /* [n_nodes][2] */
+    int32_t* cell_nodes;         /* [n_cells][3] counter-clockwise */
+    int32_t* cell_faces;         /* [n_cells][3] face k joins nodes k and (k+1)%3 */
+    int32_t* face_nodes;         /* [n_faces][2] */
+    int32_t* face_cells;         /* [n_faces][2] */
+    int32_t* face_side;          /* [n_faces] 1 left, 2 right, 3 bottom, 4 top, 0 elsewhere */
+    int32_t* face_fracture_cell; /* [n_faces] */
+    int32_t* fcell_fracture;     /* [n_fracture_cells] */
+    int32_t* fcell_points;       /* [n_fracture_cells][2] */
+    int32_t* fcell_faces;        /* [n_fracture_cells][2] side +, side - */
+    double* fcell_s;             /* [n_fracture_cells][2] */
+    double* point_xy;            /* [n_fracture_points][2] */
+    int32_t* point_kind;         /* [n_fracture_points] 0 interior 1 tip 2 boundary 3 T 4 X 5 V */
+    int32_t* point_first;        /* [n_fracture_points + 1] */
+    int32_t* point_cells;        /* [n_point_cells] */
+    int32_t* tip_point;          /* [n_tips] */
+    int32_t* tip_node;           /* [n_tips] */
+    int32_t* tip_fracture;       /* [n_tips] */
+    int32_t* tip_end;            /* [n_tips] 1 start, 2 end */
+    double* tip_direction;       /* [n_tips][2] */
+    double* tip_radius;          /* [n_tips] */
 } cm_arrays;
 
 const char* cm_last_error(void);
 
 int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh);
 
-/* A new mesh that differs from `old_mesh` only within `radius` of the given centres; `network` is the old
-   one with vertices added at the ends of fractures. Existing fracture cells stay as they are; each new
-   segment becomes one or more fracture cells of about `size`. Nodes and cells outside are untouched. The
-   patch is enlarged where it must hold new segments or cells twice too large next to them. A mesh with
-   rosettes is refused: make a new one. */
+/* A new mesh that differs from `old_mesh` only within `radius` of the given centres; `network` is
+   the old one with vertices added at the ends of fractures. Existing fracture cells stay as they
+   are; each new segment becomes one or more fracture cells of about `size`. Nodes and cells outside
+   are untouched. The patch is enlarged where it must hold new segments or cells twice too large
+   next to them. A mesh with rosettes is refused: make a new one. */
 int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_centres,
-              const double* centres /* [n_centres][2] */, double radius, double size, cm_mesh** new_mesh);
+              const double* centres /* [n_centres][2] */, double radius, double size,
+              cm_mesh** new_mesh);
 
 int cm_sizes(const cm_mesh* mesh, cm_counts* counts);
 int cm_copy(const cm_mesh* mesh, const cm_arrays* arrays);
@@ -89,7 +92,8 @@ int cm_map_copy(const cm_mesh* new_mesh, int32_t* cell_old /* [n_cells] */,
                 double* overlap_area, int32_t* fcell_old /* [n_fracture_cells] */);
 
 /* The cell that holds each point, -1 outside the body. */
-int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy /* [n_points][2] */, int32_t* cells);
+int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy /* [n_points][2] */,
+              int32_t* cells);
 
 void cm_destroy(cm_mesh** mesh); /* sets NULL */
 

@@ -1,4 +1,5 @@
-!> MUMPS wrapper: known solutions, the Schur complement against dense elimination, singular matrices.
+!> MUMPS wrapper: known solutions, the Schur complement against dense elimination, singular
+!! matrices.
 program test_base_mumps
    use base_checks, only: checks_t
    use base_errors, only: error_t
@@ -38,8 +39,8 @@ contains
       x(:, 2) = 4.0_rk
       call solver%solve(x, error)
       call checks%no_error(error, "solve")
-      call checks%is_close(maxval(abs(x(:, 1) - [(i*h*(1.0_rk - i*h), i=1, n)])), 0.0_rk, 1.0e-13_rk, &
-         "parabola")
+      call checks%is_close(maxval(abs(x(:, 1) - [(i*h*(1.0_rk - i*h), i=1, n)])), 0.0_rk, &
+                           1.0e-13_rk, "parabola")
       call checks%is_close(maxval(abs(x(:, 2) - 2.0_rk*x(:, 1))), 0.0_rk, 1.0e-13_rk, "two sides")
       call solver%factorize(2.0_rk*values, error)
       x(:, 1) = 4.0_rk
@@ -54,7 +55,7 @@ contains
       integer(ik), parameter :: row(9) = [1, 2, 2, 3, 4, 4, 3, 4, 4]
       integer(ik), parameter :: col(9) = [1, 1, 2, 1, 1, 2, 3, 3, 4]
       real(rk), parameter :: values(9) = [4.0_rk, 1.0_rk, -3.0_rk, 1.0_rk, 2.0_rk, 1.0_rk, 2.0_rk, &
-         1.0_rk, 5.0_rk]
+                                          1.0_rk, 5.0_rk]
       real(rk) :: s(2, 2), expected(2, 2), reduced(2), x(4), y(2), rhs(4), det
 
       call solver%analyse(4_ik, row, col, mumps_indefinite, error, schur=[3_ik, 4_ik])
@@ -64,7 +65,7 @@ contains
       call solver%get_schur(s)
       ! A^-1 = [3 1; 1 -4]/13; B^T A^-1 B = [3 7; 7 12]/13
       expected = reshape([2.0_rk - 3.0_rk/13.0_rk, 1.0_rk - 7.0_rk/13.0_rk, &
-         1.0_rk - 7.0_rk/13.0_rk, 5.0_rk - 12.0_rk/13.0_rk], [2, 2])
+                          1.0_rk - 7.0_rk/13.0_rk, 5.0_rk - 12.0_rk/13.0_rk], [2, 2])
       call checks%is_close(maxval(abs(s - expected)), 0.0_rk, 1.0e-14_rk, "Schur complement")
       rhs = [1.0_rk, 2.0_rk, 3.0_rk, 4.0_rk]
       call solver%condense(rhs, reduced, error)
