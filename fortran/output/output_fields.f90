@@ -8,14 +8,8 @@ module output_fields
    implicit none(type, external)
    private
 
-   public :: fracture_fields_t, history_row_t, intersection_fields_t, matrix_fields_t, state_name
-   public :: state_open, state_slip, state_stick, tip_row_t
+   public :: fracture_fields_t, history_row_t, intersection_fields_t, matrix_fields_t, tip_row_t
    public :: displacement_3d, permeability_tensor, stress_tensor, tensor_components
-
-   ! Contact state of a fracture cell.
-   integer(ik), parameter :: state_stick = 0
-   integer(ik), parameter :: state_slip = 1
-   integer(ik), parameter :: state_open = 2
 
    !> Symmetric tensors in ParaView's order.
    character(len=2), parameter :: tensor_components(6) = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
@@ -36,7 +30,7 @@ module output_fields
       real(rk), allocatable :: traction_n(:)  !< (n_cells) of contact, compression < 0 [Pa]
       real(rk), allocatable :: traction_t(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
-      integer(ik), allocatable :: state(:)  !< (n_cells) state_stick, state_slip or state_open
+      integer(ik), allocatable :: state(:)  !< (n_cells) of mesh_states
    end type fracture_fields_t
 
    !> State of the intersections.
@@ -84,23 +78,6 @@ module output_fields
    end type tip_row_t
 
 contains
-
-   !> The word for a contact state.
-   pure function state_name(state) result(name)
-      integer(ik), intent(in) :: state
-      character(len=:), allocatable :: name
-
-      select case (state)
-      case (state_stick)
-         name = "stick"
-      case (state_slip)
-         name = "slip"
-      case (state_open)
-         name = "open"
-      case default
-         name = "unknown"
-      end select
-   end function state_name
 
    !> Displacement with the z component that VTK wants.
    pure function displacement_3d(displacement) result(u)

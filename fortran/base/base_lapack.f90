@@ -1,0 +1,69 @@
+!> The routines of LAPACK in use, declared so that the compiler checks every call.
+!!
+!! Dense systems, matrices by columns. `info` is 0 for success, -i where argument i is wrong, and i
+!! where pivot i is exactly zero or, for Cholesky, not positive (LAPACK Users' Guide, third edition,
+!! Anderson and others 1999).
+module base_lapack
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: dgesv, dgetrf, dgetrs, dpotrf, dpotrs
+
+   interface
+      !> Solve A X = B by LU factors with row exchanges. On return A holds the factors, B is X.
+      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: ik, rk
+         implicit none(type, external)
+         integer(ik), intent(in) :: n, nrhs, lda, ldb
+         real(rk), intent(inout) :: a(lda, *)  !< (n, n)
+         integer(ik), intent(out) :: ipiv(*)  !< (n) row i was exchanged with row ipiv(i)
+         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         integer(ik), intent(out) :: info
+      end subroutine dgesv
+
+      !> Replace A by its LU factors, with row exchanges.
+      subroutine dgetrf(m, n, a, lda, ipiv, info)
+         import :: ik, rk
+         implicit none(type, external)
+         integer(ik), intent(in) :: m, n, lda
+         real(rk), intent(inout) :: a(lda, *)  !< (m, n)
+         integer(ik), intent(out) :: ipiv(*)  !< (min(m, n))
+         integer(ik), intent(out) :: info
+      end subroutine dgetrf
+
+      !> Solve A X = B, or with its transpose, from the factors of dgetrf.
+      subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: trans  !< "N" for A, "T" for its transpose
+         integer(ik), intent(in) :: n, nrhs, lda, ldb
+         real(rk), intent(in) :: a(lda, *)  !< (n, n)
+         integer(ik), intent(in) :: ipiv(*)  !< (n)
+         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         integer(ik), intent(out) :: info
+      end subroutine dgetrs
+
+      !> Replace a triangle of the symmetric positive definite A by its Cholesky factor.
+      subroutine dpotrf(uplo, n, a, lda, info)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: uplo  !< "U" or "L": the triangle that is given; the other stays
+         integer(ik), intent(in) :: n, lda
+         real(rk), intent(inout) :: a(lda, *)  !< (n, n)
+         integer(ik), intent(out) :: info
+      end subroutine dpotrf
+
+      !> Solve A X = B from the factor of dpotrf.
+      subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: uplo  !< as for dpotrf
+         integer(ik), intent(in) :: n, nrhs, lda, ldb
+         real(rk), intent(in) :: a(lda, *)  !< (n, n)
+         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         integer(ik), intent(out) :: info
+      end subroutine dpotrs
+   end interface
+
+end module base_lapack

@@ -1,0 +1,94 @@
+!> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses.
+program test_base_lapack
+   use base_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use base_lapack, only: dgesv, dgetrf, dgetrs, dpotrf, dpotrs
+   implicit none(type, external)
+
+   real(rk), parameter :: tolerance = 1.0e-14_rk  !< relative to solutions of size 3
+   type(checks_t) :: checks
+
+   call general()
+   call positive_definite()
+   call refused()
+   call checks%finish()
+
+contains
+
+   !> A = [0 2 1; 1 1 0; 3 0 2], whose zero asks for an exchange; solutions [1 2 3], [-1 0 2].
+   subroutine general()
+      real(rk), parameter :: a(3, 3) = reshape([0.0_rk, 1.0_rk, 3.0_rk, 2.0_rk, 1.0_rk, 0.0_rk, &
+                                                1.0_rk, 0.0_rk, 2.0_rk], [3, 3])
+      real(rk), parameter :: x(3, 2) = reshape([1.0_rk, 2.0_rk, 3.0_rk, -1.0_rk, 0.0_rk, 2.0_rk], &
+                                               [3, 2])
+      real(rk), parameter :: b(3, 2) = reshape([7.0_rk, 3.0_rk, 9.0_rk, 2.0_rk, -1.0_rk, 1.0_rk], &
+                                               [3, 2])
+      real(rk), parameter :: b_transposed(3) = [11.0_rk, 4.0_rk, 7.0_rk]
+      real(rk) :: factors(3, 3), solution(3, 2)
+      integer(ik) :: exchanges(3), info
+
+      factors = a
+      solution = b
+      call dgesv(3_ik, 2_ik, factors, 3_ik, exchanges, solution, 3_ik, info)
+      call checks%is_true(info == 0, "dgesv succeeds")
+      call checks%is_close(maxval(abs(solution - x)), 0.0_rk, tolerance, "dgesv")
+      call checks%is_true(exchanges(1) == 3, "the largest entry becomes the pivot")
+
+      factors = a
+      call dgetrf(3_ik, 3_ik, factors, 3_ik, exchanges, info)
+      call checks%is_true(info == 0, "dgetrf succeeds")
+      solution = b
+      call dgetrs("N", 3_ik, 2_ik, factors, 3_ik, exchanges, solution, 3_ik, info)
+      call checks%is_true(info == 0, "dgetrs succeeds")
+      call checks%is_close(maxval(abs(solution - x)), 0.0_rk, tolerance, "dgetrs")
+      solution(:, 1) = b_transposed
+      call dgetrs("T", 3_ik, 1_ik, factors, 3_ik, exchanges, solution, 3_ik, info)
+      call checks%is_close(maxval(abs(solution(:, 1) - x(:, 1))), 0.0_rk, tolerance, &
+                           "dgetrs, transposed")
+   end subroutine general
+
+   !> A = L L' with L = [2 0 0; 1 3 0; -1 2 1]; the triangle that is not asked for may hold
+   !! anything.
+   subroutine positive_definite()
+      real(rk), parameter :: other = huge(1.0_rk)
+      real(rk), parameter :: lower(3, 3) = reshape([4.0_rk, 2.0_rk, -2.0_rk, other, 10.0_rk, &
+                                                    5.0_rk, other, other, 6.0_rk], [3, 3])
+      real(rk), parameter :: factor(6) = [2.0_rk, 1.0_rk, -1.0_rk, 3.0_rk, 2.0_rk, 1.0_rk]
+      real(rk), parameter :: x(3) = [1.0_rk, 2.0_rk, 3.0_rk]
+      real(rk), parameter :: b(3) = [2.0_rk, 37.0_rk, 26.0_rk]
+      real(rk) :: a(3, 3), solution(3, 1)
+      integer(ik) :: info
+
+      a = lower
+      call dpotrf("L", 3_ik, a, 3_ik, info)
+      call checks%is_true(info == 0, "dpotrf succeeds")
+      call checks%is_close(maxval(abs([a(:, 1), a(2:, 2), a(3, 3)] - factor)), 0.0_rk, tolerance, &
+                           "dpotrf")
+      solution(:, 1) = b
+      call dpotrs("L", 3_ik, 1_ik, a, 3_ik, solution, 3_ik, info)
+      call checks%is_true(info == 0, "dpotrs succeeds")
+      call checks%is_close(maxval(abs(solution(:, 1) - x)), 0.0_rk, tolerance, "dpotrs")
+
+      a = transpose(lower)
+      call dpotrf("U", 3_ik, a, 3_ik, info)
+      solution(:, 1) = b
+      call dpotrs("U", 3_ik, 1_ik, a, 3_ik, solution, 3_ik, info)
+      call checks%is_close(maxval(abs(solution(:, 1) - x)), 0.0_rk, tolerance, &
+                           "dpotrs from the upper triangle")
+   end subroutine positive_definite
+
+   !> `info` names the pivot that fails.
+   subroutine refused()
+      real(rk) :: a(2, 2), b(2, 1)
+      integer(ik) :: exchanges(2), info
+
+      a = reshape([1.0_rk, 2.0_rk, 2.0_rk, 4.0_rk], [2, 2])
+      b = 1.0_rk
+      call dgesv(2_ik, 1_ik, a, 2_ik, exchanges, b, 2_ik, info)
+      call checks%is_true(info == 2, "a singular matrix")
+      a = reshape([1.0_rk, 2.0_rk, 2.0_rk, 1.0_rk], [2, 2])
+      call dpotrf("L", 2_ik, a, 2_ik, info)
+      call checks%is_true(info == 2, "an indefinite matrix")
+   end subroutine refused
+
+end program test_base_lapack
