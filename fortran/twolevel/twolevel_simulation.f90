@@ -33,6 +33,7 @@ module twolevel_simulation
       type(tips_t) :: tips
       type(coarse_level_t) :: level
       logical :: level_is_current = .false.
+      logical :: undrained = .false.  !< the state is the undrained response to the load
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       real(rk) :: injected = 0.0_rk  !< so far [m2]
@@ -155,6 +156,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       self%level_is_current = .false.
+      self%undrained = .true.
       call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, timers, &
          report, error)
    end subroutine equilibrate
@@ -177,6 +179,7 @@ contains
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
       self%level_is_current = .false.
+      self%undrained = .false.
       self%injected = self%injected + dt*sum(self%model%cells%injection)
       if (self%mesh%fracture%n_cells > 0) &
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
@@ -234,7 +237,8 @@ contains
 
       call timers%start(phase_tips)
       call self%update_level()
-      call self%tips%evaluate(self%scene, self%mesher, self%mesh, self%level, self%state, error)
+      call self%tips%evaluate(self%scene, self%mesher, self%mesh, self%level, self%state, &
+         self%undrained, error)
       call timers%stop(phase_tips)
    end subroutine evaluate_tips
 

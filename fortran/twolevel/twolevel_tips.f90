@@ -81,13 +81,14 @@ contains
    end subroutine find_tips
 
    !> Stress intensity factors and growth drive of every tip, in the present state of the coarse level.
-   subroutine evaluate(self, scene, mesher, mesh, level, state, error)
+   subroutine evaluate(self, scene, mesher, mesh, level, state, undrained, error)
       class(tips_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: mesh  !< the coarse one
       type(coarse_level_t), intent(in) :: level
       type(state_t), intent(in) :: state
+      logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
 
       integer(ik) :: i
@@ -104,6 +105,10 @@ contains
                call window%project(mesher, mesh, error)
                if (allocated(error)) return
                self%projected(i) = .true.
+            end if
+            if (window%undrained .neqv. undrained) then
+               call window%set_rock(scene, undrained, error)
+               if (allocated(error)) return
             end if
             call window%intensity(scene, mesh, level, state, tip%intensity, error)
             if (allocated(error)) return

@@ -3,7 +3,8 @@
 !! The outer edge takes the coarse displacement, the rock the coarse pressure as initial stress. On fracture faces
 !! that the coarse level knows, the condition is one of
 !!   "contact"   the coarse level's contact state: open faces carry fluid pressure alone, slipping ones
-!!               their friction with the opening tied to the slip, sticking ones keep their jump;
+!!               their friction with the opening tied to the slip, sticking ones keep the jump that
+!!               the window found last (the coarse one if it has found none yet);
 !!   "jump"      the coarse jump (Paper C);
 !!   "traction"  the coarse contact traction.
 !! Faces that only the fine level knows are open and carry the pressure of the coarse cell they grew from.
@@ -11,6 +12,7 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_contact, only: state_open, state_slip
+   use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_jump, face_loaded, face_slip, loaded_everywhere
@@ -34,6 +36,13 @@ module twolevel_window
       real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi)
    end type coarse_level_t
 
+   !> Jumps along the fractures, at points in no particular order.
+   type :: jump_record_t
+      integer(ik), allocatable :: fracture(:)
+      real(rk), allocatable :: s(:)  !< arc length [m]
+      real(rk), allocatable :: jump(:, :)  !< (2, n) along tau, n [m]
+   end type jump_record_t
+
    !> One window.
    type :: window_t
       integer(ik) :: fracture = 0  !< of the tip, in the network
@@ -44,12 +53,15 @@ module twolevel_window
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
+      type(jump_record_t) :: last_jump
+      logical :: undrained = .false.  !< the model's constants are the undrained ones
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
       integer(ik), allocatable :: coarse_face(:)  !< (fracture cells) coarse fracture cell; negative: grown from it
       integer(ik), allocatable :: coarse_end(:)  !< (fracture cells) its nearer end
    contains
       procedure :: build
+      procedure :: set_rock
       procedure :: project
       procedure :: intensity
    end type window_t
@@ -66,7 +78,6 @@ contains
 
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
-      type(elasticity_t) :: elasticity
       real(rk) :: tip(2), half
 
       self%fracture = fracture
@@ -86,14 +97,38 @@ contains
       spec%rosette_radius = spec%size_fracture
       call build_mesh(spec, network, mesher, self%mesh, error)
       if (allocated(error)) return
-      elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-         biot=scene%material%biot, plane_stress=scene%material%plane_stress)
-      call self%model%set_mesh(self%mesh, elasticity, error)
+      call self%set_rock(scene, .false., error)
       if (allocated(error)) return
       self%tip = findloc(self%mesh%fracture%tip_fracture == fracture .and. &
          self%mesh%fracture%tip_end == end, .true., dim=1)
       self%loads = no_loads(self%model%mesh)
    end subroutine build
+
+   !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves. There the
+   !! pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the tip's own
+   !! singularity, which no pressure handed down from the coarse level could show.
+   subroutine set_rock(self, scene, undrained, error)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: undrained
+      type(error_t), allocatable, intent(out) :: error
+
+      type(elasticity_t) :: elasticity
+      type(rock_t) :: rock
+      real(rk) :: lame
+
+      elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
+         biot=scene%material%biot, plane_stress=scene%material%plane_stress)
+      if (undrained) then
+         rock = new_rock(scene%material, scene%fluid)
+         lame = rock%lame + rock%biot**2/rock%storage
+         elasticity%poisson = lame/(2.0_rk*(lame + rock%shear))
+         if (scene%material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*rock%shear)
+         elasticity%young = 2.0_rk*rock%shear*(1.0_rk + elasticity%poisson)
+      end if
+      call self%model%set_mesh(self%mesh, elasticity, error)
+      self%undrained = undrained
+   end subroutine set_rock
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
    subroutine project(self, mesher, coarse, error)
@@ -176,15 +211,66 @@ contains
             end associate
          end do
       end associate
+      if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
       call load_faces(self, scene%discretization%face_condition, coarse, level, state, conditions)
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error)
          if (allocated(error)) return
       end if
       call self%model%solve(self%loads, self%displacement, error)
-      if (.not. allocated(error)) call tip_intensity(self%model, self%loads, self%displacement, self%tip, &
-         result, error)
+      if (allocated(error)) return
+      call record_jumps(self)
+      call tip_intensity(self%model, self%loads, self%displacement, self%tip, result, error)
    end subroutine intensity
+
+   !> Keep the solution's jumps for the time when the faces stick.
+   subroutine record_jumps(self)
+      class(window_t), intent(inout) :: self
+
+      integer(ik) :: i, k, n
+      real(rk) :: jump(2)
+
+      associate (fine => self%model%mesh, last => self%last_jump)
+         n = 3*self%mesh%fracture%n_cells
+         if (allocated(last%s)) deallocate (last%fracture, last%s, last%jump)
+         allocate (last%fracture(n), last%s(n), last%jump(2, n))
+         do i = 1, self%mesh%fracture%n_cells
+            do k = 1, 3
+               jump = self%displacement(:, fine%face_nodes(k, 2, i)) &
+                  - self%displacement(:, fine%face_nodes(k, 1, i))
+               associate (tau => fine%face_tangent(:, i), at => 3*(i - 1) + k)
+                  last%fracture(at) = self%mesh%fracture%cell_fracture(i)
+                  last%s(at) = fine%face_s(k, i)
+                  last%jump(:, at) = [dot_product(tau, jump), tau(1)*jump(2) - tau(2)*jump(1)]
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine record_jumps
+
+   !> The recorded jump at a point, linear between its neighbours; found = .false. beyond the record.
+   pure subroutine recall_jump(last, fracture, s, jump, found)
+      type(jump_record_t), intent(in) :: last
+      integer(ik), intent(in) :: fracture
+      real(rk), intent(in) :: s  !< [m]
+      real(rk), intent(out) :: jump(2)
+      logical, intent(out) :: found
+
+      integer(ik) :: above, below
+      real(rk) :: slack, t
+
+      found = .false.
+      jump = 0.0_rk
+      if (.not. allocated(last%s)) return
+      slack = 1.0e-9_rk*(maxval(last%s) - minval(last%s))
+      below = maxloc(last%s, mask=last%fracture == fracture .and. last%s <= s + slack, dim=1)
+      above = minloc(last%s, mask=last%fracture == fracture .and. last%s >= s - slack, dim=1)
+      found = below > 0 .and. above > 0
+      if (.not. found) return
+      t = 0.0_rk
+      if (last%s(above) - last%s(below) > slack) t = (s - last%s(below))/(last%s(above) - last%s(below))
+      jump = (1.0_rk - t)*last%jump(:, below) + t*last%jump(:, above)
+   end subroutine recall_jump
 
    !> Conditions and loads on the fracture faces.
    subroutine load_faces(self, face_condition, coarse, level, state, conditions)
@@ -214,13 +300,34 @@ contains
                conditions%dilation(i) = sign(level%dilation(j), state%jump(2, end, j))
             else if (contact /= state_open) then
                conditions%condition(i) = face_jump
+               call keep_jump(self, coarse, state, i, j)
             end if
          case ("jump")
             conditions%condition(i) = face_jump
+            call interpolate_jump(self, coarse, state, i, j)
          end select
-         if (conditions%condition(i) == face_jump) call interpolate_jump(self, coarse, state, i, j)
       end do
    end subroutine load_faces
+
+   !> The window's last jump on a sticking face, or the coarse one where there is none.
+   subroutine keep_jump(self, coarse, state, i, j)
+      class(window_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: coarse
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
+
+      integer(ik) :: k
+      logical :: found
+
+      do k = 1, 3
+         call recall_jump(self%last_jump, self%mesh%fracture%cell_fracture(i), &
+            self%model%mesh%face_s(k, i), self%loads%jump(:, k, i), found)
+         if (.not. found) then
+            call interpolate_jump(self, coarse, state, i, j)
+            return
+         end if
+      end do
+   end subroutine keep_jump
 
    !> The coarse jump, linear along its cell, at the window's nodes. Zero at the tip of the network.
    subroutine interpolate_jump(self, coarse, state, i, j)

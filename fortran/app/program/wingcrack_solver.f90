@@ -1,7 +1,7 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
    use app_check, only: describe_scene, require_supported
-   use app_process, only: catch_interrupts, keep_heap
+   use app_process, only: catch_interrupts, keep_heap, use_one_blas_thread
    use app_run, only: run_scene
    use app_version, only: version
    use base_errors, only: error_t
@@ -63,6 +63,7 @@ contains
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
 
       call keep_heap()
+      call use_one_blas_thread()
       call catch_interrupts()
       call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
       if (allocated(error)) then
