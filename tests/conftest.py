@@ -1,4 +1,4 @@
-"""Trees for the tests of the launcher."""
+"""Trees for the tests of the launcher, and the built program for those of the whole."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from launcher_tree import Tree, make_tree
+from system_scene import SCENE, call
 
 
 @pytest.fixture
@@ -40,3 +41,12 @@ def own_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
     tree = Tree(root, place)
     assert tree.call("check", tree.scene()).returncode == 0
     return tree
+
+
+@pytest.fixture(scope="session")
+def program(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """The real program is built, so that no later call has anything to say about building."""
+    place = tmp_path_factory.mktemp("program")
+    (place / "small.nml").write_text(SCENE)
+    done = call(place, "check", "small.nml")
+    assert done.returncode == 0, done.stderr

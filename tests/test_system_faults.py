@@ -1,0 +1,106 @@
+"""Faults in scenes and calls: the real program names them, ends with 2 and writes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from system_scene import SCENE, call, varied
+
+pytestmark = pytest.mark.usefixtures("program")
+
+# What is changed in the scene; then the group and the words that the refusal must hold.
+FAULTS = {
+    "unknown group": ("&fluid", "&fluit", "&fluit", "the nearest is &fluid"),
+    "unknown name": ("young =", "yuong =", "&material", "yuong, the nearest is young"),
+    "group not ended": ("&fine window = 0.4 /", "&fine window = 0.4", "&fine", "not ended by '/'"),
+    "group twice": (
+        "&growth",
+        "&time end = 1.0 /\n&growth",
+        "&time",
+        "given twice, first on line 19",
+    ),
+    "name twice": ("biot = 0.8", "biot = 0.8, biot = 0.9", "&material", "biot is given twice"),
+    "wrong kind": ("viscosity = 1.0e-4", "viscosity = 'thin'", "&fluid", "viscosity is 'thin'"),
+    "not finite": ("rate = 5.0e-9", "rate = nan", "&injection", "rate is nan"),
+    "too large": ("poisson = 0.2", "poisson = 0.5", "&material", "less than 0.5"),
+    "too small": ("young = 40.0e9", "young = -40.0e9", "&material", "young is -40.0e9"),
+    "no such choice": ("name = 'top'", "name = 'lid'", "&side", "'left', 'right', 'bottom' or"),
+    "missing value": ("friction = 0.5, ", "", "&fracture", "friction"),
+    "missing fluid": (
+        "&fluid compressibility = 4.0e-10, viscosity = 1.0e-4 /",
+        "",
+        "&injection",
+        "needs a fluid",
+    ),
+    "empty body": ("x_max = 2.0", "x_max = 0.0", "&domain", "x_max is 0.0"),
+    "body that can move": (
+        "&side name = 'left', x_displacement = 0.0 /",
+        "",
+        "&side",
+        "x_displacement",
+    ),
+    "fracture outside": ("y = 0.96", "y = -0.96", "&fracture", "outside of the domain"),
+    "unequal lists": ("y = 0.9646446609406726,", "y =", "&fracture", "must have as many as x, 2"),
+    "well in no fracture": ("fracture = 'f1'", "fracture = 'f2'", "&injection", "nearest is 'f1'"),
+    "well that ends first": ("end = 14400.0", "end = 60.0", "&injection", "end is 60.0"),
+    "step beyond the end": ("step = 3600.0", "step = 36000.0", "&time", "step is 36000.0"),
+    "cells too large": ("size_fracture = 0.02", "size_fracture = 0.3", "&coarse", "size_boundary"),
+    "window too small": ("window = 0.4", "window = 0.01", "&fine", "window is 0.01"),
+    "porosity above biot": ("biot = 0.8", "biot = 0.001", "&material", "biot is 0.001"),
+    "probe outside": ("x = 1.5, y = 1.5", "x = 1.5, y = 3.0", "&probe", "(1.5, 3.0)"),
+    "name taken": ("name = 'corner'", "name = 'inside'", "&probe", "'inside' is already taken"),
+    "no logical": ("intensities = .true.", "intensities = yes", "&growth", "intensities is yes"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_faulty_scene_is_refused(command: str, fault: str, tmp_path: Path) -> None:
+    old, new, group, words = FAULTS[fault]
+    (tmp_path / "faulty.nml").write_text(varied((old, new)))
+    options = ["--out", "out"] if command == "run" else []
+    done = call(tmp_path, command, "faulty.nml", *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("wingcrack: faulty.nml:")
+    assert done.stderr.count("\n") == 1
+    assert group in done.stderr
+    assert words in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
+
+
+def test_growth_needs_the_toughness(tmp_path: Path) -> None:
+    scene = varied(("toughness = 0.3e6", ""), ("intensities = .true.", "enabled = .true."))
+    (tmp_path / "faulty.nml").write_text(scene)
+    done = call(tmp_path, "run", "faulty.nml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "faulty.nml:2: &material: toughness" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["run", "nowhere.nml"], "nowhere.nml"),
+        (["run"], "needs a scene file"),
+        (["run", "small.nml", "--fast"], "--fast"),
+        (["run", "small.nml", "--threads", "0"], "--threads"),
+        (["check", "small.nml", "other.nml"], "other.nml"),
+        (["plot", "nowhere"], "nowhere"),
+    ],
+)
+def test_a_wrong_call_is_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    done = call(tmp_path, *arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert words in done.stderr.splitlines()[-1]
+    assert [path.name for path in tmp_path.iterdir()] == ["small.nml"]
+
+
+def test_a_directory_of_other_files_is_no_run(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("somebody's file\n")
+    (tmp_path / "small.nml").write_text(SCENE)
+    done = call(tmp_path, "run", "small.nml", "--out", "out")
+    assert done.returncode == 1
+    assert "out" in done.stderr.splitlines()[-1]
+    assert (tmp_path / "out").read_text() == "somebody's file\n"
