@@ -40,7 +40,7 @@ module twolevel_window
    type :: jump_record_t
       integer(ik), allocatable :: fracture(:)
       real(rk), allocatable :: s(:)  !< arc length [m]
-      real(rk), allocatable :: jump(:, :)  !< (2, n) along tau, n [m]
+      real(rk), allocatable :: jump(:, :)  !< (2, n) x, y: fractures kink [m]
    end type jump_record_t
 
    !> One window.
@@ -228,7 +228,6 @@ contains
       class(window_t), intent(inout) :: self
 
       integer(ik) :: i, k, n
-      real(rk) :: jump(2)
 
       associate (fine => self%model%mesh, last => self%last_jump)
          n = 3*self%mesh%fracture%n_cells
@@ -236,12 +235,11 @@ contains
          allocate (last%fracture(n), last%s(n), last%jump(2, n))
          do i = 1, self%mesh%fracture%n_cells
             do k = 1, 3
-               jump = self%displacement(:, fine%face_nodes(k, 2, i)) &
-                  - self%displacement(:, fine%face_nodes(k, 1, i))
-               associate (tau => fine%face_tangent(:, i), at => 3*(i - 1) + k)
+               associate (at => 3*(i - 1) + k)
                   last%fracture(at) = self%mesh%fracture%cell_fracture(i)
                   last%s(at) = fine%face_s(k, i)
-                  last%jump(:, at) = [dot_product(tau, jump), tau(1)*jump(2) - tau(2)*jump(1)]
+                  last%jump(:, at) = self%displacement(:, fine%face_nodes(k, 2, i)) &
+                     - self%displacement(:, fine%face_nodes(k, 1, i))
                end associate
             end do
          end do
@@ -316,16 +314,20 @@ contains
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
 
+      real(rk) :: jump(2)
       integer(ik) :: k
       logical :: found
 
       do k = 1, 3
          call recall_jump(self%last_jump, self%mesh%fracture%cell_fracture(i), &
-            self%model%mesh%face_s(k, i), self%loads%jump(:, k, i), found)
+            self%model%mesh%face_s(k, i), jump, found)
          if (.not. found) then
             call interpolate_jump(self, coarse, state, i, j)
             return
          end if
+         associate (tau => self%model%mesh%face_tangent(:, i))
+            self%loads%jump(:, k, i) = [dot_product(tau, jump), tau(1)*jump(2) - tau(2)*jump(1)]
+         end associate
       end do
    end subroutine keep_jump
 
