@@ -29,12 +29,14 @@ module app_journal
       type(progress_t) :: progress
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
+      real(rk) :: fields_time = -huge(1.0_rk)  !< of the last written fields [s]
       logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures)
    contains
       procedure :: open => open_journal
       procedure :: step_done
       procedure :: tips_done
       procedure :: growth_done
+      procedure :: write_last_state
       procedure :: count_unknowns
    end type journal_t
 
@@ -99,6 +101,7 @@ contains
       type(history_row_t), intent(out) :: row
 
       integer(ik) :: i
+      real(rk) :: fluid  !< that the mass error is compared with [m2]
       logical, allocatable :: is_well(:)
 
       associate (state => simulation%state, length => simulation%model%condensed%length)
@@ -131,8 +134,9 @@ contains
             end do
          end if
          row%seismic_moment = self%seismic_moment
-         row%mass_error_relative = abs(self%mass_error)/max(abs(simulation%injected), &
-            row%fracture_volume, tiny(1.0_rk))
+         fluid = max(abs(simulation%injected), row%fracture_volume)
+         if (.not. fluid > 0.0_rk) fluid = max(sum(abs(state%content)), tiny(1.0_rk))
+         row%mass_error_relative = abs(self%mass_error)/fluid
       end associate
       self%record%mass_error_relative = max(self%record%mass_error_relative, row%mass_error_relative)
       self%record%contact_residual = max(self%record%contact_residual, report%contact_residual)
@@ -242,8 +246,28 @@ contains
          fracture%state = [(cell_state(state%contact(:, i)), i=1, simulation%mesh%fracture%n_cells)]
          allocate (none%point(0), none%pressure(0))
          call self%files%write_fields(state%time, simulation%mesh, matrix, fracture, none, error)
+         self%fields_time = state%time
       end associate
    end subroutine write_fields
+
+   !> The fields at the end of a run, however it ended, unless they have just been written.
+   subroutine write_last_state(self, simulation, timers, error)
+      class(journal_t), intent(inout) :: self
+      type(simulation_t), intent(in) :: simulation
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      real(rk), allocatable :: stresses(:, :)
+
+      if (.not. simulation%state%time > self%fields_time) return
+      if (.not. allocated(simulation%state%tractions)) return
+      if (size(simulation%state%unknowns, 2) /= simulation%model%regions%n_blocks) return
+      call timers%start(phase_output)
+      allocate (stresses(3, simulation%mesh%n_cells))
+      call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, stresses)
+      call write_fields(self, simulation, stresses, error)
+      call timers%stop(phase_output)
+   end subroutine write_last_state
 
    !> A row of tips.csv for each tip: where it was before it grew, if it did.
    subroutine tips_done(self, simulation, timers)

@@ -64,6 +64,8 @@ contains
          journal%record%status = status_finished
       end if
       call journal%progress%clear()
+      call journal%write_last_state(simulation, timers, trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
       call journal%count_unknowns(simulation)
       call journal%files%log(journal%record%status//": "//journal%record%reason)
       call journal%files%close(journal%record, timers, trouble)
@@ -113,8 +115,18 @@ contains
             call choose_step(simulation, stepping)
             if (.not. scene%growth%intensities) cycle
             call follow_tips(simulation, journal, stepping, timers, is_done, error)
-            if (allocated(error) .or. is_done) return
+            if (allocated(error)) return
+            if (is_done) exit
          end do
+         if (.not. stepping%short) return
+         ! The last growth changed the coarse mesh: find the state on it, so that the fields show it.
+         call take_step(simulation, journal, stepping, timers, dt, slip_before, report, error)
+         if (.not. allocated(error)) &
+            call journal%step_done(simulation, dt, slip_before, report, timers, error)
+         if (.not. allocated(error)) call simulation%evaluate_tips(timers, error)
+         if (allocated(error)) return
+         simulation%tips%tip%advance = 0.0_rk
+         call journal%tips_done(simulation, timers)
       end associate
    end subroutine march
 
