@@ -1,8 +1,9 @@
 !> The routines of LAPACK in use, declared so that the compiler checks every call.
 !!
-!! Dense systems, matrices by columns. `info` is 0 for success, -i where argument i is wrong, and i
-!! where pivot i is exactly zero or, for Cholesky, not positive (LAPACK Users' Guide, third edition,
-!! Anderson and others 1999).
+!! Dense systems with n unknowns and nrhs right-hand sides; lda and ldb are the numbers of rows that
+!! the arrays have. `info` is 0 for success, -i where argument i is wrong, and i where pivot i is
+!! exactly zero or, for Cholesky, not positive (LAPACK Users' Guide, third edition, Anderson and
+!! others 1999).
 module base_lapack
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -16,9 +17,9 @@ module base_lapack
          import :: ik, rk
          implicit none(type, external)
          integer(ik), intent(in) :: n, nrhs, lda, ldb
-         real(rk), intent(inout) :: a(lda, *)  !< (n, n)
-         integer(ik), intent(out) :: ipiv(*)  !< (n) row i was exchanged with row ipiv(i)
-         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         real(rk), intent(inout) :: a(lda, n)
+         integer(ik), intent(out) :: ipiv(n)  !< row i was exchanged with row ipiv(i)
+         real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dgesv
 
@@ -27,8 +28,8 @@ module base_lapack
          import :: ik, rk
          implicit none(type, external)
          integer(ik), intent(in) :: m, n, lda
-         real(rk), intent(inout) :: a(lda, *)  !< (m, n)
-         integer(ik), intent(out) :: ipiv(*)  !< (min(m, n))
+         real(rk), intent(inout) :: a(lda, n)
+         integer(ik), intent(out) :: ipiv(min(m, n))
          integer(ik), intent(out) :: info
       end subroutine dgetrf
 
@@ -38,9 +39,9 @@ module base_lapack
          implicit none(type, external)
          character, intent(in) :: trans  !< "N" for A, "T" for its transpose
          integer(ik), intent(in) :: n, nrhs, lda, ldb
-         real(rk), intent(in) :: a(lda, *)  !< (n, n)
-         integer(ik), intent(in) :: ipiv(*)  !< (n)
-         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         real(rk), intent(in) :: a(lda, n)
+         integer(ik), intent(in) :: ipiv(n)
+         real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dgetrs
 
@@ -50,7 +51,7 @@ module base_lapack
          implicit none(type, external)
          character, intent(in) :: uplo  !< "U" or "L": the triangle that is given; the other stays
          integer(ik), intent(in) :: n, lda
-         real(rk), intent(inout) :: a(lda, *)  !< (n, n)
+         real(rk), intent(inout) :: a(lda, n)
          integer(ik), intent(out) :: info
       end subroutine dpotrf
 
@@ -60,8 +61,8 @@ module base_lapack
          implicit none(type, external)
          character, intent(in) :: uplo  !< as for dpotrf
          integer(ik), intent(in) :: n, nrhs, lda, ldb
-         real(rk), intent(in) :: a(lda, *)  !< (n, n)
-         real(rk), intent(inout) :: b(ldb, *)  !< (n, nrhs)
+         real(rk), intent(in) :: a(lda, n)
+         real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dpotrs
    end interface

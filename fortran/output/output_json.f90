@@ -2,7 +2,8 @@
 !! null.
 module output_json
    use base_kinds, only: ik, lk, rk
-   use output_number, only: integer_text
+   use base_number, only: integer_text
+   use base_utf8, only: utf8_length
    use output_text, only: newline, text_buffer_t, text_t
    implicit none(type, external)
    private
@@ -210,39 +211,6 @@ contains
          i = i + n_bytes
       end do
    end function escaped
-
-   !> Bytes of the UTF-8 character (RFC 3629) that begins a text; 0 if none does.
-   pure function utf8_length(text) result(n_bytes)
-      character(len=*), intent(in) :: text  !< not empty
-      integer :: n_bytes
-      integer :: first, second, i
-
-      first = iachar(text(1:1))
-      select case (first)
-      case (0:127)
-         n_bytes = 1
-      case (194:223)
-         n_bytes = 2
-      case (224:239)
-         n_bytes = 3
-      case (240:244)
-         n_bytes = 4
-      case default
-         n_bytes = 0
-      end select
-      if (n_bytes > len(text)) n_bytes = 0
-      do i = 2, n_bytes
-         if (iand(iachar(text(i:i)), 192) /= 128) then
-            n_bytes = 0
-            return
-         end if
-      end do
-      if (n_bytes > 2) then  ! overlong forms, surrogates, and code points above the last
-         second = iachar(text(2:2))
-         if (first == 224 .and. second < 160 .or. first == 237 .and. second > 159 .or. &
-            & first == 240 .and. second < 144 .or. first == 244 .and. second > 143) n_bytes = 0
-      end if
-   end function utf8_length
 
    !> Comma, line break and key before a value.
    subroutine begin_member(self, key)

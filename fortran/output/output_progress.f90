@@ -1,7 +1,7 @@
 !> One line on a terminal that says how far the run is, renewed in place; elsewhere nothing.
 module output_progress
    use base_kinds, only: ik, lk, rk
-   use output_number, only: brief_text, integer_text
+   use base_number, only: brief_text, integer_text
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
    implicit none(type, external)

@@ -2,8 +2,8 @@
 module output_pvd
    use base_errors, only: error_t
    use base_kinds, only: rk
+   use base_number, only: real_text
    use output_files, only: write_text_file
-   use output_number, only: real_text
    use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private

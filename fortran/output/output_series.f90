@@ -2,7 +2,7 @@
 module output_series
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
-   use output_number, only: integer_text
+   use base_number, only: integer_text
    use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private

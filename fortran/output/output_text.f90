@@ -2,8 +2,8 @@
 module output_text
    use base_errors, only: error_t
    use base_kinds, only: rk
+   use base_number, only: format_real, number_width
    use output_files, only: write_text_file
-   use output_number, only: format_real, number_width
    implicit none(type, external)
    private
 

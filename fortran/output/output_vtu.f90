@@ -7,8 +7,8 @@
 module output_vtu
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text, real_text
    use output_files, only: whole_file_t
-   use output_number, only: integer_text, real_text
    use output_text, only: newline, text_buffer_t
    use, intrinsic :: iso_fortran_env, only: int64, int8
    implicit none(type, external)

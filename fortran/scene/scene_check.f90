@@ -3,12 +3,13 @@
 module scene_check
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
+   use base_number, only: integer_text
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
    use scene_values, only: nearest_word, value_t
-   use scene_words, only: integer_text, real_text, rounded_text
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 

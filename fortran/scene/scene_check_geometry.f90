@@ -2,9 +2,10 @@
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
-   use scene_words, only: integer_text, real_text, rounded_text
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 

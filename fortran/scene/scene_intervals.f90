@@ -1,14 +1,15 @@
 !> Ranges of allowed values, and how to say them in words.
 module scene_intervals
    use base_kinds, only: ik, rk
-   use scene_words, only: integer_text, real_text
+   use base_number, only: integer_text
+   use scene_words, only: real_text
    implicit none(type, external)
    private
 
    public :: interval_t
    public :: holds, in_words
    public :: at_least_zero, biot_range, dilation_range, newton_range, poisson_range, porosity_range
-   public :: positive, rosette_range, share, tolerance_range
+   public :: positive, rosette_range, share, steps_range, tolerance_range
 
    !> Values between two bounds; a bound at +-huge is none, for every value is finite.
    type :: interval_t
@@ -28,6 +29,7 @@ module scene_intervals
 
    !> With fewer than 6 sectors an element at the tip spans more than 60 degrees.
    type(interval_t), parameter :: rosette_range = interval_t(6.0_rk, 64.0_rk)
+   type(interval_t), parameter :: steps_range = interval_t(1.0_rk, 100000.0_rk)
    type(interval_t), parameter :: newton_range = interval_t(1.0_rk, 1000.0_rk)
 
    !> Round-off ends below it; no step with a larger residual is ever accepted.

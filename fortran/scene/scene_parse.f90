@@ -2,6 +2,7 @@
 module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
+   use base_number, only: integer_text
    use scene_parameters, only: groups, need_always, need_fluid, need_fracture, need_growth, &
                                need_tips, parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
@@ -10,7 +11,7 @@ module scene_parse
                            token_slash, token_text, token_word, tokenize
    use scene_types, only: name_length
    use scene_values, only: default_value, nearest_word, read_value, shortened, value_t
-   use scene_words, only: integer_text, is_identifier, lower_case
+   use scene_words, only: is_identifier, lower_case
    implicit none(type, external)
    private
 

@@ -2,9 +2,9 @@
 module scene_sheet
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
+   use base_number, only: integer_text
    use scene_parameters, only: groups, parameters
    use scene_values, only: value_t
-   use scene_words, only: integer_text
    implicit none(type, external)
    private
 

@@ -4,7 +4,7 @@
 !> end of the line, texts in single or double quotes in which a doubled quote stands for one.
 module scene_tokens
    use base_kinds, only: ik
-   use scene_words, only: integer_text
+   use base_number, only: integer_text
    implicit none(type, external)
    private
 

@@ -1,13 +1,15 @@
 !> Turns the tokens behind `name =` into a value of the right kind and range.
 module scene_values
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
+   use base_utf8, only: is_printable
    use scene_intervals, only: holds, in_words
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
                                kind_reals, kind_text, parameter_t, text_length
    use scene_tokens, only: token_comma, token_list_t, token_t, token_text, token_word, tokenize, &
                            unquoted
    use scene_types, only: name_length
-   use scene_words, only: edit_distance, integer_text, is_identifier, is_utf8, lower_case
+   use scene_words, only: edit_distance, is_identifier, lower_case
    implicit none(type, external)
    private
 
@@ -245,7 +247,7 @@ contains
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
          end if
       case default
-         if (len(text) > text_length .or. .not. is_utf8(text)) then
+         if (len(text) > text_length .or. .not. is_printable(text)) then
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
          end if
       end select
@@ -317,7 +319,7 @@ contains
 
       short = word
       if (len(word) > longest) short = word(1:longest)//"..."
-      if (is_utf8(short)) return
+      if (is_printable(short)) return
       do i = 1, len(short)
          if (ichar(short(i:i)) < 32 .or. ichar(short(i:i)) > 126) short(i:i) = "?"
       end do

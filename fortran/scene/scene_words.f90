@@ -1,11 +1,12 @@
-!> Small operations on words: case, likeness, and numbers written so that they read back exactly.
+!> Small operations on words: case, likeness, and numbers as people write them in scene files, which
+!> read back exactly.
 module scene_words
    use base_kinds, only: ik, lk, rk
+   use base_number, only: integer_text, rounded, shortest_digits
    implicit none(type, external)
    private
 
-   public :: edit_distance, integer_text, is_identifier, is_utf8, lower_case, real_text, &
-             rounded_text
+   public :: edit_distance, is_identifier, lower_case, real_text, rounded_text
 
 contains
 
@@ -57,100 +58,41 @@ contains
       if (is_identifier) is_identifier = index(alphanumeric, word(1:1)) > 0
    end function is_identifier
 
-   !> Every byte is printable ASCII or part of a UTF-8 sequence of the right length.
-   pure logical function is_utf8(word)
-      character(len=*), intent(in) :: word
-      integer :: i, code, n_following
-
-      is_utf8 = .false.
-      n_following = 0
-      do i = 1, len(word)
-         code = ichar(word(i:i))
-         if (n_following > 0) then
-            if (code < 128 .or. code > 191) return
-            n_following = n_following - 1
-         else
-            select case (code)
-            case (32:126)
-               n_following = 0
-            case (194:223)
-               n_following = 1
-            case (224:239)
-               n_following = 2
-            case (240:244)
-               n_following = 3
-            case default
-               return
-            end select
-         end if
-      end do
-      is_utf8 = n_following == 0
-   end function is_utf8
-
-   !> An integer without blanks.
-   pure function integer_text(value) result(text)
-      integer(ik), intent(in) :: value
-      character(len=:), allocatable :: text
-      character(len=16) :: buffer
-
-      write (buffer, "(i0)") value
-      text = trim(buffer)
-   end function integer_text
-
    !> The shortest decimal text that reads back to the same bits, as `0.25`, `97200.0` or `4.0e-10`.
    pure function real_text(value) result(text)
       real(rk), intent(in) :: value  !< finite
       character(len=:), allocatable :: text
       character(len=17), parameter :: zeros = repeat("0", 17)
-      character(len=32) :: buffer, style
-      character(len=:), allocatable :: digits, sign
-      real(rk) :: again
-      integer :: n_digits, exponent, status, mark
+      character(len=:), allocatable :: digits
+      integer(lk) :: all_digits
+      integer :: exponent
 
-      do n_digits = 1, 17  ! 17 digits determine any 64-bit number (IEEE 754)
-         write (style, "(a,i0,a)") "(es32.", n_digits - 1, "e3)"
-         write (buffer, style) value
-         read (buffer, "(f32.0)", iostat=status) again
-         if (status == 0 .and. transfer(again, 0_lk) == transfer(value, 0_lk)) exit
-      end do
-
-      buffer = adjustl(buffer)
-      mark = scan(buffer, "E")
-      if (mark == 0) then  ! an infinity or NaN, which no scene holds
-         text = trim(buffer)
-         return
+      exponent = 0
+      digits = "0"
+      if (abs(value) > 0.0_rk) then
+         call shortest_digits(abs(value), all_digits, exponent)
+         digits = integer_text(all_digits)
+         digits = digits(1:verify(digits, "0", back=.true.))
       end if
-      read (buffer(mark + 1:), *) exponent
-      sign = ""
-      if (buffer(1:1) == "-") then
-         sign = "-"
-         buffer = buffer(2:)
-         mark = mark - 1
-      end if
-      digits = buffer(1:1)//buffer(3:mark - 1)
-      digits = digits(1:max(1, verify(digits, "0", back=.true.)))
 
       if (exponent >= 0 .and. exponent <= 6) then
          digits = digits//zeros(1:max(0, exponent + 2 - len(digits)))
-         text = sign//digits(1:exponent + 1)//"."//digits(exponent + 2:)
+         text = digits(1:exponent + 1)//"."//digits(exponent + 2:)
       else if (exponent < 0 .and. exponent >= -3) then
-         text = sign//"0."//zeros(1:-exponent - 1)//digits
+         text = "0."//zeros(1:-exponent - 1)//digits
       else
          if (len(digits) == 1) digits = digits//"0"
-         text = sign//digits(1:1)//"."//digits(2:)//"e"//integer_text(int(exponent, ik))
+         text = digits(1:1)//"."//digits(2:)//"e"//integer_text(int(exponent, ik))
       end if
+      if (sign(1.0_rk, value) < 0.0_rk) text = "-"//text
    end function real_text
 
    !> A computed number for a message, to four digits.
    pure function rounded_text(value) result(text)
-      real(rk), intent(in) :: value
+      real(rk), intent(in) :: value  !< finite
       character(len=:), allocatable :: text
-      character(len=32) :: buffer
-      real(rk) :: rounded
 
-      write (buffer, "(es32.3e3)") value
-      read (buffer, "(f32.0)") rounded
-      text = real_text(rounded)
+      text = real_text(rounded(value, 4))
    end function rounded_text
 
 end module scene_words

@@ -1,13 +1,14 @@
 !> Writing of a scene as understood, every default written out.
 module scene_write
    use base_errors, only: error_t, raise_error
+   use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
    use scene_parameters, only: groups, kind_integer, kind_logical, kind_real, kind_reals, &
                                parameter_t, parameters
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
-   use scene_words, only: integer_text, real_text
+   use scene_words, only: real_text
    implicit none(type, external)
    private
 

@@ -1,9 +1,8 @@
 !> Numbers as texts are exact and short; likeness of words; what a name may be.
 program test_scene_words
    use base_checks, only: checks_t
-   use base_kinds, only: ik, lk, rk
-   use scene_words, only: edit_distance, integer_text, is_identifier, is_utf8, lower_case, &
-                          real_text, rounded_text
+   use base_kinds, only: lk, rk
+   use scene_words, only: edit_distance, is_identifier, lower_case, real_text, rounded_text
    implicit none(type, external)
    type(checks_t) :: checks
 
@@ -51,7 +50,6 @@ contains
    end subroutine check_real_text
 
    subroutine check_words()
-      call checks%is_true(integer_text(-42_ik) == "-42", "integer")
       call checks%is_true(lower_case("X_Min9") == "x_min9", "lower case")
       call checks%is_true(edit_distance("kitten", "sitting") == 3, "kitten to sitting")
       call checks%is_true(edit_distance("yuong", "young") == 1, "a swap is one edit")
@@ -62,10 +60,6 @@ contains
       call checks%is_true(.not. is_identifier("../up"), "no path in a name")
       call checks%is_true(.not. is_identifier(".hidden"), "no leading point")
       call checks%is_true(.not. is_identifier("a b"), "no blank in a name")
-      call checks%is_true(is_utf8("K"//char(195)//char(164)//"se"), "two-byte letter")
-      call checks%is_true(.not. is_utf8("K"//char(228)//"se"), "Latin-1 is not UTF-8")
-      call checks%is_true(.not. is_utf8("cut "//char(195)), "a cut letter")
-      call checks%is_true(.not. is_utf8(achar(27)//"[31m"), "no control characters")
    end subroutine check_words
 
 end program test_scene_words

@@ -1,8 +1,8 @@
-!> Tests of output_number: the text is short, and reads back as the same number, bit for bit.
-program test_output_number
+!> Tests of base_number: the text is short, and reads back as the same number, bit for bit.
+program test_base_number
    use base_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
-   use output_number, only: brief_text, integer_text, real_text
+   use base_number, only: brief_text, integer_text, real_text
    use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
       & ieee_value
    implicit none(type, external)
@@ -31,6 +31,7 @@ program test_output_number
    call same_text(0.99999999999999989_rk, "0.9999999999999999")  ! next below 1
    call same_text(huge(1.0_rk), "1.7976931348623157e+308")
    call same_text(tiny(1.0_rk), "2.2250738585072014e-308")
+   call same_text(transfer(1_lk, 1.0_rk), "5e-324")  ! the smallest subnormal
    call same_text(ieee_value(1.0_rk, ieee_quiet_nan), "nan")
    call same_text(ieee_value(1.0_rk, ieee_positive_inf), "inf")
    call same_text(ieee_value(1.0_rk, ieee_negative_inf), "-inf")
@@ -104,4 +105,4 @@ contains
       call checks%is_true(n_wrong == 0 .and. n_tried > 90000, "random numbers read back")
    end subroutine read_back_random
 
-end program test_output_number
+end program test_base_number

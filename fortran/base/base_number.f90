@@ -4,15 +4,17 @@
 !! whose 113 bits leave 56 for the rest. 15 digits are tried first, then 16: they do if they lie
 !! closer to the number than half the way to its neighbours; 17 always do (Steele & White 1990
 !! explain the interval; any decimal of up to 15 digits survives a double, so no shorter length
-!! needs trying). At subnormals, powers of two and exact ties a digit more than needed may be
-!! written. Formatted writes take five times as long, and their last digits are noise to the reader.
-module output_number
+!! needs trying, but for subnormals). At powers of two and exact ties a digit more than needed may
+!! be written. Formatted writes take five times as long, and their last digits are noise to the
+!! reader.
+module base_number
    use base_kinds, only: ik, lk, rk
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    implicit none(type, external)
    private
 
    public :: brief_text, format_integer, format_real, integer_text, number_width, real_text
+   public :: rounded, shortest_digits
 
    integer, parameter :: number_width = 28  !< longest text of a number
    integer, parameter :: qk = selected_real_kind(33)  !< quadruple precision
@@ -81,18 +83,25 @@ contains
       real(rk), intent(in) :: x
       integer, intent(in) :: n_digits  !< significant digits, 1 to 15
       character(len=:), allocatable :: text
-      real(qk) :: unit
 
-      if (abs(x) > 0.0_rk .and. abs(x) <= huge(x)) then
-         unit = times_ten(1.0_qk, floor(log10(abs(x))) + 1 - n_digits)
-         text = real_text(real(anint(real(x, qk)/unit)*unit, rk))
-      else
-         text = real_text(x)
-      end if
+      text = real_text(rounded(x, n_digits))
       if (len(text) > 2) then
          if (text(len(text) - 1:) == ".0") text = text(:len(text) - 2)
       end if
    end function brief_text
+
+   !> The number next to x that has few digits; zeros, infinities and NaN stay as they are.
+   pure function rounded(x, n_digits)
+      real(rk), intent(in) :: x
+      integer, intent(in) :: n_digits  !< significant digits, 1 to 15
+      real(rk) :: rounded
+      real(qk) :: unit
+
+      rounded = x
+      if (.not. (abs(x) > 0.0_rk .and. abs(x) <= huge(x))) return
+      unit = times_ten(1.0_qk, floor(log10(abs(x))) + 1 - n_digits)
+      rounded = real(anint(real(x, qk)/unit)*unit, rk)
+   end function rounded
 
    !> Text of an integer.
    pure subroutine format_integer(n, text, length)
@@ -150,7 +159,7 @@ contains
       real(qk) :: scaled
       real(rk) :: rest, half_up, half_down
       integer(lk) :: whole, candidate, unit
-      integer :: n_digits
+      integer :: n_digits, fewest
 
       power = floor(log10(x))
       scaled = times_ten(real(x, qk), 16 - power)
@@ -175,8 +184,9 @@ contains
       if (fraction(x) <= 0.5_rk .and. x > tiny(x)) half_down = 0.5_rk*half_up  ! a power of two
 
       digits = whole + merge(1_lk, 0_lk, rest >= 0.5_rk)
-      unit = 100_lk
-      do n_digits = 15, 16
+      fewest = merge(15, 1, x >= tiny(x))  ! subnormals have fewer bits
+      unit = 10_lk**(17 - fewest)
+      do n_digits = fewest, 16
          candidate = (whole + unit/2_lk)/unit*unit
          if (real(candidate - whole, rk) - rest < half_up .and. &
             & rest - real(candidate - whole, rk) < half_down) then
@@ -254,4 +264,4 @@ contains
       length = length + len(piece)
    end subroutine append
 
-end module output_number
+end module base_number
