@@ -84,8 +84,12 @@ contains
       self%end = end
       tip = network%xy(:, merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1))
       half = 0.5_rk*scene%discretization%window
-      self%lower = max(tip - half, [scene%domain%x_min, scene%domain%y_min])
-      self%upper = min(tip + half, [scene%domain%x_max, scene%domain%y_max])
+      self%lower = tip - half
+      self%upper = tip + half
+      call clear_edges(network, 0.3_rk*scene%discretization%fine_ratio &
+         *scene%discretization%size_fracture, self%lower, self%upper)
+      self%lower = max(self%lower, [scene%domain%x_min, scene%domain%y_min])
+      self%upper = min(self%upper, [scene%domain%x_max, scene%domain%y_max])
       spec%x_min = self%lower(1)
       spec%y_min = self%lower(2)
       spec%x_max = self%upper(1)
@@ -103,6 +107,26 @@ contains
          self%mesh%fracture%tip_end == end, .true., dim=1)
       self%loads = no_loads(self%model%mesh)
    end subroutine build
+
+   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits between.
+   pure subroutine clear_edges(network, clearance, lower, upper)
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: clearance  !< [m]
+      real(rk), intent(inout) :: lower(2), upper(2)
+
+      integer(ik) :: axis
+
+      do axis = 1, 2
+         associate (at => network%xy(axis, :))
+            do while (any(abs(at - lower(axis)) < clearance))
+               lower(axis) = lower(axis) - clearance
+            end do
+            do while (any(abs(at - upper(axis)) < clearance))
+               upper(axis) = upper(axis) + clearance
+            end do
+         end associate
+      end do
+   end subroutine clear_edges
 
    !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves. There the
    !! pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the tip's own
