@@ -1,0 +1,218 @@
+!> The law of contact and friction: derivatives, states, what fulfils the law and what does not.
+program test_coarse_contact
+   use base_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use coarse_contact, only: contact_equations, contact_law_t, contact_residual
+   use mesh_states, only: state_name, state_open, state_slip, state_stick
+   implicit none(type, external)
+
+   real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
+   type(contact_law_t), parameter :: rough = contact_law_t(friction=0.5_rk, dilation=0.0_rk)
+   type(contact_law_t), parameter :: dilating = contact_law_t(friction=0.5_rk, dilation=0.1_rk)
+   type(contact_law_t), parameter :: smooth = contact_law_t(friction=0.0_rk, dilation=0.0_rk)
+   type(contact_law_t), parameter :: smooth_dilating = &
+                                     contact_law_t(friction=0.0_rk, dilation=0.1_rk)
+   type(checks_t) :: checks
+
+   call test_derivatives()
+   call test_admissible()
+   call test_violations()
+   call test_way()
+   call test_friction_opposes_slip()
+   call checks%finish()
+
+contains
+
+   !> Every state with every kind of law, away from the changes of state.
+   subroutine test_derivatives()
+      real(rk), parameter :: mpa = 1.0e6_rk, um = 1.0e-6_rk
+
+      call compare_slopes(rough, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(rough, [-5.0_rk, 2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(rough, [-5.0_rk, -2.0_rk]*mpa, [0.3_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(rough, [-1.0_rk, 0.3_rk]*mpa, [9.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(rough, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(dilating, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(dilating, [-5.0_rk, -1.0_rk]*mpa, [0.3_rk, -2.0_rk]*um, -2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(dilating, [-5.0_rk, 2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(dilating, [-5.0_rk, -2.0_rk]*mpa, [0.3_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
+      ! Slipping back: the slip falls, the total slip keeps its sign.
+      call compare_slopes(dilating, [-5.0_rk, -2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 6.0_rk*um, &
+                          state_slip)
+      call compare_slopes(dilating, [-1.0_rk, 0.3_rk]*mpa, [9.0_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_open)
+      call compare_slopes(smooth, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(smooth, [-5.0_rk, -0.1_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(smooth_dilating, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, -2.0_rk]*um, 0.0_rk, &
+                          state_slip)
+      call compare_slopes(smooth, [-1.0_rk, 0.1_rk]*mpa, [2.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+   end subroutine test_derivatives
+
+   !> The equations are piecewise linear, so that central differences are exact up to rounding.
+   subroutine compare_slopes(law, traction, jump, slip_before, expected)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: traction(2), jump(2), slip_before
+      integer(ik), intent(in) :: expected
+
+      real(rk), parameter :: step(4) = [1.0e3_rk, 1.0e3_rk, 1.0e-9_rk, 1.0e-9_rk]
+      real(rk) :: slope(2, 4), difference(2), x(4), ends(2, 2), ignored(2, 4)
+      integer(ik) :: state, way
+      integer :: k, side
+
+      way = 0
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, &
+                             ends(:, 1), slope(:, 1:2), slope(:, 3:4))
+      call checks%is_true(state == expected, "state: "//state_name(state)//" for " &
+                          //state_name(expected))
+      do k = 1, 4
+         do side = 1, 2
+            x = [traction, jump]
+            x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
+            way = 0
+            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, state, &
+                                   ends(:, side), ignored(:, :2), ignored(:, 3:))
+            call checks%is_true(state == expected, "difference within one state")
+         end do
+         difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
+         call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
+                              "derivative in state "//state_name(expected))
+      end do
+   end subroutine compare_slopes
+
+   !> States that fulfil the law: no residual of either kind, and the name that the law gives them.
+   subroutine test_admissible()
+      call expect(rough, [-4.0e6_rk, 1.9e6_rk], [0.0_rk, 3.0e-6_rk], 3.0e-6_rk, state_stick)
+      call expect(rough, [-4.0e6_rk, -1.9e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, state_stick)
+      call expect(rough, [-4.0e6_rk, 0.0_rk], [0.0_rk, 0.0_rk], 0.0_rk, state_stick)
+      call expect(rough, [-4.0e6_rk, 2.0e6_rk], [0.0_rk, 3.0e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(rough, [-4.0e6_rk, -2.0e6_rk], [0.0_rk, -3.0e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(rough, [0.0_rk, 0.0_rk], [2.0e-6_rk, 3.0e-6_rk], 1.0e-6_rk, state_open)
+      call expect(dilating, [-4.0e6_rk, 1.9e6_rk], [0.25e-6_rk, 2.5e-6_rk], 2.5e-6_rk, state_stick)
+      call expect(dilating, [-4.0e6_rk, 2.0e6_rk], [0.25e-6_rk, 2.5e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(dilating, [-4.0e6_rk, -2.0e6_rk], [0.25e-6_rk, -2.5e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(dilating, [-4.0e6_rk, -2.0e6_rk], [0.25e-6_rk, 2.5e-6_rk], 4.0e-6_rk, state_slip)
+      call expect(dilating, [0.0_rk, 0.0_rk], [0.5e-6_rk, -2.5e-6_rk], 1.0e-6_rk, state_open)
+      call expect(smooth, [-4.0e6_rk, 0.0_rk], [0.0_rk, 3.0e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(smooth_dilating, [-4.0e6_rk, 0.0_rk], [0.25e-6_rk, 2.5e-6_rk], 1.0e-6_rk, &
+                  state_slip)
+   end subroutine test_admissible
+
+   subroutine expect(law, traction, jump, slip_before, expected)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: traction(2), jump(2), slip_before
+      integer(ik), intent(in) :: expected
+
+      real(rk) :: residual(2), ignored(2, 4)
+      integer(ik) :: state, way
+
+      way = 0
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
+                             ignored(:, :2), ignored(:, 3:))
+      call checks%is_true(state == expected, "admissible: "//state_name(state)//" for " &
+                          //state_name(expected))
+      call checks%is_close(maxval(abs(residual)), 0.0_rk, 1.0e-8_rk, "equations of " &
+                           //state_name(expected))
+      call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), &
+                           0.0_rk, 1.0e-8_rk, "law in state "//state_name(expected))
+   end subroutine expect
+
+   !> Each way to break the law by itself: both measures see it, and contact_residual has its size.
+   subroutine test_violations()
+      call refuse(rough, [-4.0e6_rk, 1.0e6_rk], [-1.0e-6_rk, 0.0_rk], 0.0_rk, 2.0e6_rk, &
+                  "penetration")
+      call refuse(rough, [3.0e6_rk, 0.0_rk], [1.0e-5_rk, 0.0_rk], 0.0_rk, 3.0e6_rk, &
+                  "tension on open faces")
+      call refuse(rough, [3.0e6_rk, 0.0_rk], [0.0_rk, 0.0_rk], 0.0_rk, 3.0e6_rk, &
+                  "tension on closed faces")
+      call refuse(rough, [-4.0e6_rk, 0.0_rk], [1.0e-6_rk, 0.0_rk], 0.0_rk, 2.0e6_rk, &
+                  "pressure at a gap")
+      call refuse(rough, [-4.0e6_rk, 3.0e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, 1.0e6_rk, &
+                  "friction beyond its bound")
+      call refuse(rough, [0.0_rk, 1.0e6_rk], [1.0e-6_rk, 0.0_rk], 0.0_rk, 1.0e6_rk, &
+                  "shear on open faces")
+      call refuse(rough, [-4.0e6_rk, -2.0e6_rk], [0.0_rk, 1.0e-6_rk], 0.0_rk, 2.0e6_rk, &
+                  "friction that drives the slip")
+      call refuse(rough, [-4.0e6_rk, 1.0e6_rk], [0.0_rk, 4.0e-7_rk], 0.0_rk, 0.8e6_rk, &
+                  "slip below the bound")
+      call refuse(dilating, [-4.0e6_rk, 2.0e6_rk], [0.0_rk, 5.0e-6_rk], 0.0_rk, 1.0e6_rk, &
+                  "slip without dilation")
+      call refuse(smooth, [-4.0e6_rk, 1.0e3_rk], [0.0_rk, 5.0e-6_rk], 0.0_rk, 1.0e3_rk, &
+                  "shear without friction")
+   end subroutine test_violations
+
+   subroutine refuse(law, traction, jump, slip_before, size, name)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: traction(2), jump(2), slip_before
+      real(rk), intent(in) :: size  !< by how much the law is broken [Pa]
+      character(len=*), intent(in) :: name
+
+      real(rk) :: residual(2), ignored(2, 4)
+      integer(ik) :: state, way
+
+      way = 0
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
+                             ignored(:, :2), ignored(:, 3:))
+      call checks%is_true(maxval(abs(residual)) > 1.0_rk, name//" is not a solution")
+      call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), size, &
+                           1.0e-8_rk*size, name)
+   end subroutine refuse
+
+   !> Slip that turns round within an iteration is tried as sticking first.
+   subroutine test_way()
+      call walk(rough, -1_ik, 0_ik, state_stick, "turned round: stick")
+      call walk(rough, 0_ik, 1_ik, state_slip, "from rest: slip")
+      call walk(rough, 1_ik, 1_ik, state_slip, "going on: slip")
+      call walk(smooth, -1_ik, 1_ik, state_slip, "without friction nothing holds")
+   end subroutine test_way
+
+   subroutine walk(law, way_before, way_expected, expected, name)
+      type(contact_law_t), intent(in) :: law
+      integer(ik), intent(in) :: way_before, way_expected, expected
+      character(len=*), intent(in) :: name
+
+      real(rk) :: residual(2), ignored(2, 4)
+      integer(ik) :: state, way
+
+      way = way_before
+      call contact_equations(law, stiffness, [-4.0e6_rk, 3.0e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, &
+                             way, state, residual, ignored(:, :2), ignored(:, 3:))
+      call checks%is_true(state == expected .and. way == way_expected, name)
+      way = way_before
+      call contact_equations(law, stiffness, [1.0e6_rk, 3.0e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, &
+                             way, state, residual, ignored(:, :2), ignored(:, 3:))
+      call checks%is_true(state == state_open .and. way == 0, "open faces forget their way")
+   end subroutine walk
+
+   !> The faces receive f on side + and -f on side -, which moves by the slip relative to side +.
+   !! The work done on the faces, -f_tau*slip, is lost, not gained: f_tau has the sign of the
+   !! slip.
+   subroutine test_friction_opposes_slip()
+      real(rk) :: residual(2), ignored(2, 4), slip, traction(2), work
+      integer(ik) :: state, way
+      integer :: direction
+
+      do direction = -1, 1, 2
+         slip = direction*1.0e-6_rk
+         way = 0
+         traction = [-4.0e6_rk, 0.0_rk]
+         ! The slip equation is linear in f_tau with slope 1: one step solves it.
+         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, state, &
+                                residual, ignored(:, :2), ignored(:, 3:))
+         call checks%is_true(state /= state_open, "pressed together")
+         traction(2) = direction*5.0e6_rk
+         way = 0
+         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, state, &
+                                residual, ignored(:, :2), ignored(:, 3:))
+         traction(2) = traction(2) - residual(2)
+         work = -traction(2)*slip
+         call checks%is_close(work, -0.5_rk*4.0e6_rk*1.0e-6_rk, 1.0e-12_rk, "friction dissipates")
+      end do
+   end subroutine test_friction_opposes_slip
+
+end program test_coarse_contact
