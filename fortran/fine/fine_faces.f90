@@ -7,17 +7,20 @@
 !! penalty or multipliers.
 !!
 !! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
-!! whatever the conditions of the cells around, and so does a pair of which one node alone lies on
-!! the outer boundary.
+!! whatever the conditions of the cells around, and so does a pair of which a node is held at the
+!! outer boundary.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use fine_boundary, only: fine_boundary_t
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
 
    public :: build_constraints, check_conditions, constraints_t, face_conditions_t
    public :: face_jump, face_loaded, face_slip, loaded_everywhere, prescribe_jumps
+
+   integer(ik), parameter :: columns_max = 3  !< unknowns that may move one node
 
    ! Conditions of a fracture cell. Where cells meet, the larger number holds at their common nodes.
    integer(ik), parameter :: face_loaded = 1  !< contact traction and fluid pressure given
@@ -34,8 +37,8 @@ module fine_faces
    type :: constraints_t
       integer(ik) :: n_dofs = 0
       integer(ik), allocatable :: n_columns(:)  !< (n_nodes) unknowns that move a node
-      integer(ik), allocatable :: dof(:, :)  !< (3, n_nodes) which ones
-      real(rk), allocatable :: basis(:, :, :)  !< (2, 3, n_nodes) how it moves with each
+      integer(ik), allocatable :: dof(:, :)  !< (columns_max, n_nodes) which ones
+      real(rk), allocatable :: basis(:, :, :)  !< (2, columns_max, n_nodes) how it moves with each
       logical, allocatable :: prescribed(:)  !< (n_nodes) part of its displacement is given
       ! Pairs of nodes that face each other.
       integer(ik) :: n_pairs = 0
@@ -76,25 +79,30 @@ contains
    end subroutine check_conditions
 
    !> Find the pairs, and number the unknowns.
-   pure subroutine build_constraints(fine, conditions, constraints)
+   pure subroutine build_constraints(fine, boundary, conditions, constraints)
       type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t), intent(in) :: boundary
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(out) :: constraints
       real(rk), allocatable :: slip_direction(:, :)
       integer(ik), allocatable :: follows(:)
-      integer(ik) :: node, pair, column, plus, minus
+      integer(ik) :: component, node, pair, column, plus, minus
 
       call find_pairs(fine, constraints)
       allocate (slip_direction(2, constraints%n_pairs))
-      call combine_conditions(fine, conditions, constraints, slip_direction)
+      call combine_conditions(fine, boundary, conditions, constraints, slip_direction)
 
-      allocate (constraints%n_columns(fine%n_nodes), source=2_ik)
-      allocate (constraints%dof(3, fine%n_nodes), source=0_ik)
-      allocate (constraints%basis(2, 3, fine%n_nodes), source=0.0_rk)
-      constraints%basis(1, 1, :) = 1.0_rk
-      constraints%basis(2, 2, :) = 1.0_rk
-      constraints%prescribed = fine%on_boundary
-      where (fine%on_boundary) constraints%n_columns = 0
+      allocate (constraints%n_columns(fine%n_nodes), source=0_ik)
+      allocate (constraints%dof(columns_max, fine%n_nodes), source=0_ik)
+      allocate (constraints%basis(2, columns_max, fine%n_nodes), source=0.0_rk)
+      do node = 1, fine%n_nodes
+         do component = 1, 2
+            if (boundary%prescribed(component, node)) cycle
+            constraints%n_columns(node) = constraints%n_columns(node) + 1
+            constraints%basis(component, constraints%n_columns(node), node) = 1.0_rk
+         end do
+      end do
+      constraints%prescribed = any(boundary%prescribed, dim=1)
 
       ! The minus node of a tied pair takes the unknowns of its plus node.
       allocate (follows(fine%n_nodes), source=0_ik)
@@ -171,8 +179,9 @@ contains
 
    !> The condition of each pair, and the direction in which a slipping pair moves. At a kink the
    !! frame is the mean of the frames of the slipping cells.
-   pure subroutine combine_conditions(fine, conditions, constraints, slip_direction)
+   pure subroutine combine_conditions(fine, boundary, conditions, constraints, slip_direction)
       type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t), intent(in) :: boundary
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(inout) :: constraints
       real(rk), intent(out) :: slip_direction(:, :)  !< (2, n_pairs) tau + dilation*n
@@ -204,7 +213,9 @@ contains
       slip_direction = 0.0_rk
       do pair = 1, constraints%n_pairs
          associate (condition => constraints%pair_condition(pair))
-            if (any(fine%on_boundary(constraints%pair_nodes(:, pair)))) condition = face_loaded
+            if (any(boundary%prescribed(:, constraints%pair_nodes(:, pair)))) then
+               condition = face_loaded
+            end if
             if (condition /= face_slip) cycle
          end associate
          tau = tangent(:, pair)/norm2(tangent(:, pair))

@@ -8,12 +8,15 @@ module fine_loads
    implicit none(type, external)
    private
 
-   public :: add_face_forces, add_pore_pressure_forces, check_loads, face_shares
-   public :: fine_loads_t, no_loads, pore_pressure_forces
+   public :: add_face_forces, add_volume_forces, check_loads, face_shares
+   public :: fine_loads_t, no_loads, volume_forces
 
    !> Values that may change from one solution to the next.
    type :: fine_loads_t
-      real(rk), allocatable :: boundary_displacement(:, :)  !< (2, n_nodes) [m]; boundary only
+      real(rk), allocatable :: boundary_displacement(:, :)  !< (2, n_nodes) [m]; where prescribed
+      real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk) :: body_force(2) = 0.0_rk  !< uniform [N/m3]
+      real(rk), allocatable :: initial_stress(:, :)  !< (xx yy xy, n_vertices) in situ [Pa]
       real(rk), allocatable :: pore_pressure(:)  !< (n_vertices) in the matrix [Pa]
       real(rk), allocatable :: traction(:, :)  !< (2, fracture cells) contact f_tau, f_n [Pa]
       real(rk), allocatable :: fluid_pressure(:)  !< (fracture cells) [Pa]
@@ -29,6 +32,8 @@ contains
 
       associate (n => fine%fracture%n_cells)
          allocate (loads%boundary_displacement(2, fine%n_nodes), source=0.0_rk)
+         allocate (loads%force(2, fine%n_nodes), source=0.0_rk)
+         allocate (loads%initial_stress(3, fine%n_vertices), source=0.0_rk)
          allocate (loads%pore_pressure(fine%n_vertices), source=0.0_rk)
          allocate (loads%traction(2, n), loads%jump(2, 3, n), source=0.0_rk)
          allocate (loads%fluid_pressure(n), source=0.0_rk)
@@ -42,11 +47,14 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: origin = "check_loads"
 
-      if (.not. (allocated(loads%boundary_displacement) .and. allocated(loads%pore_pressure) &
+      if (.not. (allocated(loads%boundary_displacement) .and. allocated(loads%force) &
+                 .and. allocated(loads%initial_stress) .and. allocated(loads%pore_pressure) &
                  .and. allocated(loads%traction) .and. allocated(loads%fluid_pressure) &
                  .and. allocated(loads%jump))) then
          call raise_error(error, origin, "the loads are incomplete; start from no_loads(mesh)")
       else if (any(shape(loads%boundary_displacement) /= [2_ik, fine%n_nodes]) &
+               .or. any(shape(loads%force) /= [2_ik, fine%n_nodes]) &
+               .or. any(shape(loads%initial_stress) /= [3_ik, fine%n_vertices]) &
                .or. size(loads%pore_pressure) /= fine%n_vertices &
                .or. any(shape(loads%traction) /= [2_ik, fine%fracture%n_cells]) &
                .or. size(loads%fluid_pressure) /= fine%fracture%n_cells &
@@ -58,6 +66,9 @@ contains
       else if (.not. sum(abs(loads%pore_pressure)) + sum(abs(loads%fluid_pressure)) &
                + sum(abs(loads%traction)) <= huge(1.0_rk)) then
          call raise_error(error, origin, "a pressure or traction is not a finite number")
+      else if (.not. sum(abs(loads%force)) + sum(abs(loads%body_force)) &
+               + sum(abs(loads%initial_stress)) <= huge(1.0_rk)) then
+         call raise_error(error, origin, "a force or initial stress is not a finite number")
       end if
    end subroutine check_loads
 
@@ -96,35 +107,36 @@ contains
       if (tip_end == 2) share(1:2) = [1.0_rk, 0.0_rk]/3.0_rk
    end function face_shares
 
-   !> Forces of the pore pressure on all nodes.
-   pure subroutine add_pore_pressure_forces(fine, biot, pressure, force)
+   !> Forces of pore pressure, initial stress and body force on all nodes.
+   pure subroutine add_volume_forces(fine, biot, loads, force)
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(in) :: biot  !< [-]
-      real(rk), intent(in) :: pressure(:)  !< (n_vertices) [Pa]
+      type(fine_loads_t), intent(in) :: loads
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
       integer(ik) :: cell
 
       do cell = 1, fine%n_cells
          associate (nodes => fine%cell_nodes(:, cell))
-            if (.not. any(abs(pressure(nodes(1:3))) > 0.0_rk)) cycle
-            force(:, nodes) = force(:, nodes) &
-                              + pore_pressure_forces(fine, cell, biot, pressure(nodes(1:3)))
+            if (.not. (any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
+                       .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
+                       .or. any(abs(loads%body_force) > 0.0_rk))) cycle
+            force(:, nodes) = force(:, nodes) + volume_forces(fine, cell, biot, loads)
          end associate
       end do
-   end subroutine add_pore_pressure_forces
+   end subroutine add_volume_forces
 
-   !> The initial stress -biot*p of the pore pressure in one element, p linear in space: the
-   !! forces are the integrals of biot * p * grad N, so no pressure gradient is formed. Both rules
-   !! are exact.
-   pure function pore_pressure_forces(fine, cell, biot, pressure) result(force)
+   !> Forces of one element's volume: the initial stress s0, of which pore pressure is the part
+   !! -biot*p, linear in space, gives the integrals of -s0 grad N, so that no pressure gradient is
+   !! formed; the body force b gives those of N b. Both rules are exact.
+   pure function volume_forces(fine, cell, biot, loads) result(force)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: biot  !< [-]
-      real(rk), intent(in) :: pressure(3)  !< at the corners [Pa]
+      type(fine_loads_t), intent(in) :: loads
       real(rk) :: force(2, 6)  !< [N/m]
-      real(rk) :: points(3, 9), weights(9)
-      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, stress
-      integer(ik) :: point, n_points
+      real(rk) :: points(3, 9), weights(9), corner(3, 3), stress(3), body(2)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, weight
+      integer(ik) :: k, point, n_points
 
       if (fine%tip_corner(cell) > 0) then
          n_points = 9
@@ -133,13 +145,24 @@ contains
          n_points = 3
          call triangle_rule_3(points(:, 1:3), weights(1:3))
       end if
+      corner = loads%initial_stress(:, fine%cell_nodes(1:3, cell))
+      do k = 1, 3
+         corner(1:2, k) = corner(1:2, k) - biot*loads%pore_pressure(fine%cell_nodes(k, cell))
+      end do
       force = 0.0_rk
       do point = 1, n_points
          call evaluate_element(fine%xy(:, fine%cell_nodes(:, cell)), fine%tip_corner(cell), &
                                points(:, point), values, gradients, area_coordinates, determinant)
-         stress = biot*dot_product(area_coordinates, pressure)
-         force = force + (weights(point)*determinant*stress)*gradients
+         weight = weights(point)*determinant
+         stress = weight*matmul(corner, area_coordinates)
+         body = weight*loads%body_force
+         do k = 1, 6
+            force(1, k) = force(1, k) + body(1)*values(k) &
+                          - stress(1)*gradients(1, k) - stress(3)*gradients(2, k)
+            force(2, k) = force(2, k) + body(2)*values(k) &
+                          - stress(3)*gradients(1, k) - stress(2)*gradients(2, k)
+         end do
       end do
-   end function pore_pressure_forces
+   end function volume_forces
 
 end module fine_loads

@@ -19,7 +19,10 @@ module fine_mesh
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then the node on face k
       integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner at a free tip, else 0
       logical, allocatable :: on_boundary(:)  !< (n_nodes) on the outer boundary
-      integer(ik), allocatable :: boundary_faces(:, :)  !< (2, n) end nodes on the outer boundary
+      !> (2, n) end nodes of the faces on the outer boundary, the body on their left
+      integer(ik), allocatable :: boundary_faces(:, :)
+      integer(ik), allocatable :: boundary_middles(:)  !< (n) the node between them
+      integer(ik), allocatable :: boundary_sides(:)  !< (n) on which side of the body they lie
       integer(ik), allocatable :: face_nodes(:, :, :)  !< (start end mid, side + -, fracture cell)
       integer(ik), allocatable :: face_cells(:, :)  !< (2, fracture cells) element on side +, -
       integer(ik), allocatable :: face_tip(:)  !< (fracture cells) tip at start (1), end (2) or 0
@@ -84,7 +87,14 @@ contains
 
       allocate (fine%on_boundary(fine%n_nodes), source=.false.)
       outer = pack([(face, face=1, mesh%n_faces)], mesh%face_side > 0)
-      fine%boundary_faces = mesh%face_nodes(:, outer)
+      allocate (fine%boundary_faces(2, size(outer)))
+      do face = 1, size(outer)
+         cell = mesh%face_cells(1, outer(face))
+         k = findloc(mesh%cell_faces(:, cell), outer(face), dim=1)
+         fine%boundary_faces(:, face) = mesh%cell_nodes([k, mod(k, 3) + 1], cell)
+      end do
+      fine%boundary_middles = mesh%n_nodes + outer
+      fine%boundary_sides = mesh%face_side(outer)
       do face = 1, mesh%n_faces
          if (mesh%face_side(face) == 0) cycle
          fine%on_boundary(mesh%face_nodes(:, face)) = .true.

@@ -3,11 +3,12 @@ module fine_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_mumps, only: mumps_definite, mumps_t
+   use fine_boundary, only: check_boundary, check_support, clamped_boundary, fine_boundary_t
    use fine_elasticity, only: check_elasticity, elasticity_t
    use fine_element, only: evaluate_element, stiffness_matrix
    use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, &
-                         prescribe_jumps
-   use fine_loads, only: add_face_forces, add_pore_pressure_forces, check_loads, fine_loads_t
+                         face_loaded, prescribe_jumps
+   use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -15,10 +16,11 @@ module fine_model
 
    public :: fine_model_t
 
-   !> A window with its matrix. Not to be copied: the factors belong to the original.
+   !> A body with its matrix. Not to be copied: the factors belong to the original.
    type :: fine_model_t
       type(fine_mesh_t) :: mesh
       type(elasticity_t) :: elasticity
+      type(fine_boundary_t) :: boundary
       type(face_conditions_t) :: conditions
       type(constraints_t) :: constraints
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
@@ -28,6 +30,9 @@ module fine_model
       procedure :: set_mesh
       procedure :: prepare
       procedure :: solve
+      procedure :: external_forces
+      procedure :: reactions
+      procedure :: strain_energy
       procedure :: element_forces
       procedure :: displacement_gradient
    end type fine_model_t
@@ -61,11 +66,12 @@ contains
    end subroutine set_mesh
 
    !> Assemble and factorize for the given face conditions; may be called again when they change.
-   subroutine prepare(self, conditions, error)
+   subroutine prepare(self, conditions, error, boundary)
       class(fine_model_t), intent(inout) :: self
       type(face_conditions_t), intent(in) :: conditions
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: row(:), col(:)
+      type(fine_boundary_t), intent(in), optional :: boundary  !< default: all displacements given
+      integer(ik), allocatable :: bonds(:, :), row(:), col(:)
       real(rk), allocatable :: values(:)
 
       self%ready = .false.
@@ -76,7 +82,20 @@ contains
       call check_conditions(self%mesh, conditions, error)
       if (allocated(error)) return
       self%conditions = conditions
-      call build_constraints(self%mesh, conditions, self%constraints)
+      self%boundary = clamped_boundary(self%mesh)
+      if (present(boundary)) self%boundary = boundary
+      call check_boundary(self%mesh, self%boundary, error)
+      if (allocated(error)) return
+      call build_constraints(self%mesh, self%boundary, conditions, self%constraints)
+      if (present(boundary)) then
+         associate (tied => self%constraints%pair_condition /= face_loaded)
+            allocate (bonds(2, count(tied)))
+            bonds(1, :) = pack(self%constraints%pair_nodes(1, :self%constraints%n_pairs), tied)
+            bonds(2, :) = pack(self%constraints%pair_nodes(2, :self%constraints%n_pairs), tied)
+         end associate
+         call check_support(self%mesh, self%boundary, bonds, error)
+         if (allocated(error)) return
+      end if
       if (self%constraints%n_dofs > 0) then
          call assemble(self, row, col, values)
          call self%solver%analyse(self%constraints%n_dofs, row, col, mumps_definite, error)
@@ -151,13 +170,11 @@ contains
 
       ! The given part of the displacements.
       allocate (displacement(2, self%mesh%n_nodes), source=0.0_rk)
-      where (spread(self%mesh%on_boundary, 1, 2)) displacement = loads%boundary_displacement
+      where (self%boundary%prescribed) displacement = loads%boundary_displacement
       call prescribe_jumps(self%mesh, self%conditions, self%constraints, loads%jump, displacement)
 
       ! Forces, less those that the given displacements take.
-      allocate (force(2, self%mesh%n_nodes), source=0.0_rk)
-      call add_face_forces(self%mesh, loads%traction, loads%fluid_pressure, force)
-      call add_pore_pressure_forces(self%mesh, self%elasticity%biot, loads%pore_pressure, force)
+      force = self%external_forces(loads)
       do cell = 1, self%mesh%n_cells
          associate (nodes => self%mesh%cell_nodes(:, cell))
             if (.not. any(self%constraints%prescribed(nodes))) cycle
@@ -200,6 +217,48 @@ contains
          end do
       end associate
    end subroutine solve_free_part
+
+   !> Nodal forces of all loads.
+   pure function external_forces(self, loads) result(force)
+      class(fine_model_t), intent(in) :: self
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
+
+      force = loads%force
+      call add_face_forces(self%mesh, loads%traction, loads%fluid_pressure, force)
+      call add_volume_forces(self%mesh, self%elasticity%biot, loads, force)
+   end function external_forces
+
+   !> What must act on the nodes besides the loads: reactions of given displacements and of tied
+   !! faces, and nothing but round-off elsewhere.
+   pure function reactions(self, loads, displacement) result(force)
+      class(fine_model_t), intent(in) :: self
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
+      integer(ik) :: cell
+
+      force = -self%external_forces(loads)
+      do cell = 1, self%mesh%n_cells
+         associate (nodes => self%mesh%cell_nodes(:, cell))
+            force(:, nodes) = force(:, nodes) + self%element_forces(displacement, cell)
+         end associate
+      end do
+   end function reactions
+
+   !> Energy of the elastic strain, without the work of initial stresses [J/m].
+   pure function strain_energy(self, displacement) result(energy)
+      class(fine_model_t), intent(in) :: self
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk) :: energy
+      integer(ik) :: cell
+
+      energy = 0.0_rk
+      do cell = 1, self%mesh%n_cells
+         energy = energy + 0.5_rk*sum(displacement(:, self%mesh%cell_nodes(:, cell)) &
+                                      *self%element_forces(displacement, cell))
+      end do
+   end function strain_energy
 
    !> Forces on the nodes of an element that strain it as it is, without pore pressure.
    pure function element_forces(self, displacement, cell) result(force)

@@ -2,7 +2,7 @@
 module tips_faces
    use base_kinds, only: ik, rk
    use fine_faces, only: face_jump, face_loaded
-   use fine_loads, only: face_shares, fine_loads_t, pore_pressure_forces
+   use fine_loads, only: face_shares, fine_loads_t, volume_forces
    use fine_model, only: fine_model_t
    use tips_types, only: tip_frame_t
    implicit none(type, external)
@@ -38,8 +38,7 @@ contains
       associate (nodes => model%mesh%cell_nodes(:, element))
          k = findloc(nodes, model%mesh%face_nodes(3, 1, cell), dim=1)
          force = model%element_forces(displacement, element) &
-                 - pore_pressure_forces(model%mesh, element, model%elasticity%biot, &
-                                        loads%pore_pressure(nodes(1:3)))
+                 - volume_forces(model%mesh, element, model%elasticity%biot, loads)
       end associate
       share = face_shares(model%mesh%face_tip(cell))
       traction = force(:, k)/(share(3)*model%mesh%face_length(cell))

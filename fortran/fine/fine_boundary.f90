@@ -1,0 +1,245 @@
+!> The outer boundary: which displacements are given there, and the forces of given tractions.
+!!
+!! Every displacement component of every node is either given or free. Where it is free, the nodal
+!! force is given: nothing, unless a traction or a point force has been added.
+module fine_boundary
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use fine_mesh, only: fine_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: add_point_force, add_side_pressure, add_side_traction, check_boundary, check_support
+   public :: clamped_boundary, fine_boundary_t, free_boundary, hold_side, nearest_node
+
+   !> What is given on the outer boundary, or anywhere else; the values belong to the loads.
+   type :: fine_boundary_t
+      logical, allocatable :: prescribed(:, :)  !< (2, n_nodes) displacement component given
+   end type fine_boundary_t
+
+contains
+
+   !> All displacements given on the whole outer boundary, as on the edge of a window.
+   pure function clamped_boundary(fine) result(boundary)
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t) :: boundary
+
+      allocate (boundary%prescribed(2, fine%n_nodes))
+      boundary%prescribed(1, :) = fine%on_boundary
+      boundary%prescribed(2, :) = fine%on_boundary
+   end function clamped_boundary
+
+   !> Nothing given yet: the body floats.
+   pure function free_boundary(fine) result(boundary)
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t) :: boundary
+
+      allocate (boundary%prescribed(2, fine%n_nodes), source=.false.)
+   end function free_boundary
+
+   !> Give a displacement component on one side of the body: 1 alone and 2 alone are rollers, both
+   !! are a clamp.
+   pure subroutine hold_side(fine, side, component, boundary)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      integer(ik), intent(in) :: component  !< 1: u_x, 2: u_y
+      type(fine_boundary_t), intent(inout) :: boundary
+      integer(ik) :: face
+
+      do face = 1, size(fine%boundary_sides)
+         if (fine%boundary_sides(face) /= side) cycle
+         boundary%prescribed(component, fine%boundary_faces(:, face)) = .true.
+         boundary%prescribed(component, fine%boundary_middles(face)) = .true.
+      end do
+   end subroutine hold_side
+
+   !> Corner node of an element nearest to a point, for point forces and single-point restraints.
+   pure integer(ik) function nearest_node(fine, xy)
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk) :: distance, shortest
+      integer(ik) :: node
+
+      nearest_node = 0
+      shortest = huge(1.0_rk)
+      do node = 1, fine%n_vertices
+         distance = norm2(fine%xy(:, node) - xy)
+         if (distance < shortest) then
+            shortest = distance
+            nearest_node = node
+         end if
+      end do
+   end function nearest_node
+
+   !> A uniform traction on one side of the body.
+   pure subroutine add_side_traction(fine, side, traction, force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      real(rk), intent(in) :: traction(2)  !< t_x, t_y on the body [Pa]
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
+      integer(ik) :: face
+
+      do face = 1, size(fine%boundary_sides)
+         if (fine%boundary_sides(face) == side) call add_face_traction(fine, face, traction, force)
+      end do
+   end subroutine add_side_traction
+
+   !> A uniform pressure on one side of the body, whatever its direction.
+   pure subroutine add_side_pressure(fine, side, pressure, force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      real(rk), intent(in) :: pressure  !< [Pa]
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk) :: chord(2)
+      integer(ik) :: face
+
+      do face = 1, size(fine%boundary_sides)
+         if (fine%boundary_sides(face) /= side) cycle
+         ! The body lies on the left of its faces, so the outward normal is on their right.
+         chord = fine%xy(:, fine%boundary_faces(2, face)) - fine%xy(:, fine%boundary_faces(1, face))
+         call add_face_traction(fine, face, -pressure*[chord(2), -chord(1)]/norm2(chord), force)
+      end do
+   end subroutine add_side_pressure
+
+   !> Shares 1/6, 1/6 and 4/6 of a uniform traction's resultant for the ends and the middle of a
+   !! face: exact integrals of the shape functions.
+   pure subroutine add_face_traction(fine, face, traction, force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: face  !< index in boundary_faces
+      real(rk), intent(in) :: traction(2)  !< [Pa]
+      real(rk), intent(inout) :: force(:, :)
+      real(rk) :: resultant(2)
+      integer(ik) :: k
+
+      associate (ends => fine%boundary_faces(:, face), middle => fine%boundary_middles(face))
+         resultant = norm2(fine%xy(:, ends(2)) - fine%xy(:, ends(1)))*traction
+         do k = 1, 2
+            force(:, ends(k)) = force(:, ends(k)) + resultant/6.0_rk
+         end do
+         force(:, middle) = force(:, middle) + resultant/1.5_rk
+      end associate
+   end subroutine add_face_traction
+
+   !> A concentrated force at the node nearest to a point.
+   pure subroutine add_point_force(fine, xy, point_force, force)
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), intent(in) :: point_force(2)  !< per unit thickness [N/m]
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
+      integer(ik) :: node
+
+      node = nearest_node(fine, xy)
+      force(:, node) = force(:, node) + point_force
+   end subroutine add_point_force
+
+   !> Refuse a boundary that does not belong to the mesh.
+   pure subroutine check_boundary(fine, boundary, error)
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t), intent(in) :: boundary
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: origin = "check_boundary"
+
+      if (.not. allocated(boundary%prescribed)) then
+         call raise_error(error, origin, "the boundary conditions have not been set")
+      else if (any(shape(boundary%prescribed) /= [2_ik, fine%n_nodes])) then
+         call raise_error(error, origin, "the boundary conditions belong to another mesh")
+      end if
+   end subroutine check_boundary
+
+   !> Refuse a body, or a piece of it, that could move as a rigid one: what has no given
+   !! displacements that exclude it has no unique solution.
+   !!
+   !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
+   subroutine check_support(fine, boundary, bonds, error)
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t), intent(in) :: boundary
+      integer(ik), intent(in) :: bonds(:, :)  !< (2, n) pairs of nodes
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: piece(:)
+      real(rk), allocatable :: held(:, :, :)
+      real(rk) :: centre(2), reach, row(3)
+      integer(ik) :: cell, component, k, node
+      character(len=48) :: place
+
+      allocate (piece(fine%n_nodes))
+      do node = 1, fine%n_nodes
+         piece(node) = node
+      end do
+      do cell = 1, fine%n_cells
+         do k = 2, 6
+            call join(fine%cell_nodes(1, cell), fine%cell_nodes(k, cell))
+         end do
+      end do
+      do k = 1, size(bonds, 2)
+         call join(bonds(1, k), bonds(2, k))
+      end do
+
+      ! Sums of the products of the three rigid motions' values, over the given components.
+      centre = 0.5_rk*(maxval(fine%xy, dim=2) + minval(fine%xy, dim=2))
+      reach = maxval(maxval(fine%xy, dim=2) - minval(fine%xy, dim=2))
+      allocate (held(3, 3, fine%n_nodes), source=0.0_rk)
+      do node = 1, fine%n_nodes
+         associate (sums => held(:, :, root(node)), arm => (fine%xy(:, node) - centre)/reach)
+            do component = 1, 2
+               if (.not. boundary%prescribed(component, node)) cycle
+               row = merge([1.0_rk, 0.0_rk, -arm(2)], [0.0_rk, 1.0_rk, arm(1)], component == 1)
+               do k = 1, 3
+                  sums(:, k) = sums(:, k) + row(k)*row
+               end do
+            end do
+         end associate
+      end do
+      do node = 1, fine%n_nodes
+         if (root(node) /= node) cycle
+         if (is_definite(held(:, :, node))) cycle
+         write (place, "(2(a,es12.5),a)") "(", fine%xy(1, node), ", ", fine%xy(2, node), ")"
+         call raise_error(error, "check_support", "the piece of the body at "//trim(place)// &
+                          " can move freely; give more displacements on its boundary")
+         return
+      end do
+
+   contains
+
+      !> The node that stands for a piece.
+      integer(ik) function root(member)
+         integer(ik), intent(in) :: member
+
+         root = member
+         do while (piece(root) /= root)
+            piece(root) = piece(piece(root))
+            root = piece(root)
+         end do
+      end function root
+
+      !> Two nodes are of one piece.
+      subroutine join(a, b)
+         integer(ik), intent(in) :: a, b
+         integer(ik) :: roots(2)
+
+         roots = [root(a), root(b)]
+         piece(maxval(roots)) = minval(roots)
+      end subroutine join
+
+   end subroutine check_support
+
+   !> Whether a symmetric matrix is positive definite, by Cholesky's elimination.
+   pure logical function is_definite(matrix)
+      real(rk), intent(in) :: matrix(3, 3)
+      real(rk), parameter :: smallest = 1.0e-10_rk  ! pivot over trace
+      real(rk) :: rest(3, 3)
+      integer(ik) :: i, j, k
+
+      rest = matrix
+      is_definite = .false.
+      do k = 1, 3
+         if (.not. rest(k, k) > smallest*(matrix(1, 1) + matrix(2, 2) + matrix(3, 3))) return
+         do j = k + 1, 3
+            do i = k + 1, 3
+               rest(i, j) = rest(i, j) - rest(i, k)*rest(k, j)/rest(k, k)
+            end do
+         end do
+      end do
+      is_definite = .true.
+   end function is_definite
+
+end module fine_boundary
