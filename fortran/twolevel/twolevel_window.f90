@@ -23,6 +23,7 @@ module twolevel_window
    use scene_types, only: scene_t
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
+   use twolevel_jumps, only: jump_record_t, recall_jump, record_jumps
    implicit none(type, external)
    private
 
@@ -35,13 +36,6 @@ module twolevel_window
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y, p at the coarse mesh's nodes
       real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi)
    end type coarse_level_t
-
-   !> Jumps along the fractures, at points in no particular order.
-   type :: jump_record_t
-      integer(ik), allocatable :: fracture(:)
-      real(rk), allocatable :: s(:)  !< arc length [m]
-      real(rk), allocatable :: jump(:, :)  !< (2, n) x, y: fractures kink [m]
-   end type jump_record_t
 
    !> One window.
    type :: window_t
@@ -243,56 +237,9 @@ contains
       end if
       call self%model%solve(self%loads, self%displacement, error)
       if (allocated(error)) return
-      call record_jumps(self)
+      call record_jumps(self%model%mesh, self%displacement, self%last_jump)
       call tip_intensity(self%model, self%loads, self%displacement, self%tip, result, error)
    end subroutine intensity
-
-   !> Keep the solution's jumps for the time when the faces stick.
-   subroutine record_jumps(self)
-      class(window_t), intent(inout) :: self
-
-      integer(ik) :: i, k, n
-
-      associate (fine => self%model%mesh, last => self%last_jump)
-         n = 3*self%mesh%fracture%n_cells
-         if (allocated(last%s)) deallocate (last%fracture, last%s, last%jump)
-         allocate (last%fracture(n), last%s(n), last%jump(2, n))
-         do i = 1, self%mesh%fracture%n_cells
-            do k = 1, 3
-               associate (at => 3*(i - 1) + k)
-                  last%fracture(at) = self%mesh%fracture%cell_fracture(i)
-                  last%s(at) = fine%face_s(k, i)
-                  last%jump(:, at) = self%displacement(:, fine%face_nodes(k, 2, i)) &
-                     - self%displacement(:, fine%face_nodes(k, 1, i))
-               end associate
-            end do
-         end do
-      end associate
-   end subroutine record_jumps
-
-   !> The recorded jump at a point, linear between its neighbours; found = .false. beyond the record.
-   pure subroutine recall_jump(last, fracture, s, jump, found)
-      type(jump_record_t), intent(in) :: last
-      integer(ik), intent(in) :: fracture
-      real(rk), intent(in) :: s  !< [m]
-      real(rk), intent(out) :: jump(2)
-      logical, intent(out) :: found
-
-      integer(ik) :: above, below
-      real(rk) :: slack, t
-
-      found = .false.
-      jump = 0.0_rk
-      if (.not. allocated(last%s)) return
-      slack = 1.0e-9_rk*(maxval(last%s) - minval(last%s))
-      below = maxloc(last%s, mask=last%fracture == fracture .and. last%s <= s + slack, dim=1)
-      above = minloc(last%s, mask=last%fracture == fracture .and. last%s >= s - slack, dim=1)
-      found = below > 0 .and. above > 0
-      if (.not. found) return
-      t = 0.0_rk
-      if (last%s(above) - last%s(below) > slack) t = (s - last%s(below))/(last%s(above) - last%s(below))
-      jump = (1.0_rk - t)*last%jump(:, below) + t*last%jump(:, above)
-   end subroutine recall_jump
 
    !> Conditions and loads on the fracture faces.
    subroutine load_faces(self, face_condition, coarse, level, state, conditions)
