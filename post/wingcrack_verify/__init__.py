@@ -1,0 +1,1 @@
+"""Verification: runs the cases of ``verification/``, judges every number and writes the report."""

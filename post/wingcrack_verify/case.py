@@ -1,0 +1,319 @@
+"""A case of ``verification/``: its check.toml as typed values (docs/verification.md)."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from wingcrack_verify.errors import CaseError
+from wingcrack_verify.fields import Fields, as_number
+from wingcrack_verify.metrics import METRICS
+from wingcrack_verify.selection import Selection, read_selection
+
+TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
+
+
+@dataclass(frozen=True)
+class Run:
+    """One call of the solver or of a verification program."""
+
+    name: str
+    method: str
+    size: float | None
+    default: bool
+    scene: Path | None
+    set: dict[str, Any]
+    unset: tuple[str, ...]
+    program: str | None
+    args: tuple[str, ...]
+    constants: dict[str, float]
+    time_limit_s: float
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the result is compared with; exactly one of these is given."""
+
+    numbers: tuple[float, ...] | None = None
+    expression: str | None = None
+    selection: Selection | None = None
+    of_run: bool = False
+    limits: tuple[float, float] | None = None
+    direction: str | None = None
+
+
+@dataclass(frozen=True)
+class Order:
+    """Order of convergence that is expected, bounded on both sides."""
+
+    expected: float
+    within: float
+    methods: tuple[str, ...] | None
+
+
+@dataclass(frozen=True)
+class Check:
+    """One quantity, its reference and its tolerance."""
+
+    quantity: str
+    unit: str
+    runs: tuple[str, ...]
+    judged: tuple[str, ...]
+    result: Selection
+    reference: Reference
+    metric: str
+    by_range: bool
+    tolerance: float
+    scale: float | None
+    order: Order | None
+    work_precision: bool
+    known_gap: str | None
+    x_label: str
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a further figure: from a run, or from a file of the case."""
+
+    label: str
+    run: str | None
+    selection: Selection
+    points: bool
+
+
+@dataclass(frozen=True)
+class FigureRequest:
+    """A further figure."""
+
+    title: str
+    caption: str
+    x_label: str
+    y_label: str
+    x_log: bool
+    y_log: bool
+    equal_axes: bool
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A folder of ``verification/``."""
+
+    name: str
+    folder: Path
+    title: str
+    source: str
+    quick: bool
+    constants: dict[str, float]
+    runs: tuple[Run, ...]
+    checks: tuple[Check, ...]
+    figures: tuple[FigureRequest, ...]
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file; a `CaseError` tells what is wrong with it."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise CaseError(f"{path.name} is missing") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as reason:
+        raise CaseError(f"{path.name}: {reason}") from None
+
+
+def read_case(folder: Path) -> Case:
+    """Read ``check.toml`` of a case's folder.
+
+    Raises
+    ------
+    CaseError
+        If anything in it is missing, unknown or contradicts itself.
+    """
+    fields = Fields(read_toml(folder / "check.toml"), "check.toml")
+    title, source = fields.text("title"), fields.text("source")
+    quick, gap = fields.flag("quick"), fields.text("known_gap", None)
+    constants = fields.constants("constants")
+    runs = tuple(
+        read_run(item, f"run {index}", folder)
+        for index, item in enumerate(fields.tables("run"), start=1)
+    )
+    if not runs:
+        raise CaseError("check.toml: a case needs at least one [[run]]")
+    refuse_doubles([run.name for run in runs], "run")
+    checks = tuple(
+        _read_check(item, f"check {index}", runs, gap)
+        for index, item in enumerate(fields.tables("check"), start=1)
+    )
+    if not checks:
+        raise CaseError("check.toml: a case needs at least one [[check]]")
+    refuse_doubles([check.quantity for check in checks], "quantity")
+    figures = tuple(
+        _read_figure(item, f"figure {index}", runs)
+        for index, item in enumerate(fields.tables("figure"), start=1)
+    )
+    fields.done()
+    return Case(folder.name, folder, title, source, quick, constants, runs, checks, figures)
+
+
+def refuse_doubles(names: list[str], kind: str) -> None:
+    """Raise a `CaseError` if a name stands twice."""
+    for name in names:
+        if names.count(name) > 1:
+            raise CaseError(f"check.toml: the {kind} '{name}' stands twice")
+
+
+def read_run(data: Any, place: str, folder: Path) -> Run:
+    """Read one ``[[run]]``."""
+    fields = Fields(data, place)
+    name = fields.text("name")
+    fields.place = f"run '{name}'"
+    method, size = fields.text("method"), fields.positive("size", None)
+    default, constants = fields.flag("default"), fields.constants("constants")
+    limit = fields.positive("time_limit_s", TIME_LIMIT_S)
+    scene, program = fields.text("scene", None), fields.text("program", None)
+    if (scene is None) == (program is None):
+        raise CaseError(f"{fields.place}: either 'scene' or 'program' is needed")
+    if scene is not None:
+        changes, unset, args = fields.mapping("set"), fields.texts("unset", ()), ()
+        path = folder / scene
+        if not path.is_file():
+            raise CaseError(f"{fields.place}: there is no scene file {scene}")
+    else:
+        changes, unset, args, path = {}, (), fields.texts("args", ()), None
+    fields.done()
+    return Run(name, method, size, default, path, changes, unset, program, args, constants, limit)
+
+
+def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | None) -> Check:
+    fields = Fields(data, place)
+    quantity = fields.text("quantity")
+    fields.place = f"check '{quantity}'"
+    unit = fields.text("unit")
+    measured = _run_names(fields, "runs", tuple(run.name for run in runs))
+    judged = _run_names(fields, "judged", measured)
+    metric = fields.choice("metric", tuple(METRICS))
+    normalise = fields.choice("normalise", ("magnitude", "range"), "magnitude")
+    if normalise == "range" and not METRICS[metric].can_normalise:
+        raise CaseError(f"{fields.place}: 'normalise' is not for the metric {metric}")
+    reference = _read_reference(fields.take("reference"), f"{fields.place}: reference")
+    _check_kind(metric, reference, fields.place)
+    if reference.limits is not None:
+        tolerance = 0.5 * (reference.limits[1] - reference.limits[0])
+    else:
+        tolerance = fields.positive("tolerance")
+    result_fields = Fields(fields.take("result"), f"{fields.place}: result")
+    result = read_selection(result_fields, result_fields.text("file"))
+    result_fields.done()
+    order = _read_order(fields.take("order"), fields.place) if fields.has("order") else None
+    check = Check(
+        quantity=quantity,
+        unit=unit,
+        runs=measured,
+        judged=judged,
+        result=result,
+        reference=reference,
+        metric=metric,
+        by_range=normalise == "range",
+        tolerance=tolerance,
+        scale=fields.positive("scale", None),
+        order=order,
+        work_precision=fields.flag("work_precision"),
+        known_gap=fields.text("known_gap", case_gap),
+        x_label=fields.text("x_label", result.x or ""),
+    )
+    fields.done()
+    if not set(judged) <= set(measured):
+        raise CaseError(f"{fields.place}: 'judged' names a run that is not among 'runs'")
+    return check
+
+
+def _run_names(fields: Fields, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
+    names: tuple[str, ...] = fields.texts(key, default)
+    if not names:
+        raise CaseError(f"{fields.place}: '{key}' is empty")
+    for name in names:
+        if name not in default:
+            raise CaseError(f"{fields.place}: '{key}' names '{name}', which is no such run")
+    return names
+
+
+def _read_reference(data: Any, place: str) -> Reference:
+    if isinstance(data, str):
+        if data not in ("rising", "falling"):
+            raise CaseError(f"{place}: '{data}' is neither 'rising' nor 'falling'")
+        return Reference(direction=data)
+    if isinstance(data, list) and data:
+        return Reference(numbers=tuple(as_number(item, place) for item in data))
+    if not isinstance(data, dict):
+        return Reference(numbers=(as_number(data, place),))
+    fields = Fields(data, place)
+    if fields.has("lower"):
+        lower, upper = fields.number("lower"), fields.number("upper")
+        if not lower < upper:
+            raise CaseError(f"{place}: 'lower' must be less than 'upper'")
+        reference = Reference(limits=(lower, upper))
+    elif fields.has("expression"):
+        reference = Reference(expression=fields.text("expression"))
+    elif fields.has("run_file"):
+        selection = read_selection(fields, fields.text("run_file"))
+        reference = Reference(selection=selection, of_run=True)
+    else:
+        reference = Reference(selection=read_selection(fields, fields.text("file")))
+    fields.done()
+    return reference
+
+
+def _check_kind(metric: str, reference: Reference, place: str) -> None:
+    if (metric == "range") != (reference.limits is not None):
+        raise CaseError(f"{place}: the metric range and a reference {{lower, upper}} go together")
+    if (metric == "monotonic") != (reference.direction is not None):
+        raise CaseError(f"{place}: the metric monotonic and 'rising' or 'falling' go together")
+
+
+def _read_order(data: Any, place: str) -> Order:
+    fields = Fields(data, f"{place}: order")
+    order = Order(
+        fields.number("expected"), fields.positive("within"), fields.texts("methods", None)
+    )
+    fields.done()
+    if not (math.isfinite(order.within) and order.within <= 0.5 * abs(order.expected)):
+        raise CaseError(f"{place}: order: 'within' must be at most half of 'expected'")
+    return order
+
+
+def _read_figure(data: Any, place: str, runs: tuple[Run, ...]) -> FigureRequest:
+    fields = Fields(data, place)
+    title = fields.text("title")
+    fields.place = f"figure '{title}'"
+    lines = tuple(
+        _read_line(item, f"{fields.place}: line {index}", runs)
+        for index, item in enumerate(fields.tables("lines"), start=1)
+    )
+    if not lines:
+        raise CaseError(f"{fields.place}: 'lines' is missing")
+    request = FigureRequest(
+        title=title,
+        caption=fields.text("caption", ""),
+        x_label=fields.text("x_label"),
+        y_label=fields.text("y_label"),
+        x_log=fields.flag("x_log"),
+        y_log=fields.flag("y_log"),
+        equal_axes=fields.flag("equal_axes"),
+        lines=lines,
+    )
+    fields.done()
+    return request
+
+
+def _read_line(data: Any, place: str, runs: tuple[Run, ...]) -> Line:
+    fields = Fields(data, place)
+    label, run, points = fields.text("label"), fields.text("run", None), fields.flag("points")
+    if run is not None and run not in {item.name for item in runs}:
+        raise CaseError(f"{place}: there is no run '{run}'")
+    selection = read_selection(fields, fields.text("file"))
+    fields.done()
+    if selection.x is None and selection.x_values is None:
+        raise CaseError(f"{place}: 'x' is missing")
+    return Line(label, run, selection, points)

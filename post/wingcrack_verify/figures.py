@@ -1,0 +1,270 @@
+"""Figures of the report: profiles, convergence, work-precision diagrams, maps of two parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from wingcrack_post.style import CYCLE, new_figure, styled
+from wingcrack_verify.expressions import Array
+from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
+from wingcrack_verify.orders import pareto_front
+from wingcrack_verify.stability import MapReport
+
+WIDTH, HEIGHT = 4.3, 3.1  # [inch]: at this width the letters keep their size on a phone
+MARKERS = "osD^vP*X<>"
+MOST_PROFILES = 4  # in one figure
+PNG_DPI = 200
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A finished figure.
+
+    Attributes
+    ----------
+    title, caption : str
+        Said beside the figure.
+    svg, png : bytes
+        For the page and for the PDF.
+    """
+
+    title: str
+    caption: str
+    svg: bytes
+    png: bytes
+
+
+@styled
+def profile_drawing(report: CheckReport) -> Drawing | None:
+    """Result over its reference; None if the check has no profile."""
+    shown = [
+        item for item in report.measured if item.pair is not None and item.profile and item.judged
+    ]
+    if not shown:
+        return None
+    figure, axes = _new()
+    if report.check.reference.direction is None:
+        finest = shown[-1]
+        assert finest.pair is not None
+        x = _abscissa(finest)
+        axes.plot(x, finest.pair.reference, color="black", label="reference", zorder=3, lw=1.0)
+    for index, item in enumerate(shown[-MOST_PROFILES:]):
+        assert item.pair is not None
+        sign = -1.0 if report.check.reference.direction == "falling" else 1.0
+        axes.plot(
+            _abscissa(item),
+            sign * item.pair.result,
+            color=CYCLE[index],
+            marker=MARKERS[index],
+            linestyle="none",
+            fillstyle="none",
+            label=item.run.name,
+        )
+    axes.set_xlabel(report.check.x_label or "value")
+    axes.set_ylabel(f"{report.check.quantity} [{report.check.unit}]")
+    _legend(figure, axes)
+    return _finish(figure, report.check.quantity, "Result and reference.")
+
+
+def _abscissa(item: Measured) -> Array:
+    assert item.pair is not None
+    if item.pair.x is not None:
+        return item.pair.x
+    return np.arange(1.0, item.pair.result.size + 1.0)
+
+
+@styled
+def order_drawing(report: CheckReport) -> Drawing | None:
+    """Error over size with the expected slope; None if the check asks for no order."""
+    check = report.check
+    if check.order is None:
+        return None
+    figure, axes = _new()
+    sizes: list[float] = []
+    for index, order in enumerate(report.orders):
+        points = sorted(
+            (item.run.size, item.error)
+            for item in report.measured
+            if item.run.method == order.method and item.run.size and item.error
+        )
+        if not points:
+            continue
+        size, error = np.array(points).T
+        sizes += list(size)
+        observed = f": {order.fit.overall:.2f}" if order.fit else ""
+        axes.loglog(
+            size,
+            error,
+            color=CYCLE[index % len(CYCLE)],
+            marker=MARKERS[index % len(MARKERS)],
+            label=f"{order.method}{observed}",
+        )
+        slope = error[-1] * (size / size[-1]) ** check.order.expected
+        label = f"order {check.order.expected:g}" if index == len(report.orders) - 1 else None
+        axes.loglog(size, slope, color="#777777", linestyle=":", label=label)
+    if not sizes:
+        return None
+    axes.set_xlabel("size (cell size [m] or time step [s])")
+    axes.set_ylabel(f"error, {check.metric}")
+    _legend(figure, axes)
+    return _finish(
+        figure, f"{check.quantity}: convergence", "Observed order of each method in the legend."
+    )
+
+
+@styled
+def work_precision_drawing(report: CheckReport) -> Drawing | None:
+    """Error against CPU seconds; None unless the check asks for it and two runs were measured."""
+    points = [point for point in report.points if point.error > 0.0]
+    if not report.check.work_precision or len(points) < 2:
+        return None
+    figure, axes = _new()
+    front = pareto_front(points)
+    axes.plot(
+        [point.cpu_s for point in front],
+        [100.0 * point.error for point in front],
+        color="#BBBBBB",
+        linewidth=5.0,
+        zorder=1,
+        label="Pareto front",
+        solid_capstyle="round",
+    )
+    for index, method in enumerate(dict.fromkeys(point.method for point in points)):
+        of_method = [point for point in points if point.method == method]
+        axes.plot(
+            [point.cpu_s for point in of_method],
+            [100.0 * point.error for point in of_method],
+            color=CYCLE[index % len(CYCLE)],
+            marker=MARKERS[index % len(MARKERS)],
+            markersize=4,
+            label=method,
+        )
+    defaults = [point for point in points if point.default]
+    if defaults:
+        axes.plot(
+            [point.cpu_s for point in defaults],
+            [100.0 * point.error for point in defaults],
+            linestyle="none",
+            marker="o",
+            markersize=11,
+            markeredgecolor="black",
+            markeredgewidth=1.1,
+            fillstyle="none",
+            label="default setting",
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("CPU time [s]")
+    axes.set_ylabel("error [% of the signal]")
+    _legend(figure, axes)
+    return _finish(
+        figure,
+        f"{report.check.quantity}: error against run time",
+        "Down and left is better; one line per method.",
+    )
+
+
+@styled
+def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
+    """Draw a figure that a case asks for; None if none of its lines has data."""
+    request = drawn.request
+    if not drawn.lines:
+        return None
+    figure, axes = _new()
+    for index, line in enumerate(drawn.lines):
+        look = {"color": CYCLE[index % len(CYCLE)], "label": line.label}
+        if line.points:
+            look |= {"linestyle": "none", "marker": MARKERS[index % len(MARKERS)]}
+            look |= {"fillstyle": "none", "markersize": 4}
+        else:
+            look |= {"linestyle": ("-", "--", "-.")[index // len(CYCLE) % 3]}
+        axes.plot(np.asarray(line.values.x), line.values.values, **look)
+    axes.set_xlabel(request.x_label)
+    axes.set_ylabel(request.y_label)
+    if request.x_log:
+        axes.set_xscale("log")
+    if request.y_log:
+        axes.set_yscale("log")
+    if request.equal_axes:
+        axes.set_aspect("equal", adjustable="datalim")
+    _legend(figure, axes)
+    return _finish(figure, request.title, request.caption)
+
+
+@styled
+def map_drawing(report: MapReport) -> Drawing:
+    """Mean Newton iterations over two parameters; a cross where the run did not converge."""
+    chart = report.chart
+    shape = (len(chart.y.values), len(chart.x.values))
+    newton = np.array(
+        [np.nan if cell.newton_mean is None else cell.newton_mean for cell in report.cells]
+    ).reshape(shape)
+    figure, axes = _new()
+    colours = matplotlib.colormaps["cividis"]
+    top = max(float(np.nanmax(newton)) if np.any(np.isfinite(newton)) else 2.0, 2.0)
+    image = axes.imshow(newton, origin="lower", aspect="auto", cmap=colours, vmin=1.0, vmax=top)
+    for index, cell in enumerate(report.cells):
+        row, column = divmod(index, shape[1])
+        if cell.newton_mean is None:
+            axes.text(column, row, "x", ha="center", va="center", color="#D55E00", weight="bold")
+            continue
+        cuts = f"\n{cell.step_cuts:.0f} cut" if cell.step_cuts else ""
+        dark = (cell.newton_mean - 1.0) / (top - 1.0) < 0.5
+        axes.text(
+            column,
+            row,
+            f"{cell.newton_mean:.1f}{cuts}",
+            ha="center",
+            va="center",
+            fontsize=6,
+            color="white" if dark else "black",
+        )
+    axes.grid(visible=False)
+    axes.set_xticks(range(shape[1]), [f"{value:g}" for value in chart.x.values])
+    axes.set_yticks(range(shape[0]), [f"{value:g}" for value in chart.y.values])
+    axes.set_xlabel(chart.x.label)
+    axes.set_ylabel(chart.y.label)
+    figure.colorbar(image, ax=axes, label="Newton iterations per step, mean")
+    done = sum(cell.newton_mean is not None for cell in report.cells)
+    return _finish(
+        figure,
+        chart.title,
+        f"{done} of {len(report.cells)} converged; x: did not; cut: steps that were shortened.",
+    )
+
+
+def _new() -> tuple[Figure, Axes]:
+    figure = new_figure(WIDTH, HEIGHT)
+    return figure, figure.add_subplot()
+
+
+def _legend(figure: Figure, axes: Axes) -> None:
+    """Legend below the axes, where it hides nothing."""
+    handles, labels = axes.get_legend_handles_labels()
+    if handles:
+        longest = max(len(label) for label in labels)
+        columns = 1 if longest > 36 else 2 if longest > 16 else 3
+        rows = -(-len(handles) // columns)
+        figure.set_size_inches(WIDTH, HEIGHT + 0.16 * max(0, rows - 1))
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+
+
+def _finish(figure: Figure, title: str, caption: str) -> Drawing:
+    svg, png = BytesIO(), BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": title}):
+        figure.savefig(svg, format="svg", metadata={"Date": None})
+    figure.savefig(png, format="png", dpi=PNG_DPI, metadata={"Software": None})
+    return Drawing(title, caption, svg.getvalue(), png.getvalue())
+
+
+def check_drawings(report: CheckReport) -> Sequence[Drawing]:
+    """All figures of a check."""
+    drawings = (profile_drawing(report), order_drawing(report), work_precision_drawing(report))
+    return [drawing for drawing in drawings if drawing is not None]

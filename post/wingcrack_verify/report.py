@@ -1,0 +1,99 @@
+"""The report as a whole: its rows and verdict, and the files that hold it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+from wingcrack_verify import environment
+from wingcrack_verify.booklet import write_booklet
+from wingcrack_verify.illustrate import Illustrations, illustrate
+from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
+from wingcrack_verify.page import page_text
+from wingcrack_verify.record import Context, Row, record_of, rows_of
+from wingcrack_verify.suite import JudgedSuite
+
+TOP = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was judged, and how the call went."""
+
+    judged: JudgedSuite
+    quick: bool
+    selected: bool
+    jobs: int
+    runs: int
+    reused: int
+    run_s: float
+    build: Path = TOP / "build" / "release"
+    rows: tuple[Row, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """List the rows once."""
+        object.__setattr__(self, "rows", tuple(rows_of(self.judged)))
+
+    @property
+    def verdict(self) -> str:
+        """The worst of all."""
+        return self.judged.verdict
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of rows by verdict."""
+        found = Counter(row.verdict for row in self.rows)
+        return {verdict: found[verdict] for verdict in (PASSED, GAP, FAILED, ERROR)}
+
+    def summary_lines(self) -> list[str]:
+        """What the terminal is told in the end: what is not in order, then the counts."""
+        lines = [
+            f"{row.verdict.upper()}  {row.case}: {row.quantity}: {reason}"
+            for row in self.rows
+            if row.verdict != PASSED
+            for reason in row.reasons or ("",)
+        ]
+        counts = ", ".join(f"{number} {verdict}" for verdict, number in self.counts.items())
+        return [*lines, f"{counts}; {self.runs} runs, {self.reused} of them as before"]
+
+
+def make_report(report: Report, folder: Path) -> Path:
+    """Write index.html, report.pdf and report.json, each of them whole; return the page's path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    context = Context(
+        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        revision=environment.revision(TOP),
+        machine=environment.machine(),
+        packages=environment.packages(report.build),
+        scope=_scope(report),
+        call={
+            "runs": report.runs,
+            "runs reused": report.reused,
+            "runs at a time": report.jobs,
+            "time for the runs [s]": round(report.run_s, 1),
+        },
+    )
+    record = record_of(report.judged, report.rows, report.counts, context)
+    pictures: Illustrations = illustrate(report.judged)
+    _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
+    page = folder / "index.html"
+    _write(page, page_text(report.judged, record, pictures, folder).encode())
+    aside = folder / f".report.{os.getpid()}.pdf"
+    write_booklet(report.judged, record, pictures, aside)
+    aside.replace(folder / "report.pdf")
+    return page
+
+
+def _scope(report: Report) -> str:
+    which = "the quick cases" if report.quick else "all cases"
+    return f"{which} that were asked for by name" if report.selected else which
+
+
+def _write(path: Path, content: bytes) -> None:
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    aside.write_bytes(content)
+    aside.replace(path)

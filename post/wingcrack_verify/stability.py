@@ -1,0 +1,314 @@
+"""Stiff and extreme scenes: does the solver converge, or refuse with a reason, and at what cost?"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from wingcrack_verify.case import Run, read_toml, refuse_doubles
+from wingcrack_verify.errors import CaseError
+from wingcrack_verify.execute import Outcome
+from wingcrack_verify.fields import Fields
+from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
+from wingcrack_verify.selection import read_selection, select
+
+TIME_LIMIT_S = 20.0  # some hundred times what a trial takes
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A scene of the table, or a cell of a map."""
+
+    run: Run
+    expect: str  # "converged" or "refused"
+    note: str
+    known_gap: str | None
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Parameter of a map: all the names get each of the values, the others a multiple of it."""
+
+    label: str
+    names: tuple[str, ...]
+    values: tuple[float, ...]
+    multiples: dict[str, float]
+
+    def changes(self, value: float) -> dict[str, float]:
+        """Values of the scene at one place of the axis."""
+        of_names = dict.fromkeys(self.names, value)
+        return of_names | {name: value * factor for name, factor in self.multiples.items()}
+
+
+@dataclass(frozen=True)
+class Map:
+    """Two parameters at a time; `trials` row by row, y first."""
+
+    title: str
+    x: Axis
+    y: Axis
+    trials: tuple[Trial, ...]
+    known_gap: str | None
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The file ``stability.toml``."""
+
+    name: str
+    folder: Path
+    title: str
+    source: str
+    quick: bool
+    mass_error_limit: float
+    contact_residual_limit: float
+    trials: tuple[Trial, ...]
+    maps: tuple[Map, ...]
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """All runs, those of the maps last."""
+        of_maps = itertools.chain.from_iterable(chart.trials for chart in self.maps)
+        return tuple(trial.run for trial in (*self.trials, *of_maps))
+
+
+@dataclass(frozen=True)
+class TrialReport:
+    """What became of a trial; numbers are None where the run has none."""
+
+    trial: Trial
+    verdict: str
+    reason: str
+    status: str
+    newton_mean: float | None
+    newton_max: float | None
+    step_cuts: float | None
+    mass_error: float | None
+    contact_residual: float | None
+    condition_estimate: float | None
+    forward_error_bound: float | None
+    cpu_s: float
+
+
+@dataclass(frozen=True)
+class MapReport:
+    """A map with all its trials."""
+
+    chart: Map
+    cells: tuple[TrialReport, ...]
+    verdict: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class StabilityReport:
+    """The stability part of the report."""
+
+    name: str
+    title: str
+    source: str
+    folder: Path
+    trials: tuple[TrialReport, ...] = ()
+    maps: tuple[MapReport, ...] = ()
+    limits: tuple[float, float] = (0.0, 0.0)
+    broken: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """The worst of all."""
+        if self.broken:
+            return ERROR
+        return worst_of([item.verdict for item in (*self.trials, *self.maps)])
+
+
+def read_stability(folder: Path) -> Stability:
+    """Read ``stability.toml``; a `CaseError` tells what is wrong with it."""
+    fields = Fields(read_toml(folder / "stability.toml"), "stability.toml")
+    title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
+    base = folder / fields.text("scene")
+    if not base.is_file():
+        raise CaseError(f"stability.toml: there is no scene file {base.name}")
+    mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
+    trials = tuple(
+        _read_trial(item, f"scene {index}", base)
+        for index, item in enumerate(fields.tables("trial"), start=1)
+    )
+    maps = tuple(
+        _read_map(item, f"map {index}", base)
+        for index, item in enumerate(fields.tables("map"), start=1)
+    )
+    fields.done()
+    if not trials:
+        raise CaseError("stability.toml: at least one [[trial]] is needed")
+    found = Stability(folder.name, folder, title, source, quick, mass, contact, trials, maps)
+    refuse_doubles([run.name for run in found.runs], "trial")
+    return found
+
+
+def _read_trial(data: Any, place: str, base: Path) -> Trial:
+    fields = Fields(data, place)
+    name = fields.text("name")
+    fields.place = f"trial '{name}'"
+    changes, unset = fields.mapping("set"), fields.texts("unset", ())
+    trial = Trial(
+        _run(name, base, changes, unset),
+        fields.choice("expect", ("converged", "refused")),
+        fields.text("note", ""),
+        fields.text("known_gap", None),
+    )
+    fields.done()
+    return trial
+
+
+def _run(name: str, base: Path, changes: Mapping[str, Any], unset: tuple[str, ...]) -> Run:
+    return Run(
+        name, "stability", None, False, base, dict(changes), unset, None, (), {}, TIME_LIMIT_S
+    )
+
+
+def _read_map(data: Any, place: str, base: Path) -> Map:
+    fields = Fields(data, place)
+    title = fields.text("title")
+    fields.place = f"map '{title}'"
+    changes, unset = fields.mapping("set"), fields.texts("unset", ())
+    gap = fields.text("known_gap", None)
+    x, y = (_read_axis(fields.take(key), f"{fields.place}: {key}") for key in ("x", "y"))
+    fields.done()
+    trials = tuple(
+        Trial(
+            _run(
+                f"{title}: {x_value:g}, {y_value:g}",
+                base,
+                changes | x.changes(x_value) | y.changes(y_value),
+                unset,
+            ),
+            "converged",
+            "",
+            None,
+        )
+        for y_value in y.values
+        for x_value in x.values
+    )
+    return Map(title, x, y, trials, gap)
+
+
+def _read_axis(data: Any, place: str) -> Axis:
+    fields = Fields(data, place)
+    axis = Axis(
+        fields.text("label"),
+        fields.texts("names"),
+        fields.numbers("values"),
+        fields.constants("multiples"),
+    )
+    fields.done()
+    return axis
+
+
+def judge_stability(found: Stability, outcomes: Mapping[str, Outcome]) -> StabilityReport:
+    """Judge all trials; `outcomes` by the runs' names."""
+    maps = []
+    for chart in found.maps:
+        cells = tuple(judge_trial(found, item, outcomes[item.run.name]) for item in chart.trials)
+        bad = [cell for cell in cells if cell.verdict != PASSED]
+        worst = worst_of([cell.verdict for cell in cells])
+        reason = f"{bad[0].trial.run.name}: {bad[0].reason}" if bad else ""
+        if chart.known_gap is not None and worst != ERROR:
+            worst = GAP
+        maps.append(MapReport(chart, cells, worst, reason))
+    return StabilityReport(
+        found.name,
+        found.title,
+        found.source,
+        found.folder,
+        tuple(judge_trial(found, item, outcomes[item.run.name]) for item in found.trials),
+        tuple(maps),
+        (found.mass_error_limit, found.contact_residual_limit),
+    )
+
+
+def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport:
+    """Hold what became of a trial against what is expected of it."""
+    if outcome.status == "invalid":
+        return _report(trial, outcome, ERROR, outcome.reason, {})
+    numbers: dict[str, float | None] = {}
+    if outcome.status == "finished":
+        try:
+            numbers = _numbers(Path(outcome.folder) / "output")
+        except CaseError as reason:
+            return _report(trial, outcome, ERROR, str(reason), numbers)
+    reason = _complaint(found, trial, outcome, numbers)
+    verdict = FAILED if reason else PASSED
+    if trial.known_gap is not None:
+        verdict = GAP
+        reason = reason or "as expected now: the mark of a known gap can go"
+    return _report(trial, outcome, verdict, reason, numbers)
+
+
+def _complaint(
+    found: Stability, trial: Trial, outcome: Outcome, numbers: Mapping[str, float | None]
+) -> str:
+    if trial.expect == "refused":
+        if outcome.status in ("failed", "refused") and outcome.reason:
+            return ""
+        return f"the run {outcome.status}, and a refusal with a reason is expected"
+    if outcome.status != "finished":
+        return f"the run {outcome.status}: {outcome.reason}"
+    for name, limit in (
+        ("mass_error_relative", found.mass_error_limit),
+        ("contact_residual", found.contact_residual_limit),
+    ):
+        value = numbers[name]
+        if value is None or not value <= limit:
+            return f"{name} {value} exceeds {limit:g}"
+    return ""
+
+
+def _numbers(output: Path) -> dict[str, float | None]:
+    """Numbers of a finished run; all must be there but the estimates, which come with later work."""
+    record = json.loads((output / "run.json").read_text(encoding="utf-8"))
+    numbers: dict[str, float | None] = {
+        name: _finite(record.get(name), name)
+        for name in ("mass_error_relative", "contact_residual", "step_cuts")
+    }
+    for name in ("condition_estimate", "forward_error_bound"):
+        numbers[name] = _finite(record[name], name) if name in record else None
+    for take in ("mean", "max"):
+        fields = Fields({"column": "newton_iterations", "take": take}, "history.csv")
+        values = select(read_selection(fields, "history.csv"), output, {})
+        numbers[f"newton_{take}"] = float(values.values[0])
+    return numbers
+
+
+def _finite(value: object, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise CaseError(f"run.json: '{name}' is {value!r}, not a finite number")
+    return float(value)
+
+
+def _report(
+    trial: Trial,
+    outcome: Outcome,
+    verdict: str,
+    reason: str,
+    numbers: Mapping[str, float | None],
+) -> TrialReport:
+    status = "converged" if outcome.status == "finished" else outcome.status
+    return TrialReport(
+        trial,
+        verdict,
+        reason or (outcome.reason if status != "converged" else ""),
+        status,
+        numbers.get("newton_mean"),
+        numbers.get("newton_max"),
+        numbers.get("step_cuts"),
+        numbers.get("mass_error_relative"),
+        numbers.get("contact_residual"),
+        numbers.get("condition_estimate"),
+        numbers.get("forward_error_bound"),
+        outcome.cpu_s,
+    )

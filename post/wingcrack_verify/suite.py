@@ -1,0 +1,133 @@
+"""All cases of a call: reading the folders, listing their runs, judging what came out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from wingcrack_verify.case import Case, Run, read_case
+from wingcrack_verify.errors import CaseError
+from wingcrack_verify.execute import Job, Outcome
+from wingcrack_verify.judge import CaseReport, judge_case, worst_of
+from wingcrack_verify.stability import (
+    Stability,
+    StabilityReport,
+    judge_stability,
+    read_stability,
+)
+
+
+@dataclass(frozen=True)
+class BrokenCase:
+    """A folder whose TOML file cannot be used."""
+
+    name: str
+    folder: Path
+    reason: str
+
+
+@dataclass(frozen=True)
+class Suite:
+    """What a call is about, in the order of the folders' names."""
+
+    cases: tuple[Case | BrokenCase, ...]
+    stability: tuple[Stability | BrokenCase, ...]
+
+    @property
+    def jobs(self) -> tuple[Job, ...]:
+        """All runs; the long ones of the cases first, the small ones of stability last."""
+        jobs = []
+        for item in (*self.cases, *self.stability):
+            runs: tuple[Run, ...] = () if isinstance(item, BrokenCase) else item.runs
+            jobs += [Job(item.name, run) for run in runs]
+        return tuple(jobs)
+
+
+@dataclass(frozen=True)
+class JudgedSuite:
+    """All that the report tells."""
+
+    cases: tuple[CaseReport, ...]
+    stability: tuple[StabilityReport, ...]
+
+    @property
+    def verdict(self) -> str:
+        """The worst of all; nothing judged is an error."""
+        return worst_of([item.verdict for item in (*self.cases, *self.stability)])
+
+
+def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
+    """Read the named cases, or all of them.
+
+    Raises
+    ------
+    CaseError
+        If a name is no case; a broken case is part of the suite, and red.
+    """
+    folders = {
+        path.parent.name: path.parent
+        for pattern in ("*/check.toml", "*/stability.toml")
+        for path in sorted(top.glob(pattern))
+    }
+    for name in names:
+        if name not in folders:
+            there = ", ".join(sorted(folders)) or "none"
+            raise CaseError(f"there is no case '{name}' (there are: {there})")
+    cases: list[Case | BrokenCase] = []
+    stability: list[Stability | BrokenCase] = []
+    for name in sorted(set(names) or folders):
+        folder = folders[name]
+        if (folder / "stability.toml").is_file():
+            stability.append(_read_stability(folder))
+        else:
+            cases.append(_read_case(folder))
+    if quick:
+        cases = [item for item in cases if isinstance(item, BrokenCase) or item.quick]
+        stability = [item for item in stability if isinstance(item, BrokenCase) or item.quick]
+    if not cases and not stability:
+        raise CaseError("there is no case to run")
+    return Suite(tuple(cases), tuple(stability))
+
+
+def _read_case(folder: Path) -> Case | BrokenCase:
+    try:
+        _require_readme(folder)
+        return read_case(folder)
+    except CaseError as reason:
+        return BrokenCase(folder.name, folder, str(reason))
+
+
+def _read_stability(folder: Path) -> Stability | BrokenCase:
+    try:
+        _require_readme(folder)
+        return read_stability(folder)
+    except CaseError as reason:
+        return BrokenCase(folder.name, folder, str(reason))
+
+
+def _require_readme(folder: Path) -> None:
+    if not (folder / "README.md").is_file():
+        raise CaseError("README.md is missing: a number without its problem says nothing")
+
+
+def judge_suite(suite: Suite, outcomes: Mapping[tuple[str, str], Outcome]) -> JudgedSuite:
+    """Judge all cases; `outcomes` by case and run."""
+    cases = []
+    for case in suite.cases:
+        if isinstance(case, BrokenCase):
+            cases.append(CaseReport(case.name, case.name, "", case.folder, broken=case.reason))
+        else:
+            cases.append(judge_case(case, _of_case(outcomes, case.name)))
+    stability = []
+    for item in suite.stability:
+        if isinstance(item, BrokenCase):
+            broken = StabilityReport(item.name, item.name, "", item.folder, broken=item.reason)
+            stability.append(broken)
+        else:
+            stability.append(judge_stability(item, _of_case(outcomes, item.name)))
+    return JudgedSuite(tuple(cases), tuple(stability))
+
+
+def _of_case(outcomes: Mapping[tuple[str, str], Outcome], name: str) -> dict[str, Outcome]:
+    return {run: outcome for (case, run), outcome in outcomes.items() if case == name}
