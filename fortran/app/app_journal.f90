@@ -3,7 +3,7 @@ module app_journal
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_output, timers_t
-   use coarse_contact, only: state_open, state_slip, state_stick
+   use contact_states, only: state_open, state_slip, state_stick
    use coarse_fields, only: cell_stresses
    use coarse_state, only: step_report_t
    use mesh_builder, only: locate

@@ -8,7 +8,7 @@ module coarse_model
    use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
       phase_solve, timers_t
    use coarse_condensed, only: condensed_t
-   use coarse_contact, only: state_stick
+   use contact_states, only: state_stick
    use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: newton_settings_t, solve_fractures

@@ -6,7 +6,7 @@
 module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_contact, only: contact_equations, contact_law_t, contact_residual
+   use contact_law, only: contact_equations, contact_law_t, contact_residual
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    implicit none(type, external)
    private

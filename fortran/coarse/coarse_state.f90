@@ -1,7 +1,7 @@
 !> The state of the coarse level at one time, and the properties of its fracture cells.
 module coarse_state
    use base_kinds, only: ik, rk
-   use coarse_contact, only: contact_law_t
+   use contact_law, only: contact_law_t
    implicit none(type, external)
    private
 

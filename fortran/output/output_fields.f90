@@ -30,7 +30,7 @@ module output_fields
       real(rk), allocatable :: traction_n(:)  !< (n_cells) of contact, compression < 0 [Pa]
       real(rk), allocatable :: traction_t(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
-      integer(ik), allocatable :: state(:)  !< (n_cells) of mesh_states
+      integer(ik), allocatable :: state(:)  !< (n_cells) of contact_states
    end type fracture_fields_t
 
    !> State of the intersections.

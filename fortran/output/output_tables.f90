@@ -2,7 +2,7 @@
 module output_tables
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use mesh_states, only: state_name
+   use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
    use output_fields, only: fracture_fields_t, history_row_t, tip_row_t
    use output_series, only: series_t

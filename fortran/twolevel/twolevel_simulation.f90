@@ -3,7 +3,7 @@ module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use coarse_contact, only: contact_law_t
+   use contact_law, only: contact_law_t
    use coarse_fields, only: nodal_values
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t

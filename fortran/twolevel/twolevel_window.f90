@@ -11,7 +11,7 @@
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_contact, only: state_open, state_slip
+   use contact_states, only: state_open, state_slip
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t
    use fine_elasticity, only: elasticity_t

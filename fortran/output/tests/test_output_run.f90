@@ -6,7 +6,7 @@ program test_output_run
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_output, timers_t
-   use mesh_states, only: state_open, state_slip, state_stick
+   use contact_states, only: state_open, state_slip, state_stick
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
    use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
       & matrix_fields_t, tip_row_t

@@ -1,9 +1,9 @@
 !> The law of contact and friction: derivatives, states, what fulfils the law and what does not.
-program test_coarse_contact
+program test_contact_law
    use base_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_contact, only: contact_equations, contact_law_t, contact_residual
-   use mesh_states, only: state_name, state_open, state_slip, state_stick
+   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_states, only: state_name, state_open, state_slip, state_stick
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
@@ -215,4 +215,4 @@ contains
       end do
    end subroutine test_friction_opposes_slip
 
-end program test_coarse_contact
+end program test_contact_law

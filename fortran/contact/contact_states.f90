@@ -1,5 +1,5 @@
 !> The contact state of a fracture cell, in one numbering for all rooms and files.
-module mesh_states
+module contact_states
    use base_kinds, only: ik
    implicit none(type, external)
    private
@@ -29,4 +29,4 @@ contains
       end select
    end function state_name
 
-end module mesh_states
+end module contact_states

@@ -1,31 +1,29 @@
-!> Contact with Coulomb friction and shear dilation on one fracture cell, as equations for Newton's method.
+!> Contact with Coulomb friction and shear dilation at one point of a fracture, as equations for
+!! Newton's method.
 !!
-!! Complementarity functions of a primal-dual active set (Huber and Wohlmuth 2005; model.md section 4) in
-!! their scalar form, each divided by its positive factor so that it is a stress [Pa] or, times the
-!! stiffness c, a displacement. With the trial pressure z = -f_n - c ([u]_n - g) and the trial shear
-!! q = f_tau + c d[u]_tau:
+!! Complementarity functions of a primal-dual active set (Huber and Wohlmuth 2005; model.md section
+!! 4) in their scalar form, each divided by its positive factor so that it is a stress [Pa] or,
+!! times the stiffness c, a displacement. With the trial pressure z = -f_n - c ([u]_n - g) and the
+!! trial shear q = f_tau + c d[u]_tau:
 !!   open   z <= 0:             f_n = 0,               f_tau = 0
 !!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
 !!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
 !! The gap g = tan(psi) |[u]_tau|.
 !!
-!! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the jump is
-!! u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip increment; it
-!! opposes the slip on side -, where the traction is -f. (Model.md writes -f_tau for f_tau, as for a
-!! traction on side -; with sigma n as above that would let friction do work on the slip.)
-module coarse_contact
+!! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
+!! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip
+!! increment; it opposes the slip on side -, where the traction is -f. (Model.md writes -f_tau for
+!! f_tau, as for a traction on side -; with sigma n as above that would let friction do work on the
+!! slip.)
+module contact_law
    use base_kinds, only: ik, rk
+   use contact_states, only: state_open, state_slip, state_stick
    implicit none(type, external)
    private
 
    public :: contact_equations, contact_law_t, contact_residual
-   public :: state_open, state_slip, state_stick
 
-   integer(ik), parameter :: state_stick = 0
-   integer(ik), parameter :: state_slip = 1
-   integer(ik), parameter :: state_open = 2
-
-   !> Parameters of one fracture cell.
+   !> Parameters of the law.
    type :: contact_law_t
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< tan(psi) [-]
@@ -35,16 +33,16 @@ contains
 
    !> Normal and tangential equation with their derivatives.
    !!
-   !! A cell that slipped one way in the last iteration and would slip the other way now is tried as sticking:
-   !! without this the iteration may go to and fro between the two.
-   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
-      by_traction, by_jump)
+   !! A point that slipped one way in the last iteration and would slip the other way now is tried
+   !! as sticking: without this the iteration may go to and fro between the two.
+   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, state, &
+                                     residual, by_traction, by_jump)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
       real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
       real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
-      integer(ik), intent(inout) :: way  !< direction of slip in this iteration: -1, 1, or 0 for none
+      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
       integer(ik), intent(out) :: state
       real(rk), intent(out) :: residual(2)  !< [Pa]
       real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j
@@ -83,8 +81,9 @@ contains
       end if
    end subroutine contact_equations
 
-   !> How far a cell is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction bound and
-   !! direction of slip, each by itself and independent of the equations that Newton's method solves.
+   !> How far a point is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction
+   !! bound and direction of slip, each by itself and independent of the equations that Newton's
+   !! method solves.
    pure function contact_residual(law, stiffness, traction, jump, slip_before) result(worst)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness, traction(2), jump(2), slip_before
@@ -102,4 +101,4 @@ contains
       worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))
    end function contact_residual
 
-end module coarse_contact
+end module contact_law
