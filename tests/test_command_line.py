@@ -30,7 +30,7 @@ def test_version_is_that_of_the_python_package(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, f"wingcrack {expected}\n", "")
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "test"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "verify", "test"])
 def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str) -> None:
     done = call(tmp_path, command, "--help")
     assert done.returncode == 0
@@ -42,7 +42,7 @@ def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str)
 def test_help_names_every_subcommand(tmp_path: Path) -> None:
     done = call(tmp_path, "--help")
     assert done.returncode == 0
-    for command in ("run", "check", "plot", "test", "--version"):
+    for command in ("run", "check", "plot", "verify", "test", "--version"):
         assert command in done.stdout
 
 
@@ -58,6 +58,9 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["run", "."], "there is no scene file ."),
         (["run", "nowhere.nml", "other.nml"], "run takes one scene file, and other.nml"),
         (["run", "nowhere.nml", "--fast"], "unknown option --fast"),
+        (["verify", "--fast"], "unknown option --fast"),
+        (["verify", "no_such_case"], "there is no case no_such_case"),
+        (["verify", "--jobs"], "--jobs needs a value"),
         (["run", "nowhere.nml", "--out"], "--out needs a value"),
         (["run", "nowhere.nml", "--out", ""], "--out needs a value"),
         (["run", "nowhere.nml", "--out="], "unknown option --out="),

@@ -1,19 +1,24 @@
 # Build: CMake presets (CMakePresets.json) under build/PRESET. Sourced by the launcher.
 
 readonly solver_target=wingcrack-solver
+readonly verification_target=verification-programs
 readonly solver=$root/build/release/fortran/app/wingcrack-solver
 
 # build_is_current PRESET TARGET: nothing that the build reads is newer than its record, and the
 # tree has not moved since (library paths) nor the processor changed (-march=native).
 build_is_current() {
-    local record_file=$root/build/$1/built-$2 record='' place
+    local record_file=$root/build/$1/built-$2 record='' place also=()
+    if [[ $2 != "$solver_target" ]]; then
+        also=("$root/verification/CMakeLists.txt" "$root/verification/programs")
+    fi
     if [[ ! -r $record_file ]]; then return 1; fi
     IFS= read -r -d '' record <"$record_file"
     find_place
     if [[ $record != "$place" ]]; then return 1; fi
     # Newer folders count too: that is how a removed file shows.
     [[ -z $(find "$root/CMakeLists.txt" "$root/CMakePresets.json" "$root/cmake" "$root/fortran" \
-        "$root/cpp_mesh" "$venv_record" -newer "$record_file" -print -quit) ]]
+        "$root/cpp_mesh" "$venv_record" ${also[@]+"${also[@]}"} \
+        -newer "$record_file" -print -quit) ]]
 }
 
 # Set place: where the tree lies and the processor's name, a line each.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
@@ -39,7 +40,7 @@ def write_booklet(
     _title(book, record)
     _summary(book, record)
     _settings(book, record)
-    folders = {item.name: item.folder for item in (*judged.cases, *judged.stability)}
+    folders = judged.folders
     for case in record["cases"]:
         _head(book, case, folders[case["name"]])
         _figures(book, pictures.by_case[case["name"]])
@@ -57,10 +58,10 @@ def _new_book() -> _Book:
     book = _Book(format="A4")
     fonts = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     for style, name in _FONTS.items():
-        book.add_font("body", style, fonts / f"{name}.ttf")  # type: ignore[arg-type]
+        book.add_font("body", style, fonts / f"{name}.ttf")
     book.add_font("body", "BI", fonts / "DejaVuSans-BoldOblique.ttf")
     for style in ("", "B", "I", "BI"):
-        book.add_font("code", style, fonts / "DejaVuSansMono.ttf")  # type: ignore[arg-type]
+        book.add_font("code", style, fonts / "DejaVuSansMono.ttf")
     book.set_margins(_MARGIN, _MARGIN)
     book.set_auto_page_break(auto=True, margin=_MARGIN)
     book.set_title("wingcrack: verification")
@@ -124,7 +125,9 @@ def _head(book: _Book, item: dict[str, Any], folder: Path) -> None:
     _words(book, f"{item['name']}. {item['source']}. All runs: {item['cpu_s']:.3g} CPU s.")
     if item["broken"]:
         _words(book, item["broken"])
-    html = readme_html(folder, None)
+    # A list whose items are paragraphs would stand apart from its bullets.
+    html = re.sub(r"<li>\s*<p>", "<li>", readme_html(folder, None))
+    html = re.sub(r"</p>\s*</li>", "</li>", html)
     if html:
         book.set_font("body", "", 8)
         styles: dict[str, Any] = {

@@ -68,6 +68,7 @@ def _verify(suite: Suite, runner: Runner, given: argparse.Namespace) -> int:
         runs=len(outcomes),
         reused=sum(outcome.reused for outcome in outcomes.values()),
         run_s=run_s,
+        build=given.build,
     )
     written = make_report(report, given.report)
     for line in report.summary_lines():

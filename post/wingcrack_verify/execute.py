@@ -1,4 +1,4 @@
-"""Running solver and programs: each run once, in a folder of its own, kept until something changes."""
+"""Running solver and programs: each run once, and again only when something has changed."""
 
 from __future__ import annotations
 

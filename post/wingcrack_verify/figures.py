@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from wingcrack_post.style import CYCLE, new_figure, styled
-from wingcrack_verify.expressions import Array
-from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
+from wingcrack_verify.judge import CheckReport, DrawnFigure
 from wingcrack_verify.orders import pareto_front
 from wingcrack_verify.stability import MapReport
 
@@ -45,21 +46,22 @@ class Drawing:
 def profile_drawing(report: CheckReport) -> Drawing | None:
     """Result over its reference; None if the check has no profile."""
     shown = [
-        item for item in report.measured if item.pair is not None and item.profile and item.judged
-    ]
+        item
+        for item in report.measured
+        if item.judged and item.profile and item.pair is not None and item.pair.x is not None
+    ][-MOST_PROFILES:]
     if not shown:
         return None
     figure, axes = _new()
-    if report.check.reference.direction is None:
-        finest = shown[-1]
-        assert finest.pair is not None
-        x = _abscissa(finest)
-        axes.plot(x, finest.pair.reference, color="black", label="reference", zorder=3, lw=1.0)
-    for index, item in enumerate(shown[-MOST_PROFILES:]):
-        assert item.pair is not None
-        sign = -1.0 if report.check.reference.direction == "falling" else 1.0
+    sign = -1.0 if report.check.reference.direction == "falling" else 1.0
+    for index, item in enumerate(shown):
+        assert item.pair is not None and item.pair.x is not None
+        if report.check.reference.direction is None:
+            last = index == len(shown) - 1
+            label = "reference" if last else None
+            axes.plot(item.pair.x, item.pair.reference, color="black", lw=0.8, label=label)
         axes.plot(
-            _abscissa(item),
+            item.pair.x,
             sign * item.pair.result,
             color=CYCLE[index],
             marker=MARKERS[index],
@@ -71,13 +73,6 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
     axes.set_ylabel(f"{report.check.quantity} [{report.check.unit}]")
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
-
-
-def _abscissa(item: Measured) -> Array:
-    assert item.pair is not None
-    if item.pair.x is not None:
-        return item.pair.x
-    return np.arange(1.0, item.pair.result.size + 1.0)
 
 
 @styled
@@ -111,6 +106,7 @@ def order_drawing(report: CheckReport) -> Drawing | None:
         axes.loglog(size, slope, color="#777777", linestyle=":", label=label)
     if not sizes:
         return None
+    _plain_logs(axes)
     axes.set_xlabel("size (cell size [m] or time step [s])")
     axes.set_ylabel(f"error, {check.metric}")
     _legend(figure, axes)
@@ -161,6 +157,7 @@ def work_precision_drawing(report: CheckReport) -> Drawing | None:
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
+    _plain_logs(axes)
     axes.set_xlabel("CPU time [s]")
     axes.set_ylabel("error [% of the signal]")
     _legend(figure, axes)
@@ -179,7 +176,7 @@ def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
         return None
     figure, axes = _new()
     for index, line in enumerate(drawn.lines):
-        look = {"color": CYCLE[index % len(CYCLE)], "label": line.label}
+        look: dict[str, Any] = {"color": CYCLE[index % len(CYCLE)], "label": line.label}
         if line.points:
             look |= {"linestyle": "none", "marker": MARKERS[index % len(MARKERS)]}
             look |= {"fillstyle": "none", "markersize": 4}
@@ -243,6 +240,15 @@ def map_drawing(report: MapReport) -> Drawing:
 def _new() -> tuple[Figure, Axes]:
     figure = new_figure(WIDTH, HEIGHT)
     return figure, figure.add_subplot()
+
+
+def _plain_logs(axes: Axes) -> None:
+    """Ticks at 1, 2, 5 in plain numbers, as few decades are shown; powers of ten if many."""
+    for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if limits[1] < 1.0e3 * limits[0]:
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 def _legend(figure: Figure, axes: Axes) -> None:

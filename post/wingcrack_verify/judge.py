@@ -248,8 +248,8 @@ def _order(check: Check, method: str, items: list[Measured]) -> MethodOrder:
     size = min((item.signal for item in items if item.signal is not None), default=1.0)
     try:
         fit = observed_order([item.run.size or 0.0 for item in items], errors, size)
-    except CaseError as reason:
-        return MethodOrder(method, None, False, True, f"order of {method}: {reason}")
+    except CaseError as broken:
+        return MethodOrder(method, None, False, True, f"order of {method}: {broken}")
     good = abs(fit.overall - check.order.expected) <= check.order.within
     wanted = f"{check.order.expected:g} +- {check.order.within:g}"
     reason = "" if good else f"order of {method}: {fit.overall:.2f} is not {wanted}"

@@ -34,11 +34,10 @@ def page_text(
     )
     templates.filters["number"] = number_text
     templates.filters["slug"] = slug
-    folders = {item.name: item.folder for item in (*judged.cases, *judged.stability)}
     return templates.get_template("report.html.j2").render(
         record=record,
-        texts={name: readme_html(path, folder) for name, path in folders.items()},
-        links={name: os.path.relpath(path, folder) for name, path in folders.items()},
+        texts={name: readme_html(path, folder) for name, path in judged.folders.items()},
+        links={name: os.path.relpath(path, folder) for name, path in judged.folders.items()},
         figures={
             name: [_embedded(drawing) for drawing in drawings]
             for name, drawings in pictures.by_case.items()
@@ -81,7 +80,7 @@ def readme_html(case: Path, folder: Path | None) -> str:
             token.tag = f"h{min(int(token.tag[1]) + 2, 6)}"
         for child in token.children or []:
             _embed_target(child, case, folder)
-    html = parser.renderer.render(tokens, parser.options, {})
+    html = str(parser.renderer.render(tokens, parser.options, {}))
     return html.replace("<table>", '<div class="scroll"><table>').replace(
         "</table>", "</table></div>"
     )

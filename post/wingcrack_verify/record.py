@@ -116,10 +116,12 @@ def _unit(report: CheckReport) -> str:
 
 
 def quantity_text(value: float, unit: str) -> str:
-    """Number for a reader: relative ones in per cent, three digits."""
+    """Number for a reader: relative ones in per cent, tiny ones as they are."""
     if not math.isfinite(value):
         return "infinite"
     if unit == "%":
+        if 0.0 < value < 1.0e-5:
+            return f"{value:.1e}"
         value *= 100.0
     number = f"{value:.3g}" if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e4 else f"{value:.2e}"
     return number if unit == "-" else f"{number} {unit}"

@@ -211,7 +211,7 @@ def _rows(table: Table, selection: Selection) -> Mask:
 def _matches(table: Table, column: str, wanted: Wanted) -> Mask:
     if isinstance(wanted, str) and not (column == "time_s" and wanted in ("first", "last")):
         return _guarded(lambda: np.asarray(table.text(column) == wanted, dtype=np.bool_))
-    numbers = _guarded(lambda: table.number(column))
+    numbers = _numbers(table, column)
     if isinstance(wanted, Limits):
         return np.asarray((numbers >= wanted.lower) & (numbers <= wanted.upper), dtype=np.bool_)
     if isinstance(wanted, str):
@@ -223,16 +223,19 @@ def _matches(table: Table, column: str, wanted: Wanted) -> Mask:
 
 def _column(table: Table, text: str, kept: Mask, constants: Mapping[str, float]) -> Array:
     if table.has(text):
-        used = {text}
-        values = _guarded(lambda: table.number(text))[kept]
+        values = _numbers(table, text)[kept]
     else:
         used = names_in(text) - set(constants) - set(FUNCTIONS) - {"pi"}
         columns: dict[str, Array | float] = dict(constants)
-        columns |= {name: _guarded(lambda n=name: table.number(n))[kept] for name in used}
-        values = np.broadcast_to(evaluate(text, columns), (np.count_nonzero(kept),))
+        columns |= {name: _numbers(table, name)[kept] for name in used}
+        values = np.broadcast_to(evaluate(text, columns), (int(np.count_nonzero(kept)),))
     if not np.all(np.isfinite(values)):
         raise CaseError(f"{table.path.name}: '{text}' is NaN or infinite in a row that is used")
     return np.array(values, dtype=np.float64)
+
+
+def _numbers(table: Table, name: str) -> Array:
+    return _guarded(lambda: table.number(name))
 
 
 def _json_number(selection: Selection, folder: Path) -> float:

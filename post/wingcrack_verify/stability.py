@@ -1,4 +1,4 @@
-"""Stiff and extreme scenes: does the solver converge, or refuse with a reason, and at what cost?"""
+"""Stiff and extreme scenes: whether the solver converges or refuses, and at what cost."""
 
 from __future__ import annotations
 
@@ -123,7 +123,8 @@ class StabilityReport:
         """The worst of all."""
         if self.broken:
             return ERROR
-        return worst_of([item.verdict for item in (*self.trials, *self.maps)])
+        trials = [item.verdict for item in self.trials]
+        return worst_of(trials + [item.verdict for item in self.maps])
 
 
 def read_stability(folder: Path) -> Stability:
@@ -239,8 +240,8 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     if outcome.status == "finished":
         try:
             numbers = _numbers(Path(outcome.folder) / "output")
-        except CaseError as reason:
-            return _report(trial, outcome, ERROR, str(reason), numbers)
+        except CaseError as broken:
+            return _report(trial, outcome, ERROR, str(broken), numbers)
     reason = _complaint(found, trial, outcome, numbers)
     verdict = FAILED if reason else PASSED
     if trial.known_gap is not None:
@@ -269,7 +270,7 @@ def _complaint(
 
 
 def _numbers(output: Path) -> dict[str, float | None]:
-    """Numbers of a finished run; all must be there but the estimates, which come with later work."""
+    """Numbers of a finished run; only the two estimates may be absent."""
     record = json.loads((output / "run.json").read_text(encoding="utf-8"))
     numbers: dict[str, float | None] = {
         name: _finite(record.get(name), name)

@@ -52,9 +52,16 @@ class JudgedSuite:
     stability: tuple[StabilityReport, ...]
 
     @property
+    def folders(self) -> dict[str, Path]:
+        """Folder of each case by its name."""
+        cases = {item.name: item.folder for item in self.cases}
+        return cases | {item.name: item.folder for item in self.stability}
+
+    @property
     def verdict(self) -> str:
         """The worst of all; nothing judged is an error."""
-        return worst_of([item.verdict for item in (*self.cases, *self.stability)])
+        cases = [item.verdict for item in self.cases]
+        return worst_of(cases + [item.verdict for item in self.stability])
 
 
 def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
