@@ -55,15 +55,36 @@ Network network_from(const cm_network* given) {
     return network;
 }
 
-Specification specification_from(const cm_spec* given) {
+std::vector<Vec2> points_from(int32_t n, const double* xy) {
+    std::vector<Vec2> points;
+    for (int32_t i = 0; i < n; ++i)
+        points.push_back({xy[2 * i], xy[2 * i + 1]});
+    return points;
+}
+
+Domain domain_from(const cm_spec& given) {
+    if (given.n_corners == 0)
+        return Domain(Rectangle{given.x_min, given.x_max, given.y_min, given.y_max});
+    require(given.n_corners > 0 && given.corners != nullptr && given.edge_side != nullptr,
+            "the boundary has no corners or no side numbers");
+    return Domain(points_from(given.n_corners, given.corners),
+                  std::vector<int>(given.edge_side, given.edge_side + given.n_corners));
+}
+
+Specification specification_from(const cm_spec* given, int n_fractures) {
     require(given != nullptr, "no specification was given");
     Specification spec;
-    spec.rectangle = {given->x_min, given->x_max, given->y_min, given->y_max};
+    spec.domain = domain_from(*given);
     spec.size_fracture = given->size_fracture;
     spec.size_boundary = given->size_boundary;
     spec.is_window = given->is_window != 0;
     spec.rosette_sectors = given->rosette_sectors;
-    spec.rosette_radius = given->rosette_radius;
+    spec.rosette_radii.usual = given->rosette_radius;
+    if (given->end_radius != nullptr)
+        for (int f = 0; f < n_fractures; ++f)
+            spec.rosette_radii.at_end.push_back(
+                {given->end_radius[2 * f], given->end_radius[2 * f + 1]});
+    spec.fixed_points = points_from(given->n_fixed, given->fixed);
     return spec;
 }
 
@@ -141,7 +162,8 @@ int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh) {
     return guarded([&] {
         require(mesh != nullptr, "no place was given for the mesh");
         *mesh = nullptr;
-        *mesh = new cm_mesh{create_mesh(specification_from(spec), network_from(network))};
+        const Network fractures = network_from(network);
+        *mesh = new cm_mesh{create_mesh(specification_from(spec, fractures.size()), fractures)};
     });
 }
 
@@ -185,11 +207,8 @@ int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_cent
         require(new_mesh != nullptr, "no place was given for the mesh");
         *new_mesh = nullptr;
         require(old_mesh != nullptr, "no mesh was given");
-        std::vector<Vec2> points;
-        for (int32_t i = 0; i < n_centres; ++i)
-            points.push_back({centres[2 * i], centres[2 * i + 1]});
-        *new_mesh =
-            new cm_mesh{remesh(old_mesh->mesh, network_from(network), points, radius, size)};
+        *new_mesh = new cm_mesh{remesh(old_mesh->mesh, network_from(network),
+                                       points_from(n_centres, centres), radius, size)};
     });
 }
 

@@ -13,7 +13,7 @@ void require(bool condition, const std::string& what) {
         throw MeshError("the mesh is not valid: " + what);
 }
 
-void check_areas(const SplitMesh& mesh, const Rectangle& rectangle) {
+void check_areas(const SplitMesh& mesh, const Domain& domain) {
     double total = 0.0;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
         const Triangle& cell = mesh.cells[c];
@@ -21,8 +21,8 @@ void check_areas(const SplitMesh& mesh, const Rectangle& rectangle) {
         require(area > 0.0, "cell " + std::to_string(c + 1) + " has no positive area");
         total += area;
     }
-    require(std::abs(total - rectangle.area()) <= 1e-12 * rectangle.area(),
-            "the cells do not cover the rectangle exactly once");
+    require(std::abs(total - domain.area()) <= 1e-12 * domain.area(),
+            "the cells do not cover the body exactly once");
 }
 
 // Every face lies between cells that have its nodes, in opposite order.
@@ -50,13 +50,13 @@ void check_faces(const SplitMesh& mesh) {
     }
 }
 
-// Cutting along a graph with E edges and V points inside the rectangle changes the Euler
+// Cutting along a graph with E edges and V points inside the body changes the Euler
 // characteristic nodes - faces + cells from 1 to 1 + E - V, whatever the graph's form: a point
 // inside where d edges meet becomes d nodes, one on the boundary d + 1, and each edge becomes two.
-void check_euler(const SplitMesh& mesh, const Rectangle& rectangle) {
+void check_euler(const SplitMesh& mesh, const Domain& domain) {
     int inside = 0;
     for (const FracturePoint& point : mesh.points)
-        inside += rectangle.depth(point.xy) > 0.0;
+        inside += domain.depth(point.xy) > 0.0;
     const int expected = 1 + static_cast<int>(mesh.fracture_cells.size()) - inside;
     const int found = static_cast<int>(mesh.xy.size()) - static_cast<int>(mesh.faces.size()) +
                       static_cast<int>(mesh.cells.size());
@@ -83,8 +83,11 @@ void check_sides(const SplitMesh& mesh) {
         require(mesh.points[tip.point].copies == 1, "a free tip was split");
 }
 
-// Length of the part of a segment inside the rectangle.
-double length_inside(const Segment& segment, const Rectangle& r) {
+// Length of the part of a segment inside the body; only rectangles are left by segments.
+double length_inside(const Segment& segment, const Domain& domain) {
+    if (!domain.is_rectangle())
+        return distance(segment.end[0], segment.end[1]);
+    const Rectangle& r = domain.box();
     double t_in = 0.0, t_out = 1.0;
     const Vec2 a = segment.end[0], d = segment.end[1] - segment.end[0];
     const auto keep = [&](double start, double speed, double low, double high) {
@@ -104,19 +107,19 @@ double length_inside(const Segment& segment, const Rectangle& r) {
 
 } // namespace
 
-void check_mesh(const SplitMesh& mesh, const Rectangle& rectangle) {
-    check_areas(mesh, rectangle);
+void check_mesh(const SplitMesh& mesh, const Domain& domain) {
+    check_areas(mesh, domain);
     check_faces(mesh);
-    check_euler(mesh, rectangle);
+    check_euler(mesh, domain);
     check_sides(mesh);
 }
 
 void check_fracture_length(const std::vector<FractureCell>& cells, const std::vector<Vec2>& xy,
-                           const Network& network, const Rectangle& rectangle,
+                           const Network& network, const Domain& domain,
                            const Tolerances& tolerances) {
     std::vector<double> wanted(network.size(), 0.0), found(network.size(), 0.0);
     for (const Segment& segment : segments_of(network))
-        wanted[segment.fracture] += length_inside(segment, rectangle);
+        wanted[segment.fracture] += length_inside(segment, domain);
     for (const FractureCell& cell : cells)
         found[cell.fracture] += distance(xy[cell.node[0]], xy[cell.node[1]]);
     // Points within the tolerance of each other or of the boundary have been made one.

@@ -8,11 +8,11 @@
 namespace cpp_mesh {
 
 // Throws MeshError that says what is wrong: areas, neighbours, Euler characteristic, sides.
-void check_mesh(const SplitMesh& mesh, const Rectangle& rectangle);
+void check_mesh(const SplitMesh& mesh, const Domain& domain);
 
-// The fractures in the mesh are as long as the part of the polylines inside the rectangle.
+// The fractures in the mesh are as long as the part of the polylines inside the body.
 void check_fracture_length(const std::vector<FractureCell>& cells, const std::vector<Vec2>& xy,
-                           const Network& network, const Rectangle& rectangle,
+                           const Network& network, const Domain& domain,
                            const Tolerances& tolerances);
 
 } // namespace cpp_mesh

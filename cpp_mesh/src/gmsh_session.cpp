@@ -90,9 +90,14 @@ private:
         std::vector<int> embedded;
         for (const auto& edge : region_.embedded)
             embedded.push_back(line(edge[0], edge[1]));
+        std::vector<int> points;
+        for (int node : region_.points)
+            points.push_back(point(node));
         gmsh::model::geo::synchronize();
         if (!embedded.empty())
             gmsh::model::mesh::embed(1, embedded, 2, surface_);
+        if (!points.empty())
+            gmsh::model::mesh::embed(0, points, 2, surface_);
     }
 
     void collect_nodes() {

@@ -12,10 +12,12 @@
 namespace cpp_mesh {
 
 // What to triangulate: loops of nodes, the first counter-clockwise around the region, the others
-// around its holes, and edges inside that triangles must conform to. All edges stay as they are.
+// around its holes, and edges and points inside that triangles must conform to. All edges stay as
+// they are.
 struct Region {
     std::vector<std::vector<int>> loops;
     std::vector<std::array<int, 2>> embedded;
+    std::vector<int> points;
 };
 
 class GmshSession {

@@ -16,14 +16,16 @@ struct Cut {
 
 class GraphBuilder {
 public:
-    GraphBuilder(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,
-                 const Tolerances& tolerances)
-        : segments_(segments), rectangle_(rectangle), clip_(clip), tolerances_(tolerances),
-          cuts_(segments.size()) {}
+    GraphBuilder(const std::vector<Segment>& segments, const std::vector<Vec2>& fixed_points,
+                 const Domain& domain, bool clip, const Tolerances& tolerances)
+        : segments_(segments), fixed_points_(fixed_points), domain_(domain), box_(domain.box()),
+          clip_(clip), tolerances_(tolerances), cuts_(segments.size()) {}
 
     Graph build() {
         for (int i = 0; i < count(); ++i)
             place(i);
+        for (std::size_t k = 0; k < fixed_points_.size(); ++k)
+            place_fixed(static_cast<int>(k));
         for (int j = 0; j < count(); ++j)
             for (int i = 0; i < j; ++i)
                 intersect(i, j);
@@ -63,7 +65,7 @@ private:
             if (distance(at(k), p) <= tolerances_.same)
                 return k;
         p = snapped(p);
-        graph_.points.push_back({p, rectangle_.depth(p) == 0.0});
+        graph_.points.push_back({p, domain_.depth(p) == 0.0});
         return static_cast<int>(graph_.points.size()) - 1;
     }
 
@@ -80,8 +82,8 @@ private:
         if (clip_) {
             if (!clip(p, q))
                 return;
-        } else if (rectangle_.depth(p) < 0.0 || rectangle_.depth(q) < 0.0) {
-            const Vec2 outside = rectangle_.depth(p) < rectangle_.depth(q) ? a : b;
+        } else if (domain_.is_left_by(p, q)) {
+            const Vec2 outside = domain_.depth(p) < domain_.depth(q) ? a : b;
             throw MeshError(fracture_name(segment.fracture) + " leaves the domain" +
                             place_text(outside) + "; shorten it or enlarge the domain");
         }
@@ -90,9 +92,7 @@ private:
         check_depth(segment, l);
         if (k == l)
             return;
-        if (rectangle_.common_side(at(k), at(l)) != 0)
-            throw MeshError(fracture_name(segment.fracture) + " runs along the boundary" +
-                            place_text(at(k)) + "; a fracture may only end there");
+        check_path(segment, at(k), at(l));
         cuts_[i] = {{0.0, k}, {distance(at(k), at(l)), l}};
     }
 
@@ -109,10 +109,10 @@ private:
                 t_out = -1.0;
         };
         const Vec2 a = p, b = q;
-        cut(a.x - b.x, a.x - rectangle_.x_min);
-        cut(b.x - a.x, rectangle_.x_max - a.x);
-        cut(a.y - b.y, a.y - rectangle_.y_min);
-        cut(b.y - a.y, rectangle_.y_max - a.y);
+        cut(a.x - b.x, a.x - box_.x_min);
+        cut(b.x - a.x, box_.x_max - a.x);
+        cut(a.y - b.y, a.y - box_.y_min);
+        cut(b.y - a.y, box_.y_max - a.y);
         if ((t_out - t_in) * distance(a, b) <= tolerances_.same)
             return false;
         if (t_in > 0.0)
@@ -122,24 +122,81 @@ private:
         return true;
     }
 
-    // Points within the tolerance of a side lie on it.
-    Vec2 snapped(Vec2 p) const {
-        const auto snap = [this](double& coordinate, double side) {
-            if (std::abs(coordinate - side) <= tolerances_.same)
-                coordinate = side;
-        };
-        snap(p.x, rectangle_.x_min);
-        snap(p.x, rectangle_.x_max);
-        snap(p.y, rectangle_.y_min);
-        snap(p.y, rectangle_.y_max);
-        return p;
+    // A point within the tolerance of the boundary lies on it.
+    Vec2 snapped(Vec2 p) const { return domain_.snapped(p, tolerances_.same); }
+
+    void check_path(const Segment& segment, Vec2 a, Vec2 b) const {
+        if (domain_.common_side(a, b) != 0)
+            throw MeshError(fracture_name(segment.fracture) + " runs along the boundary" +
+                            place_text(a) + "; a fracture may only end there");
+        if (domain_.is_rectangle())
+            return;
+        const int corner = domain_.corner_beside(a, b);
+        if (corner < 0)
+            return;
+        const Vec2 p = domain_.corners()[corner];
+        const double gap = distance_to_segment(p, a, b);
+        if (gap < tolerances_.near_miss)
+            throw MeshError(fracture_name(segment.fracture) + " passes within " + number_text(gap) +
+                            " m of a corner of the boundary" + place_text(p) +
+                            "; let it end there or move it away");
+    }
+
+    // A point that is to become a node: of its own, or on the segments that it lies on.
+    void place_fixed(int number) {
+        const std::string name = fixed_point_name(number);
+        const Vec2 wanted = fixed_points_[number];
+        const double depth = domain_.depth(snapped(wanted));
+        if (!(depth >= 0.0))
+            throw MeshError(name + " lies outside the body" + place_text(wanted));
+        if (depth > 0.0 && depth < tolerances_.near_miss)
+            throw MeshError(name + " lies within " + number_text(depth) + " m of the boundary" +
+                            place_text(wanted) + "; put it on the boundary or farther away");
+        const int point = point_at(wanted);
+        graph_.fixed_points.push_back(point);
+        for (int other = 0; other < point; ++other)
+            if (distance(at(other), at(point)) < tolerances_.near_miss)
+                throw MeshError(name + " lies only " + number_text(distance(at(other), at(point))) +
+                                " m from " + point_name(other) + place_text(wanted) +
+                                "; put them at one place or farther apart");
+        for (int i = 0; i < count(); ++i) {
+            if (!is_placed(i) || start_or_stop(i, point))
+                continue;
+            const double gap = distance_to_segment(at(point), start(i), stop(i));
+            if (gap <= tolerances_.same)
+                add_cut(i, point);
+            else if (gap < tolerances_.near_miss)
+                throw MeshError(name + " lies within " + number_text(gap) + " m of " +
+                                fracture_name(segments_[i].fracture) + place_text(wanted) +
+                                "; put it on the fracture or farther away");
+        }
+    }
+
+    bool start_or_stop(int i, int point) const {
+        return cuts_[i][0].point == point || cuts_[i][1].point == point;
+    }
+
+    static std::string fixed_point_name(int number) {
+        return "fixed point " + std::to_string(number + 1);
+    }
+
+    // What a point belongs to: a fracture or a fixed point.
+    std::string point_name(int point) const {
+        for (int i = 0; i < count(); ++i)
+            for (const Cut& cut : cuts_[i])
+                if (cut.point == point)
+                    return fracture_name(segments_[i].fracture);
+        for (std::size_t k = 0; k < graph_.fixed_points.size(); ++k)
+            if (graph_.fixed_points[k] == point)
+                return fixed_point_name(static_cast<int>(k));
+        return "a point";
     }
 
     void check_depth(const Segment& segment, int point) const {
         if (segment.old_cell < 0 && !graph_.points[point].on_boundary &&
-            rectangle_.depth(at(point)) < tolerances_.near_miss)
+            domain_.depth(at(point)) < tolerances_.near_miss)
             throw MeshError(fracture_name(segment.fracture) + " comes within " +
-                            number_text(rectangle_.depth(at(point))) + " m of the boundary" +
+                            number_text(domain_.depth(at(point))) + " m of the boundary" +
                             place_text(at(point)) +
                             "; let it end on the boundary or farther away from it");
     }
@@ -269,46 +326,34 @@ private:
         const GraphEdge& edge = graph_.edges[e];
         if (!graph_.points[p].on_boundary || edge.old_cell >= 0)
             return;
-        const Vec2 d = unit(direction);
-        const double limit = std::sin(tolerances_.angle);
-        const Vec2 at_p = at(p);
-        const bool on_vertical = at_p.x == rectangle_.x_min || at_p.x == rectangle_.x_max;
-        const bool on_horizontal = at_p.y == rectangle_.y_min || at_p.y == rectangle_.y_max;
-        if ((on_vertical && std::abs(d.x) < limit) || (on_horizontal && std::abs(d.y) < limit))
+        if (domain_.angle_with_boundary(at(p), direction) < tolerances_.angle)
             throw MeshError(fracture_name(edge.fracture) +
-                            " meets the boundary at too small an angle" + place_text(at_p) +
+                            " meets the boundary at too small an angle" + place_text(at(p)) +
                             "; at least " + number_text(degrees(tolerances_.angle)) +
                             " degrees are needed");
     }
 
     // Points on the boundary must be apart from each other and from the corners.
     void check_boundary() const {
-        std::vector<Vec2> on_boundary;
-        for (const Vec2& corner : rectangle_.corners())
-            on_boundary.push_back(corner);
+        std::vector<Vec2> on_boundary = domain_.corners();
         for (int p = 0; p < static_cast<int>(graph_.points.size()); ++p) {
             if (!graph_.points[p].on_boundary)
                 continue;
             for (const Vec2& other : on_boundary) {
                 const double gap = distance(other, at(p));
                 if (gap > 0.0 && gap < tolerances_.near_miss)
-                    throw MeshError(fracture_name(fracture_at(p)) + " meets the boundary only " +
-                                    number_text(gap) + " m from a corner or another fracture" +
-                                    place_text(at(p)) + "; move its end");
+                    throw MeshError(point_name(p) + " meets the boundary only " + number_text(gap) +
+                                    " m from a corner or another fracture" + place_text(at(p)) +
+                                    "; move its end");
             }
             on_boundary.push_back(at(p));
         }
     }
 
-    int fracture_at(int point) const {
-        for (const GraphEdge& edge : graph_.edges)
-            if (edge.point[0] == point || edge.point[1] == point)
-                return edge.fracture;
-        return -1;
-    }
-
     const std::vector<Segment>& segments_;
-    const Rectangle rectangle_;
+    const std::vector<Vec2>& fixed_points_;
+    const Domain& domain_;
+    const Rectangle box_;
     const bool clip_;
     const Tolerances tolerances_;
     std::vector<std::vector<Cut>> cuts_; // by segment; the first two are its ends
@@ -317,9 +362,9 @@ private:
 
 } // namespace
 
-Graph build_graph(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,
-                  const Tolerances& tolerances) {
-    return GraphBuilder(segments, rectangle, clip, tolerances).build();
+Graph build_graph(const std::vector<Segment>& segments, const std::vector<Vec2>& fixed_points,
+                  const Domain& domain, bool clip, const Tolerances& tolerances) {
+    return GraphBuilder(segments, fixed_points, domain, clip, tolerances).build();
 }
 
 } // namespace cpp_mesh

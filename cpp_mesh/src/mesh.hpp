@@ -4,6 +4,7 @@
 
 #include "network.hpp"
 #include "plane_mesh.hpp"
+#include "rosette.hpp"
 #include "size_field.hpp"
 #include "split_mesh.hpp"
 
@@ -13,12 +14,13 @@
 namespace cpp_mesh {
 
 struct Specification {
-    Rectangle rectangle;
+    Domain domain;
     double size_fracture = 0.0;
     double size_boundary = 0.0;
     bool is_window = false;
     int rosette_sectors = 0;
-    double rosette_radius = 0.0;
+    RosetteRadii rosette_radii;
+    std::vector<Vec2> fixed_points; // become nodes
 };
 
 // How a remeshed mesh covers the one before.
@@ -38,7 +40,7 @@ struct Mesh {
     std::optional<PatchMap> map; // only of a remeshed mesh
 };
 
-// A new mesh of the rectangle and the part of the network in it.
+// A new mesh of the body and the part of the network in it.
 Mesh create_mesh(const Specification& specification, const Network& network);
 
 // A mesh that differs from an old one only near the centres, where fractures have grown; new

@@ -3,6 +3,7 @@
 #ifndef CPP_MESH_NETWORK_HPP
 #define CPP_MESH_NETWORK_HPP
 
+#include "domain.hpp"
 #include "geometry.hpp"
 
 #include <array>
@@ -48,6 +49,7 @@ struct Graph {
     std::vector<GraphPoint> points;
     std::vector<GraphEdge> edges;
     std::vector<std::array<int, 2>> segment_points; // ends of each segment; -1 if it was dropped
+    std::vector<int> fixed_points;                  // the graph point of each fixed point
 };
 
 // Points nearer than `same` are one point; nearer than `near_miss` but not the same cannot be
@@ -65,9 +67,10 @@ std::vector<Segment> segments_of(const Network& network);
 // What has been added at the ends of fractures; everything else must be as it was.
 std::vector<Segment> grown_segments(const Network& before, const Network& after);
 
-// With `clip`, what lies outside the rectangle is dropped; else it is refused.
-Graph build_graph(const std::vector<Segment>& segments, const Rectangle& rectangle, bool clip,
-                  const Tolerances& tolerances);
+// With `clip`, what lies outside the rectangle is dropped; else it is refused. The fixed points
+// become points of the graph too, of their own or on the edges on which they lie.
+Graph build_graph(const std::vector<Segment>& segments, const std::vector<Vec2>& fixed_points,
+                  const Domain& domain, bool clip, const Tolerances& tolerances);
 
 } // namespace cpp_mesh
 

@@ -25,7 +25,7 @@ constexpr double replaced_share = 0.35;
 class Remesher {
 public:
     Remesher(const Mesh& old_mesh, const Network& network, double size)
-        : old_(old_mesh), rectangle_(old_mesh.specification.rectangle), size_(size),
+        : old_(old_mesh), rectangle_(old_mesh.specification.domain.box()), size_(size),
           tolerances_(tolerances_for(rectangle_, size)),
           edges_(old_.plane.cells, static_cast<int>(old_.plane.xy.size())),
           marked_(old_.plane.cells.size(), 0), xy_(old_.plane.xy) {
@@ -41,10 +41,10 @@ public:
         skeleton_ = divide_graph(graph_, node_of_point_, {}, 0, new_.size, xy_);
         mesh_patch();
         assemble();
-        check_fracture_length(new_.plane.fracture_cells, new_.plane.xy, new_.network, rectangle_,
-                              tolerances_);
-        new_.split = split(new_.plane, rectangle_);
-        check_mesh(new_.split, rectangle_);
+        check_fracture_length(new_.plane.fracture_cells, new_.plane.xy, new_.network,
+                              new_.specification.domain, tolerances_);
+        new_.split = split(new_.plane, new_.specification.domain);
+        check_mesh(new_.split, new_.specification.domain);
         return std::move(new_);
     }
 
@@ -62,7 +62,8 @@ private:
         }
         for (const Segment& segment : grown_segments(old_.network, new_.network))
             segments.push_back(segment);
-        graph_ = build_graph(segments, rectangle_, old_.specification.is_window, tolerances_);
+        graph_ = build_graph(segments, {}, old_.specification.domain, old_.specification.is_window,
+                             tolerances_);
         for (const GraphEdge& edge : graph_.edges)
             if (edge.old_cell < 0)
                 new_.size.add(
@@ -311,6 +312,10 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
         throw MeshError("the size of new cells and the radius of the patch must be positive");
     if (!old_mesh.plane.rosettes.empty())
         throw MeshError("a mesh with rosettes cannot be remeshed; make a new one");
+    if (!old_mesh.specification.domain.is_rectangle() ||
+        !old_mesh.specification.fixed_points.empty())
+        throw MeshError("only a mesh of a rectangle without fixed points can be remeshed in a "
+                        "patch; make a new one");
     return Remesher(old_mesh, network, size).run(centres, radius);
 }
 

@@ -21,8 +21,14 @@ double room_on_segment(double wanted, double segment_length, bool kink_is_gentle
 
 } // namespace
 
-std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Rectangle& rectangle,
-                                       double radius) {
+double RosetteRadii::wanted(int fracture, int end) const {
+    if (fracture < static_cast<int>(at_end.size()) && at_end[fracture][end] > 0.0)
+        return at_end[fracture][end];
+    return usual;
+}
+
+std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
+                                       const RosetteRadii& radii) {
     std::vector<std::vector<int>> star(graph.points.size());
     for (int e = 0; e < static_cast<int>(graph.edges.size()); ++e)
         for (int p : graph.edges[e].point)
@@ -37,7 +43,8 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Rectangle& rect
             const int tip = edge.point[end], foot = edge.point[1 - end];
             if (!is_tip(tip))
                 continue;
-            RosettePlan plan{tip, e, end, radius, unit(at(tip) - at(foot))};
+            RosettePlan plan{tip, e, end, radii.wanted(edge.fracture, end),
+                             unit(at(tip) - at(foot))};
             const double own_length = distance(at(tip), at(foot));
             if (is_tip(foot)) {
                 plan.radius = std::min(plan.radius, own_length / 3.0);
@@ -64,7 +71,10 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Rectangle& rect
             for (int other = 0; other < static_cast<int>(graph.points.size()); ++other)
                 if (other != tip && is_tip(other))
                     plan.radius = std::min(plan.radius, distance(at(tip), at(other)) / 3.0);
-            plan.radius = std::min(plan.radius, 0.5 * rectangle.depth(at(tip)));
+            for (int fixed : graph.fixed_points)
+                if (fixed != tip && star[fixed].empty())
+                    plan.radius = std::min(plan.radius, 0.5 * distance(at(tip), at(fixed)));
+            plan.radius = std::min(plan.radius, 0.5 * domain.depth(at(tip)));
             plans.push_back(plan);
         }
     }

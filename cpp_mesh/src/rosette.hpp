@@ -19,9 +19,18 @@ struct RosettePlan {
     Vec2 direction;      // ahead of the tip
 };
 
-// Free tips are points where a single edge ends inside the rectangle.
-std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Rectangle& rectangle,
-                                       double radius);
+// Radii wanted for both ends of each fracture; 0 or none given: the default.
+struct RosetteRadii {
+    double usual = 0.0;                        // [m]
+    std::vector<std::array<double, 2>> at_end; // by fracture: its start, its end
+
+    double wanted(int fracture, int end) const;
+};
+
+// Free tips are points where a single edge ends inside the body. Radii are made smaller where
+// something is near.
+std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
+                                       const RosetteRadii& radii);
 
 // The ring's sizes for the size field.
 SizeDisc rosette_disc(Vec2 tip, double radius, int sectors);

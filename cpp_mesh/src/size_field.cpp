@@ -20,15 +20,18 @@ constexpr int search_intervals = 32;
 
 } // namespace
 
-SizeField::SizeField(std::vector<SizeSource> sources, const Rectangle& rectangle, double size_far)
+SizeField::SizeField(std::vector<SizeSource> sources, const Domain& domain, double size_far)
     : sources_(std::move(sources)), largest_(size_far) {
     if (sources_.empty())
         return;
+    const Rectangle& rectangle = domain.box();
     double farthest = 0.0;
     for (int i = 0; i <= search_intervals; ++i) {
         for (int j = 0; j <= search_intervals; ++j) {
             const Vec2 p = {rectangle.x_min + rectangle.width() * i / search_intervals,
                             rectangle.y_min + rectangle.height() * j / search_intervals};
+            if (!domain.is_rectangle() && domain.depth(p) < 0.0)
+                continue;
             double nearest = std::numeric_limits<double>::max();
             for (const SizeSource& source : sources_)
                 nearest = std::min(nearest, distance_to_segment(p, source.a, source.b));

@@ -2,6 +2,7 @@
 #ifndef CPP_MESH_SIZE_FIELD_HPP
 #define CPP_MESH_SIZE_FIELD_HPP
 
+#include "domain.hpp"
 #include "geometry.hpp"
 
 #include <vector>
@@ -14,7 +15,8 @@ struct SizeSource {
     double size = 0.0;
 };
 
-// Cells have `size` within `radius` of the centre (a rosette) and grow away from it.
+// Cells have `size` within `radius` of the centre (a rosette, a short edge of the boundary) and
+// grow away from it.
 struct SizeDisc {
     Vec2 centre;
     double radius = 0.0;
@@ -24,11 +26,12 @@ struct SizeDisc {
 class SizeField {
 public:
     SizeField() = default;
-    // Grows from the sources to size_far at half the distance to the rectangle's farthest point.
-    SizeField(std::vector<SizeSource> sources, const Rectangle& rectangle, double size_far);
+    // Grows from the sources to size_far at half the distance to the body's farthest point.
+    SizeField(std::vector<SizeSource> sources, const Domain& domain, double size_far);
 
     double operator()(Vec2 p) const;
     void add(const SizeSource& source) { sources_.push_back(source); }
+    void add(const SizeDisc& disc) { discs_.push_back(disc); }
     void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
 
 private:

@@ -8,9 +8,8 @@ namespace {
 
 class Splitter {
 public:
-    Splitter(const PlaneMesh& plane, const Rectangle& rectangle)
-        : plane_(plane), rectangle_(rectangle),
-          edges_(plane.cells, static_cast<int>(plane.xy.size())),
+    Splitter(const PlaneMesh& plane, const Domain& domain)
+        : plane_(plane), domain_(domain), edges_(plane.cells, static_cast<int>(plane.xy.size())),
           point_of_node_(plane.xy.size(), -1) {}
 
     SplitMesh run() {
@@ -128,7 +127,7 @@ private:
                         if (plane_.cells[neighbour][l] == b)
                             mesh_.cell_faces[neighbour][l] = face_index;
                 } else {
-                    face.side = rectangle_.common_side(plane_.xy[a], plane_.xy[b]);
+                    face.side = domain_.common_side(plane_.xy[a], plane_.xy[b]);
                 }
                 mesh_.cell_faces[c][k] = face_index;
                 mesh_.faces.push_back(face);
@@ -136,7 +135,7 @@ private:
         }
     }
 
-    bool is_on_boundary(Vec2 p) const { return rectangle_.depth(p) == 0.0; }
+    bool is_on_boundary(Vec2 p) const { return domain_.depth(p) == 0.0; }
 
     // Where a polyline begins or ends, or is cut by the boundary, its chain of cells breaks.
     bool starts_chain(int i) const { return i == 0 || !follow(i - 1, i); }
@@ -194,7 +193,7 @@ private:
     }
 
     const PlaneMesh& plane_;
-    const Rectangle& rectangle_;
+    const Domain& domain_;
     const EdgeTable edges_;
     std::vector<int> point_of_node_;
     SplitMesh mesh_;
@@ -202,8 +201,8 @@ private:
 
 } // namespace
 
-SplitMesh split(const PlaneMesh& plane, const Rectangle& rectangle) {
-    return Splitter(plane, rectangle).run();
+SplitMesh split(const PlaneMesh& plane, const Domain& domain) {
+    return Splitter(plane, domain).run();
 }
 
 } // namespace cpp_mesh

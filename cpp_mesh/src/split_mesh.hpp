@@ -2,6 +2,7 @@
 #ifndef CPP_MESH_SPLIT_MESH_HPP
 #define CPP_MESH_SPLIT_MESH_HPP
 
+#include "domain.hpp"
 #include "plane_mesh.hpp"
 
 #include <array>
@@ -15,7 +16,7 @@ enum class PointKind { interior = 0, tip = 1, boundary = 2, joint_t = 3, joint_x
 struct Face {
     std::array<int, 2> node = {-1, -1}; // counter-clockwise around the first cell
     std::array<int, 2> cell = {-1, -1};
-    int side = 0; // of the rectangle: 1 left, 2 right, 3 bottom, 4 top
+    int side = 0; // of the outer boundary, else 0
     int fracture_cell = -1;
 };
 
@@ -48,7 +49,7 @@ struct SplitMesh {
     std::vector<Tip> tips;
 };
 
-SplitMesh split(const PlaneMesh& plane, const Rectangle& rectangle);
+SplitMesh split(const PlaneMesh& plane, const Domain& domain);
 
 } // namespace cpp_mesh
 

@@ -41,7 +41,12 @@ struct TestNetwork {
 
 inline cm_spec rectangle_spec(double width, double height, double size_fracture,
                               double size_boundary) {
-    return {0.0, width, 0.0, height, size_fracture, size_boundary, 0, 0, 0.0};
+    cm_spec spec{};
+    spec.x_max = width;
+    spec.y_max = height;
+    spec.size_fracture = size_fracture;
+    spec.size_boundary = size_boundary;
+    return spec;
 }
 
 class ApiMesh {

@@ -81,7 +81,9 @@ void other_units(Checks& checks) {
     // Far from the origin and small: coordinates as in a map, a laboratory sample.
     for (const double scale : {1e-3, 1.0, 1e3}) {
         const double x0 = 500.0 * scale;
-        const cm_spec spec = {x0, x0 + scale, -scale, 0.0, 0.02 * scale, 0.2 * scale, 0, 0, 0.0};
+        cm_spec spec = rectangle_spec(x0 + scale, 0.0, 0.02 * scale, 0.2 * scale);
+        spec.x_min = x0;
+        spec.y_min = -scale;
         ApiMesh mesh;
         checks.is_true(mesh.create(spec, TestNetwork({{{x0 + 0.3 * scale, -0.4 * scale},
                                                        {x0 + 0.6 * scale, -0.5 * scale}}})),

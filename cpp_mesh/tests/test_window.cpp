@@ -5,7 +5,13 @@
 namespace {
 
 cm_spec window(double x_min, double x_max, double y_min, double y_max, double size, double radius) {
-    return {x_min, x_max, y_min, y_max, size, 4.0 * size, 1, radius > 0.0 ? 12 : 0, radius};
+    cm_spec spec = rectangle_spec(x_max, y_max, size, 4.0 * size);
+    spec.x_min = x_min;
+    spec.y_min = y_min;
+    spec.is_window = 1;
+    spec.rosette_sectors = radius > 0.0 ? 12 : 0;
+    spec.rosette_radius = radius;
+    return spec;
 }
 
 void cut_fractures(Checks& checks) {

@@ -14,7 +14,7 @@ module mesh_builder
    public :: mesh_spec_t, mesher_t
    public :: build_mesh, locate, remesh, transfer_mesher
 
-   !> What to mesh: a rectangle with the part of the network that lies in it.
+   !> What to mesh: a rectangle or a polygon with the fractures in it.
    type :: mesh_spec_t
       real(rk) :: x_min = 0.0_rk, x_max = 0.0_rk  !< [m]
       real(rk) :: y_min = 0.0_rk, y_max = 0.0_rk  !< [m]
@@ -23,6 +23,14 @@ module mesh_builder
       logical :: is_window = .false.  !< fractures may be cut by the edges
       integer(ik) :: rosette_sectors = 0  !< elements around each free tip; 0: no rosettes
       real(rk) :: rosette_radius = 0.0_rk  !< [m]; less where something is near
+      !> (2, n) corners of a polygon, counter-clockwise [m]; not allocated: the rectangle
+      real(rk), allocatable :: corners(:, :)
+      !> (n) side number (1 or more) of the edge from each corner to the next one
+      integer(ik), allocatable :: edge_side(:)
+      !> (2, n) places that become nodes: on the boundary, inside, on fractures [m]
+      real(rk), allocatable :: fixed_points(:, :)
+      !> (2, n_fractures) rosette radius at start and end [m]; 0: rosette_radius
+      real(rk), allocatable :: end_radius(:, :)
    end type mesh_spec_t
 
    !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
@@ -38,7 +46,7 @@ module mesh_builder
 
 contains
 
-   !> Mesh a rectangle and its fractures.
+   !> Mesh a body and its fractures.
    subroutine build_mesh(spec, network, mesher, mesh, error)
       type(mesh_spec_t), intent(in) :: spec
       type(network_t), intent(in) :: network
@@ -47,12 +55,30 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(cm_spec_t) :: c_spec
       type(cm_network_t) :: c_network
+      type(mesh_spec_t), target :: kept
       integer(ik), allocatable, target :: first(:)
       real(rk), allocatable, target :: xy(:, :), s_start(:)
 
       call destroy_mesher(mesher)
       call prepare_network(network, first, xy, s_start, c_network, error)
       if (allocated(error)) return
+      kept = spec
+      call prepare_spec(kept, c_network%n_fractures, c_spec, error)
+      if (allocated(error)) return
+      if (cm_create(c_spec, c_network, mesher%handle) /= 0) then
+         call raise_library_error(error, "build_mesh")
+         return
+      end if
+      call copy_mesh(mesher, mesh, error)
+   end subroutine build_mesh
+
+   !> The specification as C sees it; the structure points to its arrays.
+   subroutine prepare_spec(spec, n_fractures, c_spec, error)
+      type(mesh_spec_t), intent(in), target :: spec
+      integer(ik), intent(in) :: n_fractures
+      type(cm_spec_t), intent(out) :: c_spec
+      type(error_t), allocatable, intent(out) :: error
+
       c_spec%x_min = spec%x_min
       c_spec%x_max = spec%x_max
       c_spec%y_min = spec%y_min
@@ -62,12 +88,36 @@ contains
       c_spec%is_window = merge(1_ik, 0_ik, spec%is_window)
       c_spec%rosette_sectors = spec%rosette_sectors
       c_spec%rosette_radius = spec%rosette_radius
-      if (cm_create(c_spec, c_network, mesher%handle) /= 0) then
-         call raise_library_error(error, "build_mesh")
-         return
+      if (allocated(spec%corners)) then
+         if (.not. allocated(spec%edge_side)) then
+            call raise_error(error, "mesh_builder", "the edges of the polygon have no sides")
+            return
+         end if
+         if (ubound(spec%corners, 1) /= 2 .or. &
+             ubound(spec%corners, 2) /= ubound(spec%edge_side, 1)) then
+            call raise_error(error, "mesh_builder", "corners and sides do not fit each other")
+            return
+         end if
+         c_spec%n_corners = ubound(spec%corners, 2)
+         c_spec%corners = c_loc(spec%corners)
+         c_spec%edge_side = c_loc(spec%edge_side)
       end if
-      call copy_mesh(mesher, mesh, error)
-   end subroutine build_mesh
+      if (allocated(spec%fixed_points)) then
+         if (ubound(spec%fixed_points, 1) /= 2) then
+            call raise_error(error, "mesh_builder", "a fixed point has an x and a y")
+            return
+         end if
+         c_spec%n_fixed = ubound(spec%fixed_points, 2)
+         if (c_spec%n_fixed > 0) c_spec%fixed = c_loc(spec%fixed_points)
+      end if
+      if (allocated(spec%end_radius)) then
+         if (ubound(spec%end_radius, 1) /= 2 .or. ubound(spec%end_radius, 2) /= n_fractures) then
+            call raise_error(error, "mesh_builder", "every fracture has two rosette radii")
+            return
+         end if
+         if (n_fractures > 0) c_spec%end_radius = c_loc(spec%end_radius)
+      end if
+   end subroutine prepare_spec
 
    !> A mesh that differs from an old one only near the given centres, where fractures have grown.
    !! The old mesher stays as it is.

@@ -24,6 +24,12 @@ module mesh_c_binding
       integer(c_int32_t) :: is_window
       integer(c_int32_t) :: rosette_sectors
       real(c_double) :: rosette_radius
+      integer(c_int32_t) :: n_corners = 0
+      type(c_ptr) :: corners = c_null_ptr
+      type(c_ptr) :: edge_side = c_null_ptr
+      integer(c_int32_t) :: n_fixed = 0
+      type(c_ptr) :: fixed = c_null_ptr
+      type(c_ptr) :: end_radius = c_null_ptr
    end type cm_spec_t
 
    !> Sizes of the arrays below.

@@ -19,7 +19,8 @@ module mesh_types
    integer(ik), parameter :: point_joint_x = 4  !< two fractures cross (or more cells meet)
    integer(ik), parameter :: point_corner = 5  !< ends of two fractures meet (V)
 
-   integer(ik), parameter :: side_count = 4  !< of a rectangle: 1 left, 2 right, 3 bottom, 4 top
+   !> Sides of a rectangle: 1 left, 2 right, 3 bottom, 4 top; a polygon has the sides given for it.
+   integer(ik), parameter :: side_count = 4
 
    !> Fractures as polylines.
    type :: network_t
@@ -64,7 +65,7 @@ module mesh_types
       integer(ik), allocatable :: face_nodes(:, :)  !< (2, n_faces)
       !> (2, n_faces); the second is 0 on boundary and fracture faces
       integer(ik), allocatable :: face_cells(:, :)
-      integer(ik), allocatable :: face_side(:)  !< (n_faces) outer boundary side 1..4; 0 elsewhere
+      integer(ik), allocatable :: face_side(:)  !< (n_faces) side of the outer boundary; 0 elsewhere
       integer(ik), allocatable :: face_fracture_cell(:)  !< (n_faces) fracture cell; 0 elsewhere
       type(fracture_mesh_t) :: fracture
    end type mesh_t

@@ -24,19 +24,30 @@ typedef struct {
     const double* s_start; /* [n_fractures] arc length of the first vertex */
 } cm_network;
 
-/* What to mesh: a rectangle, cut by the part of the network that lies in it. Cell sizes grow
-   linearly from size_fracture at the fractures to size_boundary, reached at half the distance to
-   the point of the rectangle farthest from them, so that most of the boundary has it. With
-   is_window, fractures may be cut by the edges (those ends become boundary points), and every free
-   tip gets a rosette of `rosette_sectors` triangles with radius `rosette_radius` (made smaller
-   where another fracture, tip, kink or edge is near); without it a fracture that leaves the
-   rectangle is refused. */
+/* What to mesh: a rectangle or a polygon, cut by the fractures. Cell sizes grow linearly from
+   size_fracture at the fractures to size_boundary, reached at half the distance to the point of the
+   body farthest from them, so that most of the boundary has it. With is_window the body is a
+   rectangle and fractures may be cut by its edges (those ends become boundary points); without it a
+   fracture that leaves the body is refused. With rosette_sectors, every free tip gets a rosette of
+   so many triangles with radius `rosette_radius` (made smaller where another fracture, tip, kink,
+   fixed point or edge is near); an end on the boundary is no free tip.
+
+   A polygon may have re-entrant corners. Its edges are divided as the sizes ask; one shorter than
+   that stays whole, and the cells grow from its length inwards: a disc is a polygon of many edges
+   with the same side number. */
 typedef struct {
     double x_min, x_max, y_min, y_max;
     double size_fracture, size_boundary;
     int32_t is_window;
     int32_t rosette_sectors; /* 0: no rosettes */
     double rosette_radius;
+    int32_t n_corners;        /* 0: the rectangle, whose sides are 1 left 2 right 3 bottom 4 top */
+    const double* corners;    /* [n_corners][2] counter-clockwise; x_min .. y_max are not used */
+    const int32_t* edge_side; /* [n_corners] 1 or more, of the edge from each corner to the next */
+    int32_t n_fixed;          /* places that become nodes: on the boundary, inside, on fractures */
+    const double* fixed;      /* [n_fixed][2] */
+    const double* end_radius; /* [n_fractures][2] rosette radius at start and end; 0: the usual one;
+                                 NULL: all have the usual one */
 } cm_spec;
 
 typedef struct {
@@ -51,7 +62,7 @@ typedef struct {
     int32_t* cell_faces;         /* [n_cells][3] face k joins nodes k and (k+1)%3 */
     int32_t* face_nodes;         /* [n_faces][2] */
     int32_t* face_cells;         /* [n_faces][2] */
-    int32_t* face_side;          /* [n_faces] 1 left, 2 right, 3 bottom, 4 top, 0 elsewhere */
+    int32_t* face_side;          /* [n_faces] side of the outer boundary, 0 elsewhere */
     int32_t* face_fracture_cell; /* [n_faces] */
     int32_t* fcell_fracture;     /* [n_fracture_cells] */
     int32_t* fcell_points;       /* [n_fracture_cells][2] */
