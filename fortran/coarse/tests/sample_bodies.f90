@@ -1,0 +1,172 @@
+!> Small bodies, fracture networks and helpers for the tests of the coarse level and of both levels.
+module sample_bodies
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_law_t
+   use coarse_matrix, only: matrix_t
+   use coarse_regions, only: face_length
+   use coarse_state, only: fracture_cells_t
+   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_types, only: mesh_t, network_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: cell_centre, dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body
+   public :: scattered, shake, straight_network, uniform_cells
+
+contains
+
+   !> The rock and the fluid of Paper C; sides without traction, closed to flow.
+   pure function porous_body() result(scene)
+      type(scene_t) :: scene
+
+      scene%material%young = 40.0e9_rk
+      scene%material%poisson = 0.2_rk
+      scene%material%biot = 0.8_rk
+      scene%material%porosity = 0.01_rk
+      scene%material%permeability_xx = 5.0e-20_rk
+      scene%material%permeability_yy = 5.0e-20_rk
+      scene%fluid%compressibility = 4.0e-10_rk
+      scene%fluid%viscosity = 1.0e-4_rk
+      allocate (scene%fractures(0), scene%injections(0), scene%probes(0))
+   end function porous_body
+
+   !> Let a uniform total stress act on all sides.
+   pure subroutine load_sides(scene, stress)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in) :: stress(3)  !< xx, yy, xy [Pa]
+
+      scene%sides(1)%traction = -stress([1, 3])
+      scene%sides(2)%traction = stress([1, 3])
+      scene%sides(3)%traction = -stress([3, 2])
+      scene%sides(4)%traction = stress([3, 2])
+   end subroutine load_sides
+
+   !> Straight fractures: `ends(:, :, f)` are the two ends of fracture f [m].
+   pure function straight_network(ends) result(network)
+      real(rk), intent(in) :: ends(:, :, :)
+      type(network_t) :: network
+      integer(ik) :: f, n
+
+      n = size(ends, 3)
+      allocate (network%first, source=[(1_ik + 2_ik*f, f=0, n)])
+      allocate (network%xy, source=reshape(ends, [2_ik, 2_ik*n]))
+      allocate (network%s_start(n), source=0.0_rk)
+   end function straight_network
+
+   !> Mesh of [0, 2] x [0, 2] m.
+   subroutine mesh_square(checks, network, size_fracture, size_boundary, mesher, mesh)
+      type(checks_t), intent(inout) :: checks
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: size_fracture, size_boundary  !< [m]
+      type(mesher_t), intent(inout) :: mesher
+      type(mesh_t), intent(out) :: mesh
+      type(error_t), allocatable :: error
+
+      call build_mesh(mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
+                                  size_boundary=size_boundary), network, mesher, mesh, error)
+      call checks%no_error(error, "mesh of the square")
+   end subroutine mesh_square
+
+   !> Move the inner nodes to and fro by a fifth of their shortest edge, so that no two cells are
+   !! alike.
+   pure subroutine shake(mesh)
+      type(mesh_t), intent(inout) :: mesh
+      real(rk), parameter :: share = 0.2_rk
+      real(rk), allocatable :: shortest(:)
+      integer(ik) :: f, v
+
+      allocate (shortest(mesh%n_nodes), source=huge(1.0_rk))
+      do f = 1, mesh%n_faces
+         associate (nodes => mesh%face_nodes(:, f))
+            shortest(nodes) = min(shortest(nodes), face_length(mesh, f))
+         end associate
+      end do
+      do f = 1, mesh%n_faces
+         if (mesh%face_cells(2, f) == 0) shortest(mesh%face_nodes(:, f)) = 0.0_rk
+      end do
+      do v = 1, mesh%n_nodes
+         mesh%xy(:, v) = mesh%xy(:, v) + share*shortest(v)*[cos(2.4_rk*v), sin(2.4_rk*v)]
+      end do
+   end subroutine shake
+
+   pure function cell_centre(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function cell_centre
+
+   !> Unknowns of the coarse level in a linear field: u = translation + gradient*x in all cells, no
+   !! jumps, pressure p0 + slope*x.
+   pure function linear_unknowns(mesh, translation, gradient, p0, slope) result(unknowns)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: translation(2)  !< [m]
+      real(rk), intent(in) :: gradient(2, 2)  !< d u_i / d x_j [-]
+      real(rk), intent(in) :: p0  !< [Pa]
+      real(rk), intent(in) :: slope(2)  !< [Pa/m]
+      real(rk), allocatable :: unknowns(:, :)  !< (3, n_blocks)
+      integer(ik) :: c, i
+      real(rk) :: centre(2)
+
+      allocate (unknowns(3, mesh%n_cells + 2*mesh%fracture%n_cells), source=0.0_rk)
+      do c = 1, mesh%n_cells
+         centre = cell_centre(mesh, c)
+         unknowns(1:2, c) = translation + matmul(gradient, centre)
+         unknowns(3, c) = p0 + dot_product(slope, centre)
+      end do
+      do i = 1, mesh%fracture%n_cells
+         associate (points => mesh%fracture%point_xy(:, mesh%fracture%cell_points(:, i)), &
+                    at => mesh%n_cells + 2*i)
+            unknowns(3, at - 1:at) = p0 + dot_product(slope, 0.5_rk*sum(points, dim=2))
+         end associate
+      end do
+   end function linear_unknowns
+
+   !> Numbers between -1 and 1 without any pattern, the same in every run.
+   pure function scattered(n) result(x)
+      integer(ik), intent(in) :: n
+      real(rk) :: x(n)
+      integer(ik) :: i
+
+      x = [(sin(real(i, rk)**2 + 0.5_rk*i), i=1, n)]
+   end function scattered
+
+   !> One law for all fracture cells.
+   pure function uniform_cells(mesh, law, aperture) result(cells)
+      type(mesh_t), intent(in) :: mesh
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(fracture_cells_t) :: cells
+
+      associate (n => mesh%fracture%n_cells)
+         allocate (cells%law(n), source=law)
+         allocate (cells%residual_aperture(n), source=aperture)
+         allocate (cells%injection(n), source=0.0_rk)
+      end associate
+   end function uniform_cells
+
+   !> elastic + dt*flow as a full matrix.
+   pure function dense_matrix(matrix, dt) result(full)
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), allocatable :: full(:, :)
+      integer(ik) :: col, entry, row
+      real(rk) :: block(3, 3)
+
+      allocate (full(3*matrix%n_blocks, 3*matrix%n_blocks), source=0.0_rk)
+      do row = 1, matrix%n_blocks
+         do entry = matrix%row_first(row), matrix%row_first(row + 1) - 1
+            col = matrix%col(entry)
+            block = matrix%elastic(:, :, entry)
+            block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
+            full(3*row - 2:3*row, 3*col - 2:3*col) = block
+            full(3*col - 2:3*col, 3*row - 2:3*row) = transpose(block)
+         end do
+      end do
+   end function dense_matrix
+
+end module sample_bodies
