@@ -99,7 +99,8 @@ install_packages() {
     fi
     find_missing_packages
     if ((${#missing_packages[@]} > 0)); then
-        fail "$exit_environment" "apt is done, and these are still missing: ${missing_packages[*]%%|*}"
+        fail "$exit_environment" \
+            "apt is done, and these are still missing: ${missing_packages[*]%%|*}"
     fi
 }
 
@@ -142,7 +143,9 @@ python_is_ready() {
 record_python() {
     local interpreter
     interpreter=$(readlink -f -- "$venv_python") &&
-        { printf '%s\n%s\n' "$root" "$interpreter" && cat "$root/requirements.txt"; } >"$venv_record"
+        {
+            printf '%s\n%s\n' "$root" "$interpreter" && cat "$root/requirements.txt"
+        } >"$venv_record"
 }
 
 # The requirements that .venv does not hold, one per line; all of them if it cannot say.
