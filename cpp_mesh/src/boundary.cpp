@@ -8,6 +8,9 @@ namespace {
 // are due to corners.
 constexpr double short_share = 0.6;
 
+// Growth of cell sizes per distance from a short edge: as fast as good shapes allow.
+constexpr double growth_inwards = 0.6;
+
 // The node of each corner: that of a graph point there, or a new one.
 std::vector<int> nodes_of_corners(const Domain& domain, const Graph& graph,
                                   const std::vector<int>& on_boundary, std::vector<Vec2>& xy) {
@@ -76,7 +79,7 @@ void limit_sizes_at_short_edges(const Domain& domain, const std::vector<int>& lo
         const Vec2 middle = 0.5 * (a + b);
         const double edge = distance(a, b);
         if (edge < short_share * size(middle))
-            discs.push_back({middle, 0.5 * edge, edge});
+            discs.push_back({middle, 0.5 * edge, edge, growth_inwards});
     }
     for (const SizeDisc& disc : discs)
         size.add(disc);

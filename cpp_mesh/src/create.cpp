@@ -41,6 +41,13 @@ void check_network(const Network& network) {
                 throw MeshError(fracture_name(f) + " has a vertex that is not a number");
 }
 
+// Meshes with a singular tip, a polygon or fixed points are those of finite elements on whole
+// bodies.
+bool is_for_elements(const Specification& spec) {
+    return !spec.is_window &&
+           (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
+}
+
 // Nodes of the fixed points inside the body that lie on no fracture.
 std::vector<int> points_of_their_own(const Graph& graph, const std::vector<int>& node_of_point) {
     std::set<int> on_fracture;
@@ -71,6 +78,9 @@ Mesh create_mesh(const Specification& specification, const Network& network) {
         sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
                            specification.size_fracture});
     mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
+
+    if (is_for_elements(specification))
+        mesh.size.make_scale_free();
 
     std::vector<RosettePlan> plans;
     if (specification.rosette_sectors > 0)

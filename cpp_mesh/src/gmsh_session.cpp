@@ -54,7 +54,7 @@ public:
     std::vector<Triangle> run() {
         build_model();
         gmsh::model::mesh::setSizeCallback([this](int, int, double x, double y, double, double) {
-            return size_(scaling_.original({x, y})) * scaling_.factor;
+            return rounded_size(size_(scaling_.original({x, y})) * scaling_.factor);
         });
         gmsh::model::mesh::generate(2);
         collect_nodes();
@@ -62,10 +62,23 @@ public:
     }
 
 private:
+    // Rounding to fewer digits removes the rounding errors of the given places and of the sizes,
+    // which differ between units of length, so that gmsh decides alike. Only gmsh sees it.
+    Vec2 rounded_place(Vec2 p) const {
+        if (!size_.is_scale_free())
+            return p;
+        constexpr double steps = 68719476736.0; // 2^36 in the region's extent
+        return {std::round(p.x * steps) / steps, std::round(p.y * steps) / steps};
+    }
+
+    double rounded_size(double size) const {
+        return size_.is_scale_free() ? static_cast<float>(size) : size;
+    }
+
     int point(int node) {
         const auto [entry, is_new] = point_of_node_.try_emplace(node, 0);
         if (is_new) {
-            const Vec2 p = scaling_.scaled(xy_[node]);
+            const Vec2 p = rounded_place(scaling_.scaled(xy_[node]));
             entry->second = gmsh::model::geo::addPoint(p.x, p.y, 0.0);
             node_of_point_.push_back(node);
         }

@@ -11,6 +11,9 @@ constexpr double pi = 3.14159265358979323846;
 // Turns at the last kink by up to this leave room for the ring right next to the kink.
 constexpr double largest_turn = 75.0 * pi / 180.0;
 
+// Growth of cell sizes per distance outside a ring, whose triangles are smaller than those around.
+constexpr double growth_around = 0.3;
+
 // Room for the ring beside its own last segment. The crack may be a ring radius long, else the rest
 // of the segment must hold a cell of about the same length.
 double room_on_segment(double wanted, double segment_length, bool kink_is_gentle) {
@@ -82,7 +85,7 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
 }
 
 SizeDisc rosette_disc(Vec2 tip, double radius, int sectors) {
-    return {tip, radius, 2.0 * radius * std::sin(pi / sectors)};
+    return {tip, radius, 2.0 * radius * std::sin(pi / sectors), growth_around};
 }
 
 std::vector<int> add_ring(Vec2 tip, Vec2 direction, double radius, int sectors, int crack_node,

@@ -6,14 +6,13 @@ namespace cpp_mesh {
 
 namespace {
 
-// Growth of cell sizes per distance outside a rosette, whose elements are smaller than those
-// around.
-constexpr double disc_slope = 0.3;
-
 // Share of the distance to the farthest point at which cells have grown to their full size: the
 // farthest point is a corner, and most of the boundary, which is nearer, should have cells of full
 // size too.
 constexpr double reach = 0.5;
+
+// Numbers this near to a tie are on one side of it whatever their rounding errors.
+constexpr double tie_margin = 1e-9;
 
 // The farthest point is looked for on a grid: sizes depend on it only weakly.
 constexpr int search_intervals = 32;
@@ -50,7 +49,7 @@ double SizeField::operator()(Vec2 p) const {
         size = std::min(size, source.size + slope_ * distance_to_segment(p, source.a, source.b));
     for (const SizeDisc& disc : discs_)
         size = std::min(
-            size, disc.size + disc_slope * std::max(0.0, distance(p, disc.centre) - disc.radius));
+            size, disc.size + disc.slope * std::max(0.0, distance(p, disc.centre) - disc.radius));
     return size;
 }
 
@@ -59,8 +58,9 @@ std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
     double smallest_seen = size(a);
     for (int k = 1; k <= 8; ++k)
         smallest_seen = std::min(smallest_seen, size(along(a, b, 0.125 * k)));
-    const int n_samples =
-        static_cast<int>(std::clamp(std::ceil(4.0 * whole / smallest_seen), 16.0, 1024.0));
+    const double nudge = size.is_scale_free() ? tie_margin : 0.0;
+    const int n_samples = static_cast<int>(
+        std::clamp(std::ceil(4.0 * whole / smallest_seen * (1.0 - nudge)), 16.0, 1024.0));
     std::vector<double> count(n_samples + 1, 0.0); // cells from the start to the sample
     double previous = size(a), smallest = previous, largest = previous;
     for (int k = 1; k <= n_samples; ++k) {
@@ -70,7 +70,7 @@ std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
         largest = std::max(largest, here);
         previous = here;
     }
-    const int n = std::max(1, static_cast<int>(std::lround(count[n_samples])));
+    const int n = std::max(1, static_cast<int>(std::lround(count[n_samples] * (1.0 + nudge))));
     std::vector<double> t(n + 1);
     const bool is_uniform = largest - smallest <= 1e-9 * largest;
     int k = 0;

@@ -15,12 +15,12 @@ struct SizeSource {
     double size = 0.0;
 };
 
-// Cells have `size` within `radius` of the centre (a rosette, a short edge of the boundary) and
-// grow away from it.
+// Cells have `size` within `radius` of the centre and grow away from it by `slope` per distance.
 struct SizeDisc {
     Vec2 centre;
     double radius = 0.0;
     double size = 0.0;
+    double slope = 0.3;
 };
 
 class SizeField {
@@ -32,6 +32,10 @@ public:
     double operator()(Vec2 p) const;
     void add(const SizeSource& source) { sources_.push_back(source); }
     void add(const SizeDisc& disc) { discs_.push_back(disc); }
+    // Decisions must not depend on rounding errors: the same body in another unit of length is to
+    // get the same mesh.
+    void make_scale_free() { is_scale_free_ = true; }
+    bool is_scale_free() const { return is_scale_free_; }
     void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
 
 private:
@@ -39,6 +43,7 @@ private:
     std::vector<SizeDisc> discs_;
     double slope_ = 0.0;
     double largest_ = 0.0;
+    bool is_scale_free_ = false;
 };
 
 // Parameters 0 = t0 < ... < tn = 1 that divide the segment a-b into cells of the wanted size.
