@@ -13,7 +13,7 @@ module sample_bodies
    implicit none(type, external)
    private
 
-   public :: cell_centre, dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body
+   public :: boxes, cell_centre, dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body
    public :: scattered, shake, straight_network, uniform_cells
 
 contains
@@ -69,6 +69,70 @@ contains
                                   size_boundary=size_boundary), network, mesher, mesh, error)
       call checks%no_error(error, "mesh of the square")
    end subroutine mesh_square
+
+   !> [0, 2] x [0, 2] m as n by n boxes, each cut in two from its lower left to its upper right
+   !! corner: the body's lower right and upper left corners have one cell each.
+   pure function boxes(n) result(mesh)
+      integer(ik), intent(in) :: n
+      type(mesh_t) :: mesh
+      integer(ik) :: c, i, j, lower_left
+
+      mesh%n_nodes = (n + 1)**2
+      mesh%n_cells = 2*n**2
+      allocate (mesh%xy(2, mesh%n_nodes), mesh%cell_nodes(3, mesh%n_cells))
+      do j = 0, n
+         do i = 0, n
+            mesh%xy(:, j*(n + 1) + i + 1) = 2.0_rk*[i, j]/n
+         end do
+      end do
+      c = 0
+      do j = 0, n - 1
+         do i = 0, n - 1
+            lower_left = j*(n + 1) + i + 1
+            mesh%cell_nodes(:, c + 1) = lower_left + [0_ik, 1_ik, n + 2]
+            mesh%cell_nodes(:, c + 2) = lower_left + [0_ik, n + 2, n + 1]
+            c = c + 2
+         end do
+      end do
+      call find_faces(mesh)
+      allocate (mesh%fracture%cell_faces(2, 0), mesh%fracture%cell_points(2, 0))
+      allocate (mesh%fracture%point_xy(2, 0), mesh%fracture%point_kind(0))
+   end function boxes
+
+   !> Faces of cells, and the sides of the square on which they lie.
+   pure subroutine find_faces(mesh)
+      type(mesh_t), intent(inout) :: mesh
+      integer(ik) :: c, f, k, ends(2), nodes(2, 3*mesh%n_cells), cells(2, 3*mesh%n_cells)
+
+      allocate (mesh%cell_faces(3, mesh%n_cells))
+      mesh%n_faces = 0
+      do c = 1, mesh%n_cells
+         do k = 1, 3
+            ends = mesh%cell_nodes([k, mod(k, 3_ik) + 1], c)
+            do f = 1, mesh%n_faces
+               if (all(nodes(:, f) == ends(2:1:-1))) exit
+            end do
+            if (f > mesh%n_faces) then
+               mesh%n_faces = f
+               nodes(:, f) = ends
+               cells(:, f) = [c, 0_ik]
+            else
+               cells(2, f) = c
+            end if
+            mesh%cell_faces(k, c) = f
+         end do
+      end do
+      allocate (mesh%face_nodes, source=nodes(:, :mesh%n_faces))
+      allocate (mesh%face_cells, source=cells(:, :mesh%n_faces))
+      allocate (mesh%face_side(mesh%n_faces), mesh%face_fracture_cell(mesh%n_faces), source=0_ik)
+      do f = 1, mesh%n_faces
+         if (mesh%face_cells(2, f) > 0) cycle
+         associate (centre => 0.5_rk*sum(mesh%xy(:, mesh%face_nodes(:, f)), dim=2))
+            mesh%face_side(f) = minloc([centre(1), 2.0_rk - centre(1), centre(2), &
+                                        2.0_rk - centre(2)], dim=1)
+         end associate
+      end do
+   end subroutine find_faces
 
    !> Move the inner nodes to and fro by a fifth of their shortest edge, so that no two cells are
    !! alike.
