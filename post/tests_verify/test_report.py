@@ -1,0 +1,163 @@
+"""The files of the report, and the exit status."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from small_case import SmallCase, small_case
+from wingcrack_verify.cli import main
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> SmallCase:
+    return small_case(tmp_path, "absolute", "ratio", "l2_relative")
+
+
+def verify(case: SmallCase, *arguments: str) -> int:
+    (case.case / "check.toml").write_text(case.toml)
+    root = case.root
+    places = [
+        word
+        for name, folder in (
+            ("cases", "verification"),
+            ("build", "build"),
+            ("cache", "cache"),
+            ("report", "report"),
+        )
+        for word in (f"--{name}", str(root / folder))
+    ]
+    return main([*arguments, *places])
+
+
+def test_a_sound_case_gives_a_green_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = small_case(tmp_path)
+    assert verify(case) == 0
+    assert "8 passed, 0 known gap, 0 failed, 0 error; 3 runs" in capsys.readouterr().out
+    page = (case.root / "report" / "index.html").read_text()
+    assert '<div class="banner passed">' in page
+    record = json.loads((case.root / "report" / "report.json").read_text())
+    assert record["verdict"] == "passed"
+    assert record["counts"] == {"passed": 8, "known gap": 0, "failed": 0, "error": 0}
+    row = next(row for row in record["summary"] if row["quantity"] == "pressure at the end")
+    assert (row["error"], row["tolerance"]) == ("0.005 Pa", "0.02 Pa")
+    assert row["cpu_s"] == pytest.approx(0.2)
+    assert (case.root / "report" / "report.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def test_the_page_needs_nothing_else_and_its_links_lead_somewhere(case: SmallCase) -> None:
+    (case.case / "README.md").write_text("See [the scene](scene.nml) <script>alert(1)</script>.\n")
+    verify(case)
+    page = (case.root / "report" / "index.html").read_text()
+    assert not re.search(r"https?://", page)
+    assert "<script" not in page
+    assert all(source.startswith("data:") for source in re.findall(r'src="([^"]*)"', page))
+    targets = re.findall(r'href="([^"]*)"', page)
+    assert "../verification/parabola/scene.nml" in targets
+    for target in targets:
+        if target.startswith("#"):
+            assert f'id="{target[1:]}"' in page
+        else:
+            assert (case.root / "report" / target).exists()
+
+
+def test_the_report_says_what_the_errors_cost(case: SmallCase) -> None:
+    verify(case)
+    record = json.loads((case.root / "report" / "report.json").read_text())
+    (settings,) = record["settings"]
+    # size^2 |1 + x| over |2 x^2|: 1.7 times size^2, in all three runs
+    runs = [item["setting"] and item["setting"]["run"] for item in settings["targets"]]
+    assert runs == ["middle", "fine", None]
+    assert settings["default"]["run"] == "fine"
+    (order,) = next(
+        check["orders"] for check in record["cases"][0]["checks"] if check["quantity"] == "profile"
+    )
+    assert order["observed"] == pytest.approx(2.0)
+
+
+def test_the_readme_is_rendered(case: SmallCase) -> None:
+    verify(case)
+    page = (case.root / "report" / "index.html").read_text()
+    assert "<h3>Parabola</h3>" in page
+    assert "<td>2</td>" in page
+
+
+def test_a_failure_is_red_at_the_top_and_exits_with_1(
+    case: SmallCase, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case.toml = case.toml.replace("reference = 2.0", "reference = 3.0")
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert '<div class="banner failed">' in page
+    assert "FAILED  parabola: pressure at the end" in capsys.readouterr().out
+
+
+def test_a_broken_case_is_red_and_exits_with_1(case: SmallCase) -> None:
+    case.toml = "title = 3"
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert '<div class="banner error">' in page
+    assert "must be a text" in page
+
+
+def test_a_known_gap_is_said_and_not_passed(case: SmallCase) -> None:
+    case.toml = 'known_gap = "not built yet"\n' + case.toml
+    assert verify(case) == 0
+    record = json.loads((case.root / "report" / "report.json").read_text())
+    assert record["counts"]["passed"] == 0
+    page = (case.root / "report" / "index.html").read_text()
+    assert '<div class="banner known-gap">' in page
+    assert "not built yet" in page
+
+
+def test_an_infinite_error_is_still_json(case: SmallCase) -> None:
+    case.toml = case.toml.replace('column = "factor*x_m**2"', 'column = "-factor*x_m**2"')
+    assert verify(case) == 1
+    text = (case.root / "report" / "report.json").read_text()
+    assert "Infinity" not in text
+    assert "NaN" not in text
+
+
+def test_quick_leaves_the_long_cases_out(case: SmallCase) -> None:
+    case.toml = case.toml.replace("quick = true", "quick = false")
+    assert verify(case, "--quick") == 2
+    assert verify(case) == 0
+
+
+@pytest.mark.parametrize("arguments", [["no_such_case"], ["--jobs", "0"], ["--fast"]])
+def test_bad_usage_exits_with_2(
+    case: SmallCase, arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        status = verify(case, *arguments)
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else 1
+    assert status == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not (case.root / "report").exists()
+
+
+def test_without_a_solver_it_exits_with_3(case: SmallCase) -> None:
+    (case.root / "build" / "fortran" / "app" / "wingcrack-solver").unlink()
+    assert verify(case) == 3
+
+
+def test_pdf_pages_hold_the_words(case: SmallCase) -> None:
+    verify(case)
+    try:
+        done = subprocess.run(
+            ["pdftotext", "-layout", str(case.root / "report" / "report.pdf"), "-"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    except FileNotFoundError:
+        pytest.skip("pdftotext is not installed")
+    assert "Parabola" in done.stdout
+    assert "pressure half way" in done.stdout

@@ -1,0 +1,128 @@
+"""Stability trials: what counts as expected, and what is red."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from small_case import SmallCase, lines, small_case
+from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
+from wingcrack_verify.stability import StabilityReport
+
+_TOML = """\
+title = "Trials"
+source = "none"
+scene = "base.nml"
+mass_error_limit = 1.0e-8
+contact_residual_limit = 1.0e-9
+
+[[trial]]
+name = "base"
+expect = "converged"
+set = { "scene.name" = "good" }
+
+[[trial]]
+name = "impossible"
+expect = "refused"
+set = { "scene.name" = "refused" }
+
+[[map]]
+title = "a x b"
+set = { "scene.name" = "good" }
+x = { label = "a [-]", names = ["m.a"], values = [1.0, 2.0] }
+y = { label = "b [-]", names = ["m.b"], values = [1.0, 2.0, 3.0], multiples = { "m.c" = 5.0 } }
+"""
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> SmallCase:
+    made = small_case(tmp_path, "absolute")
+    folder = made.case.parent / "stability"
+    folder.mkdir()
+    (folder / "README.md").write_text("Trials.\n")
+    (folder / "base.nml").write_text("&scene\n  name = 'none'\n/\n")
+    (folder / "stability.toml").write_text(_TOML)
+    for name in ("good", "refused"):
+        (made.results / name).mkdir()
+        record(made, name)
+        history = lines("time_s,newton_iterations", ["0.0,2", "1.0,4", "2.0,3"])
+        (made.results / name / "history.csv").write_text(history)
+    made.ends_with("refused", "echo 'no storage' >&2; exit 2")
+    return made
+
+
+def record(case: SmallCase, name: str, **changes: object) -> None:
+    good = {
+        "status": "finished",
+        "cpu_s": 0.1,
+        "mass_error_relative": 1.0e-12,
+        "contact_residual": 1.0e-14,
+        "step_cuts": 1,
+    }
+    (case.results / name / "run.json").write_text(json.dumps(good | changes))
+
+
+def judged(case: SmallCase) -> StabilityReport:
+    return case.judge_all(("stability",)).stability[0]
+
+
+def test_what_ends_as_expected_passes(case: SmallCase) -> None:
+    report = judged(case)
+    assert report.verdict == PASSED
+    base, impossible = report.trials
+    assert (base.status, base.newton_mean, base.newton_max) == ("converged", 3.0, 4.0)
+    assert (base.step_cuts, base.mass_error, base.condition_estimate) == (1.0, 1.0e-12, None)
+    assert (impossible.status, impossible.reason) == ("refused", "no storage")
+    assert len(report.maps[0].cells) == 6
+
+
+def test_multiples_follow_their_axis(case: SmallCase) -> None:
+    last = judged(case).maps[0].cells[-1].trial.run.set
+    assert (last["m.a"], last["m.b"], last["m.c"]) == (2.0, 3.0, 15.0)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"mass_error_relative": 2.0e-8}, {"contact_residual": 2.0e-9}, {"status": "failed"}],
+)
+def test_beyond_the_limits_is_red(case: SmallCase, changes: dict[str, object]) -> None:
+    record(case, "good", **changes)
+    report = judged(case)
+    assert report.trials[0].verdict == FAILED
+    assert report.maps[0].verdict == FAILED
+
+
+@pytest.mark.parametrize("value", [float("nan"), None, "small"])
+def test_a_number_that_is_none_is_an_error(case: SmallCase, value: object) -> None:
+    record(case, "good", contact_residual=value)
+    assert judged(case).trials[0].verdict == ERROR
+
+
+def test_a_missing_history_is_an_error(case: SmallCase) -> None:
+    (case.results / "good" / "history.csv").unlink()
+    assert judged(case).trials[0].verdict == ERROR
+
+
+@pytest.mark.parametrize("script", ["true", "kill -SEGV $$", "exit 1"])
+def test_only_a_refusal_with_a_reason_is_a_refusal(case: SmallCase, script: str) -> None:
+    case.ends_with("refused", script)
+    expected = PASSED if script == "exit 1" else FAILED
+    assert judged(case).trials[1].verdict == expected
+
+
+def test_a_known_gap_is_never_passed(case: SmallCase) -> None:
+    file = case.case.parent / "stability" / "stability.toml"
+    text = _TOML.replace('title = "a x b"', 'title = "a x b"\nknown_gap = "later"')
+    file.write_text(text.replace('name = "base"', 'name = "base"\nknown_gap = "later"'))
+    report = judged(case)
+    assert (report.trials[0].verdict, report.maps[0].verdict) == (GAP, GAP)
+
+
+def test_an_unknown_key_is_red(case: SmallCase) -> None:
+    file = case.case.parent / "stability" / "stability.toml"
+    file.write_text(_TOML.replace("expect =", "expected ="))
+    report = judged(case)
+    assert report.verdict == ERROR
+    assert "'expect' is missing" in report.broken
