@@ -8,7 +8,8 @@
 !!   open   z <= 0:             f_n = 0,               f_tau = 0
 !!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
 !!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
-!! The gap g = tan(psi) |[u]_tau|.
+!! The gap g = tan(psi) |[u]_tau|. A bilateral law knows no open state: the faces keep the gap g
+!! under tension too, and slip freely where z <= 0.
 !!
 !! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
 !! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip
@@ -27,6 +28,7 @@ module contact_law
    type :: contact_law_t
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< tan(psi) [-]
+      logical :: bilateral = .false.  !< the faces cannot part
    end type contact_law_t
 
 contains
@@ -58,7 +60,7 @@ contains
       by_jump = 0.0_rk
       way_before = way
       way = 0
-      if (.not. pressure > 0.0_rk) then
+      if (.not. pressure > 0.0_rk .and. .not. law%bilateral) then
          state = state_open
          residual = traction
          by_traction(1, 1) = 1.0_rk
@@ -68,6 +70,12 @@ contains
       residual(1) = stiffness*(jump(1) - gap_slope*jump(2))
       by_jump(1, :) = stiffness*[1.0_rk, -gap_slope]
       if (.not. abs(shear) < law%friction*pressure) way = merge(1, -1, shear > 0.0_rk)
+      if (.not. pressure > 0.0_rk) then
+         state = state_slip
+         residual(2) = traction(2)
+         by_traction(2, 2) = 1.0_rk
+         return
+      end if
       if (way*way_before < 0 .and. law%friction > 0.0_rk) way = 0
       if (way == 0) then
          state = state_stick
@@ -94,8 +102,13 @@ contains
       opening = jump(1) - law%dilation*abs(jump(2))
       slip = jump(2) - slip_before
       bound = law%friction*max(0.0_rk, -traction(1))
-      worst = max(-stiffness*opening, traction(1), abs(traction(2)) - bound)
-      worst = max(worst, min(stiffness*abs(opening), abs(traction(1))))
+      worst = abs(traction(2)) - bound
+      if (law%bilateral) then
+         worst = max(worst, stiffness*abs(opening))
+      else
+         worst = max(worst, -stiffness*opening, traction(1), &
+                     min(stiffness*abs(opening), abs(traction(1))))
+      end if
       worst = max(worst, min(stiffness*abs(slip), abs(abs(traction(2)) - bound)))
       ! Friction must not drive the slip.
       worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))

@@ -2,9 +2,10 @@
 !!
 !! Where two nodes face each other across a fracture, u(+) = m - [u]/2 and u(-) = m + [u]/2 with
 !! their mean m and jump [u] = u(-) - u(+). A given jump leaves m as unknown; a slipping pair
-!! keeps m and the amount of slip d, with [u] = d*(tau + dilation*n). Every displacement is then
-!! linear in fewer unknowns, u = T q + c, and the stiffness becomes T' K T: definite, without
-!! penalty or multipliers.
+!! keeps m and the amount of slip d, with [u] = d*(tau + dilation*n); a pair in contact keeps m and
+!! both components of the jump, which the law of contact then decides (fine_contact). Every
+!! displacement is linear in these unknowns, u = T q + c, and the stiffness becomes T' K T:
+!! definite, without penalty or multipliers.
 !!
 !! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
 !! whatever the conditions of the cells around, and so does a pair of which a node is held at the
@@ -12,25 +13,35 @@
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use contact_law, only: contact_law_t
    use fine_boundary, only: fine_boundary_t
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
 
    public :: build_constraints, check_conditions, constraints_t, face_conditions_t
-   public :: face_jump, face_loaded, face_slip, loaded_everywhere, prescribe_jumps
+   public :: columns_max, face_contact, face_jump, face_law_t, face_loaded, face_slip
+   public :: loaded_everywhere, prescribe_jumps
 
-   integer(ik), parameter :: columns_max = 3  !< unknowns that may move one node
+   integer(ik), parameter :: columns_max = 4  !< unknowns that may move one node
 
    ! Conditions of a fracture cell. Where cells meet, the larger number holds at their common nodes.
    integer(ik), parameter :: face_loaded = 1  !< contact traction and fluid pressure given
    integer(ik), parameter :: face_slip = 2  !< slip free, opening tied to it; traction given
-   integer(ik), parameter :: face_jump = 3  !< displacement jump given
+   integer(ik), parameter :: face_contact = 3  !< contact traction found by the law of the cell
+   integer(ik), parameter :: face_jump = 4  !< displacement jump given
+
+   !> The law of a cell whose condition is face_contact.
+   type :: face_law_t
+      type(contact_law_t) :: contact  !< without parameters: frictionless
+      logical :: slip_given = .false.  !< [u]_tau is that of the loads; friction plays no part
+   end type face_law_t
 
    !> What holds on each fracture cell; the values belong to the loads.
    type :: face_conditions_t
       integer(ik), allocatable :: condition(:)  !< (fracture cells) face_loaded .. face_jump
       real(rk), allocatable :: dilation(:)  !< (fracture cells) sign of slip * tan(psi) [-]
+      type(face_law_t), allocatable :: law(:)  !< (fracture cells)
    end type face_conditions_t
 
    !> How displacements depend on the unknowns.
@@ -46,6 +57,10 @@ module fine_faces
       integer(ik), allocatable :: pair_condition(:)  !< (n_pairs)
       integer(ik), allocatable :: face_pair(:, :)  !< (3, fracture cells) start, end, mid; 0: none
       logical, allocatable :: face_flipped(:, :)  !< the cell sees the pair's sides exchanged
+      real(rk), allocatable :: tangent(:, :)  !< (2, n_pairs) tau of slipping and touching pairs
+      ! Pairs in contact.
+      integer(ik), allocatable :: contact_pairs(:)  !< (n_contact) which pairs
+      integer(ik), allocatable :: contact_dofs(:)  !< (2 n_contact) unknowns [u]_n, [u]_tau of each
    end type constraints_t
 
 contains
@@ -57,6 +72,7 @@ contains
 
       allocate (conditions%condition(fine%fracture%n_cells), source=face_loaded)
       allocate (conditions%dilation(fine%fracture%n_cells), source=0.0_rk)
+      allocate (conditions%law(fine%fracture%n_cells))
    end function loaded_everywhere
 
    !> Refuse unknown conditions and arrays of the wrong size.
@@ -66,15 +82,22 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: origin = "check_conditions"
 
-      if (.not. (allocated(conditions%condition) .and. allocated(conditions%dilation))) then
+      if (.not. (allocated(conditions%condition) .and. allocated(conditions%dilation) &
+                 .and. allocated(conditions%law))) then
          call raise_error(error, origin, "the face conditions have not been set")
       else if (size(conditions%condition) /= fine%fracture%n_cells &
-               .or. size(conditions%dilation) /= fine%fracture%n_cells) then
+               .or. size(conditions%dilation) /= fine%fracture%n_cells &
+               .or. size(conditions%law) /= fine%fracture%n_cells) then
          call raise_error(error, origin, "the face conditions have the wrong number of cells")
       else if (any(conditions%condition < face_loaded .or. conditions%condition > face_jump)) then
          call raise_error(error, origin, "a fracture cell has an unknown face condition")
       else if (.not. sum(abs(conditions%dilation)) <= huge(1.0_rk)) then
          call raise_error(error, origin, "a dilation is not a finite number")
+      else if (.not. all(conditions%law%contact%friction >= 0.0_rk &
+                         .and. conditions%law%contact%friction <= huge(1.0_rk) &
+                         .and. conditions%law%contact%dilation >= 0.0_rk &
+                         .and. conditions%law%contact%dilation <= huge(1.0_rk))) then
+         call raise_error(error, origin, "friction and dilation must be finite and not negative")
       end if
    end subroutine check_conditions
 
@@ -84,13 +107,13 @@ contains
       type(fine_boundary_t), intent(in) :: boundary
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(out) :: constraints
-      real(rk), allocatable :: slip_direction(:, :)
+      real(rk), allocatable :: dilation(:)
       integer(ik), allocatable :: follows(:)
       integer(ik) :: component, node, pair, column, plus, minus
+      real(rk) :: direction(2)
 
       call find_pairs(fine, constraints)
-      allocate (slip_direction(2, constraints%n_pairs))
-      call combine_conditions(fine, boundary, conditions, constraints, slip_direction)
+      call combine_conditions(fine, boundary, conditions, constraints, dilation)
 
       allocate (constraints%n_columns(fine%n_nodes), source=0_ik)
       allocate (constraints%dof(columns_max, fine%n_nodes), source=0_ik)
@@ -115,8 +138,15 @@ contains
             follows(minus) = plus
          case (face_slip)
             constraints%n_columns([plus, minus]) = 3
-            constraints%basis(:, 3, plus) = -0.5_rk*slip_direction(:, pair)
-            constraints%basis(:, 3, minus) = 0.5_rk*slip_direction(:, pair)
+            direction = constraints%tangent(:, pair) + dilation(pair)*normal_of(pair)
+            constraints%basis(:, 3, plus) = -0.5_rk*direction
+            constraints%basis(:, 3, minus) = 0.5_rk*direction
+            follows(minus) = plus
+         case (face_contact)
+            constraints%n_columns([plus, minus]) = 4
+            constraints%basis(:, 3, plus) = -0.5_rk*normal_of(pair)
+            constraints%basis(:, 4, plus) = -0.5_rk*constraints%tangent(:, pair)
+            constraints%basis(:, 3:4, minus) = -constraints%basis(:, 3:4, plus)
             follows(minus) = plus
          case default
             cycle  ! both nodes keep their own unknowns
@@ -133,6 +163,24 @@ contains
       do node = 1, fine%n_nodes
          if (follows(node) > 0) constraints%dof(:, node) = constraints%dof(:, follows(node))
       end do
+      allocate (constraints%contact_pairs(0), constraints%contact_dofs(0))
+      do pair = 1, constraints%n_pairs
+         if (constraints%pair_condition(pair) /= face_contact) cycle
+         plus = constraints%pair_nodes(1, pair)
+         constraints%contact_pairs = [constraints%contact_pairs, pair]
+         constraints%contact_dofs = [constraints%contact_dofs, constraints%dof(3:4, plus)]
+      end do
+
+   contains
+
+      !> From side + to side -.
+      pure function normal_of(slipping) result(normal)
+         integer(ik), intent(in) :: slipping
+         real(rk) :: normal(2)
+
+         normal = [-constraints%tangent(2, slipping), constraints%tangent(1, slipping)]
+      end function normal_of
+
    end subroutine build_constraints
 
    !> Node pairs across the fractures, without tips (one node) and joints (more than two).
@@ -177,21 +225,21 @@ contains
       end do
    end subroutine find_pairs
 
-   !> The condition of each pair, and the direction in which a slipping pair moves. At a kink the
-   !! frame is the mean of the frames of the slipping cells.
-   pure subroutine combine_conditions(fine, boundary, conditions, constraints, slip_direction)
+   !> The condition of each pair, and the frame of those that may slip. At a kink it is the mean of
+   !! the frames of the cells that have the pair's condition, and so is the dilation.
+   pure subroutine combine_conditions(fine, boundary, conditions, constraints, dilation)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(inout) :: constraints
-      real(rk), intent(out) :: slip_direction(:, :)  !< (2, n_pairs) tau + dilation*n
-      real(rk), allocatable :: tangent(:, :), dilation(:)
-      integer(ik), allocatable :: n_slipping(:)
+      real(rk), allocatable, intent(out) :: dilation(:)  !< (n_pairs)
+      integer(ik), allocatable :: n_alike(:)
       real(rk) :: tau(2)
       integer(ik) :: cell, k, pair
 
-      allocate (tangent(2, constraints%n_pairs), dilation(constraints%n_pairs), source=0.0_rk)
-      allocate (n_slipping(constraints%n_pairs), source=0_ik)
+      allocate (constraints%tangent(2, constraints%n_pairs), source=0.0_rk)
+      allocate (dilation(constraints%n_pairs), source=0.0_rk)
+      allocate (n_alike(constraints%n_pairs), source=0_ik)
       allocate (constraints%pair_condition(constraints%n_pairs), source=face_loaded)
       do cell = 1, fine%fracture%n_cells
          do k = 1, 3
@@ -200,26 +248,32 @@ contains
             associate (strictest => constraints%pair_condition(pair))
                strictest = max(strictest, conditions%condition(cell))
             end associate
-            if (conditions%condition(cell) /= face_slip) cycle
+         end do
+      end do
+      do pair = 1, constraints%n_pairs
+         if (any(boundary%prescribed(:, constraints%pair_nodes(:, pair)))) then
+            constraints%pair_condition(pair) = face_loaded
+         end if
+      end do
+
+      do cell = 1, fine%fracture%n_cells
+         do k = 1, 3
+            pair = constraints%face_pair(k, cell)
+            if (pair == 0) cycle
+            if (conditions%condition(cell) /= constraints%pair_condition(pair)) cycle
             ! Seen from the other side tau, n and the jump all change sign: its components do not.
             tau = fine%face_tangent(:, cell)
             if (constraints%face_flipped(k, cell)) tau = -tau
-            tangent(:, pair) = tangent(:, pair) + tau
+            constraints%tangent(:, pair) = constraints%tangent(:, pair) + tau
             dilation(pair) = dilation(pair) + conditions%dilation(cell)
-            n_slipping(pair) = n_slipping(pair) + 1
+            n_alike(pair) = n_alike(pair) + 1
          end do
       end do
-
-      slip_direction = 0.0_rk
       do pair = 1, constraints%n_pairs
-         associate (condition => constraints%pair_condition(pair))
-            if (any(boundary%prescribed(:, constraints%pair_nodes(:, pair)))) then
-               condition = face_loaded
-            end if
-            if (condition /= face_slip) cycle
-         end associate
-         tau = tangent(:, pair)/norm2(tangent(:, pair))
-         slip_direction(:, pair) = tau + dilation(pair)/n_slipping(pair)*[-tau(2), tau(1)]
+         if (n_alike(pair) == 0) cycle
+         tau = constraints%tangent(:, pair)
+         constraints%tangent(:, pair) = tau/norm2(tau)
+         dilation(pair) = dilation(pair)/n_alike(pair)
       end do
    end subroutine combine_conditions
 

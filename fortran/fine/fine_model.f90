@@ -4,10 +4,12 @@ module fine_model
    use base_kinds, only: ik, rk
    use base_mumps, only: mumps_definite, mumps_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, fine_boundary_t
+   use fine_contact, only: contact_problem_t, contact_t, new_contact, set_contact_problem, &
+                           solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t
    use fine_element, only: evaluate_element, stiffness_matrix
-   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, &
-                         face_loaded, prescribe_jumps
+   use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
+                         face_conditions_t, face_contact, face_loaded, prescribe_jumps
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
    use mesh_types, only: mesh_t
@@ -23,6 +25,7 @@ module fine_model
       type(fine_boundary_t) :: boundary
       type(face_conditions_t) :: conditions
       type(constraints_t) :: constraints
+      type(contact_problem_t) :: contact_problem
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
       logical :: ready = .false.
       type(mumps_t), private :: solver
@@ -98,20 +101,39 @@ contains
       end if
       if (self%constraints%n_dofs > 0) then
          call assemble(self, row, col, values)
-         call self%solver%analyse(self%constraints%n_dofs, row, col, mumps_definite, error)
+         call self%solver%analyse(self%constraints%n_dofs, row, col, mumps_definite, error, &
+                                  schur=self%constraints%contact_dofs)
          if (.not. allocated(error)) call self%solver%factorize(values, error)
          if (allocated(error)) return
+         call condense_contact(self)
       end if
       self%ready = .true.
    end subroutine prepare
+
+   !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
+   !!
+   !! The Schur complement that MUMPS leaves costs no more than solving for one right-hand side per
+   !! jump: it is what those solutions would compute, restricted to the fronts that hold the jumps.
+   subroutine condense_contact(self)
+      class(fine_model_t), intent(inout) :: self
+
+      call set_contact_problem(self%mesh, self%conditions, self%constraints, &
+                               self%elasticity%young, self%contact_problem)
+      associate (problem => self%contact_problem)
+         if (problem%n == 0) return
+         allocate (problem%condensed(2*problem%n, 2*problem%n))
+         call self%solver%get_schur(problem%condensed)
+      end associate
+   end subroutine condense_contact
 
    !> One triangle of T' K T as triplets.
    subroutine assemble(self, row, col, values)
       class(fine_model_t), intent(in) :: self
       integer(ik), allocatable, intent(out) :: row(:), col(:)
       real(rk), allocatable, intent(out) :: values(:)
-      real(rk) :: ties(12, 18), products(12, 18), reduced(18, 18)
-      integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(18)
+      real(rk) :: ties(12, 6*columns_max), products(12, 6*columns_max)
+      real(rk) :: reduced(6*columns_max, 6*columns_max)
+      integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(6*columns_max)
 
       n_entries = 0
       do cell = 1, self%mesh%n_cells
@@ -152,12 +174,15 @@ contains
       end do
    end subroutine assemble
 
-   !> Displacements under the given loads.
-   subroutine solve(self, loads, displacement, error)
+   !> Displacements under the given loads. Faces in contact start from `contact`, which holds their
+   !! history, and leave their solution there; without it they start closed and new.
+   subroutine solve(self, loads, displacement, error, contact)
       class(fine_model_t), intent(inout) :: self
       type(fine_loads_t), intent(in) :: loads
       real(rk), allocatable, intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(error_t), allocatable, intent(out) :: error
+      type(contact_t), intent(inout), optional :: contact
+      type(contact_t) :: touching
       real(rk), allocatable :: force(:, :)
       integer(ik) :: cell
 
@@ -182,18 +207,25 @@ contains
          end associate
       end do
 
-      if (self%constraints%n_dofs > 0) call solve_free_part(self, force, displacement, error)
+      touching = new_contact(self%mesh)
+      if (present(contact)) touching = contact
+      if (self%constraints%n_dofs > 0) then
+         call solve_free_part(self, force, loads%jump, displacement, touching, error)
+      end if
       if (allocated(error)) return
+      if (present(contact)) contact = touching
       if (.not. sum(abs(displacement)) <= huge(1.0_rk)) then
          call raise_error(error, "fine_model_t%solve", "a displacement is not a finite number")
       end if
    end subroutine solve
 
    !> Add what the forces do to the given part of the displacements.
-   subroutine solve_free_part(self, force, displacement, error)
+   subroutine solve_free_part(self, force, given_jump, displacement, contact, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
       real(rk), intent(inout) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(contact_t), intent(inout) :: contact
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: x(:, :)
       integer(ik) :: node, column
@@ -207,7 +239,7 @@ contains
                                          + dot_product(basis(:, column, node), force(:, node))
             end do
          end do
-         call self%solver%solve(x, error)
+         call solve_unknowns(self, given_jump, contact, x, error)
          if (allocated(error)) return
          do node = 1, self%mesh%n_nodes
             do column = 1, n_columns(node)
@@ -218,14 +250,42 @@ contains
       end associate
    end subroutine solve_free_part
 
-   !> Nodal forces of all loads.
+   !> The unknowns from their loads, by way of the condensed system where faces touch.
+   subroutine solve_unknowns(self, given_jump, contact, x, error)
+      class(fine_model_t), intent(inout) :: self
+      real(rk), intent(in) :: given_jump(:, :, :)
+      type(contact_t), intent(inout) :: contact
+      real(rk), intent(inout), contiguous :: x(:, :)  !< (n_dofs, 1) loads, then unknowns
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: load(2*self%contact_problem%n), jump(2*self%contact_problem%n)
+      character(len=:), allocatable :: reason
+
+      if (self%contact_problem%n == 0) then
+         call self%solver%solve(x, error)
+         return
+      end if
+      call self%solver%condense(x(:, 1), load, error)
+      if (allocated(error)) return
+      call solve_contact(self%contact_problem, load, given_jump, contact, jump, reason)
+      if (allocated(reason)) then
+         call raise_error(error, "fine_model_t%solve", "contact: "//reason)
+         return
+      end if
+      call self%solver%expand(jump, x(:, 1), error)
+   end subroutine solve_unknowns
+
+   !> Nodal forces of all loads. Contact tractions that belong to the solution are not among them.
    pure function external_forces(self, loads) result(force)
       class(fine_model_t), intent(in) :: self
       type(fine_loads_t), intent(in) :: loads
       real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
 
+      real(rk) :: traction(2, size(loads%traction, 2))
+
+      traction = loads%traction
+      where (spread(self%conditions%condition == face_contact, 1, 2)) traction = 0.0_rk
       force = loads%force
-      call add_face_forces(self%mesh, loads%traction, loads%fluid_pressure, force)
+      call add_face_forces(self%mesh, traction, loads%fluid_pressure, force)
       call add_volume_forces(self%mesh, self%elasticity%biot, loads, force)
    end function external_forces
 

@@ -12,6 +12,7 @@ program test_contact_law
    type(contact_law_t), parameter :: smooth = contact_law_t(friction=0.0_rk, dilation=0.0_rk)
    type(contact_law_t), parameter :: smooth_dilating = &
                                      contact_law_t(friction=0.0_rk, dilation=0.1_rk)
+   type(contact_law_t), parameter :: tied = contact_law_t(0.5_rk, 0.1_rk, bilateral=.true.)
    type(checks_t) :: checks
 
    call test_derivatives()
@@ -52,6 +53,10 @@ contains
       call compare_slopes(smooth_dilating, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, -2.0_rk]*um, 0.0_rk, &
                           state_slip)
       call compare_slopes(smooth, [-1.0_rk, 0.1_rk]*mpa, [2.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      ! Faces that cannot part: as before under pressure, free to slip under tension.
+      call compare_slopes(tied, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(tied, [-5.0_rk, 2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 2.0_rk]*um, 2.0_rk*um, state_slip)
    end subroutine test_derivatives
 
    !> The equations are piecewise linear, so that central differences are exact up to rounding.

@@ -1,0 +1,260 @@
+!> Contact and friction on node pairs: the law of contact (contact_law) at every pair, as one
+!! semismooth Newton iteration on the body condensed onto the jumps of the pairs.
+!!
+!! With the other unknowns eliminated, what is left of the equilibrium is S w - g = -L f: w are the
+!! jumps ([u]_n, [u]_tau pair by pair), g the load, and L f the nodal contact forces on side +. The
+!! nodal lengths L are the integrals of the shape functions over the faces (1/6, 4/6, 1/6 of a cell,
+!! and 0, 2/3, 1/3 from the tip in a quarter-point element); they are positive wherever a pair
+!! exists, so the sign of a force is that of the traction f.
+module fine_contact
+   use base_kinds, only: ik, rk
+   use base_lapack, only: dgetrf, dgetrs
+   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_states, only: state_open
+   use fine_faces, only: constraints_t, face_contact, face_conditions_t
+   use fine_loads, only: face_shares
+   use fine_mesh, only: fine_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: contact_problem_t, contact_t, new_contact, set_contact_problem, solve_contact
+
+   !> Contact on all faces, node by node as start, end, mid of each fracture cell; what several
+   !! cells share has the same value in each of them. Zero and open where there is no contact.
+   type :: contact_t
+      !> (tau n, start end mid, fracture cell): the last solution, guess for the next [m]
+      real(rk), allocatable :: jump(:, :, :)
+      real(rk), allocatable :: slip_before(:, :)  !< (3, fracture cells) when last accepted [m]
+      real(rk), allocatable :: traction(:, :, :)  !< (tau n, start end mid, fracture cell) [Pa]
+      integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_states
+      integer(ik) :: iterations = 0  !< of the last solution
+      real(rk) :: residual = 0.0_rk  !< how far it is from the law, over the largest traction [-]
+   contains
+      procedure :: accept
+   end type contact_t
+
+   !> What does not change from load to load.
+   type :: contact_problem_t
+      integer(ik) :: n = 0  !< pairs in contact
+      real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
+      real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n) [Pa]
+      real(rk), allocatable :: length(:)  !< L (n) [m]
+      type(contact_law_t), allocatable :: law(:)  !< (n)
+      logical, allocatable :: slip_given(:)  !< (n)
+      real(rk), allocatable :: share(:, :)  !< (3, fracture cells) of each cell in L [m]
+      integer(ik), allocatable :: place(:, :)  !< (3, fracture cells) contact number, or 0
+   end type contact_problem_t
+
+contains
+
+   !> Closed faces that have not slipped.
+   pure function new_contact(fine) result(contact)
+      type(fine_mesh_t), intent(in) :: fine
+      type(contact_t) :: contact
+
+      associate (n => fine%fracture%n_cells)
+         allocate (contact%jump(2, 3, n), contact%traction(2, 3, n), source=0.0_rk)
+         allocate (contact%slip_before(3, n), source=0.0_rk)
+         allocate (contact%state(3, n), source=state_open)
+      end associate
+   end function new_contact
+
+   !> The last solution becomes the history of the next.
+   pure subroutine accept(self)
+      class(contact_t), intent(inout) :: self
+
+      self%slip_before = self%jump(1, :, :)
+   end subroutine accept
+
+   !> Nodal lengths and laws; `condensed` is left to the owner of the matrix. Where cells meet, the
+   !! parameters are means weighted by their lengths.
+   pure subroutine set_contact_problem(fine, conditions, constraints, young, problem)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(constraints_t), intent(in) :: constraints
+      real(rk), intent(in) :: young  !< [Pa]
+      type(contact_problem_t), intent(out) :: problem
+      integer(ik), allocatable :: contact_of_pair(:)
+      integer(ik) :: cell, i, k
+
+      problem%n = size(constraints%contact_pairs)
+      allocate (contact_of_pair(0:constraints%n_pairs), source=0_ik)
+      do i = 1, problem%n
+         contact_of_pair(constraints%contact_pairs(i)) = i
+      end do
+      allocate (problem%law(problem%n), problem%slip_given(problem%n))
+      allocate (problem%length(problem%n), source=0.0_rk)
+      allocate (problem%share(3, fine%fracture%n_cells), source=0.0_rk)
+      allocate (problem%place(3, fine%fracture%n_cells), source=0_ik)
+      problem%slip_given = .false.
+      do cell = 1, fine%fracture%n_cells
+         if (conditions%condition(cell) /= face_contact) cycle
+         problem%share(:, cell) = fine%face_length(cell)*face_shares(fine%face_tip(cell))
+         do k = 1, 3
+            i = contact_of_pair(constraints%face_pair(k, cell))
+            problem%place(k, cell) = i
+            if (i == 0) cycle
+            associate (law => problem%law(i), given => conditions%law(cell), &
+                       weight => problem%share(k, cell))
+               problem%length(i) = problem%length(i) + weight
+               law%friction = law%friction + weight*given%contact%friction
+               law%dilation = law%dilation + weight*given%contact%dilation
+               law%bilateral = law%bilateral .or. given%contact%bilateral
+               problem%slip_given(i) = problem%slip_given(i) .or. given%slip_given
+            end associate
+         end do
+      end do
+      do i = 1, problem%n
+         problem%law(i)%friction = problem%law(i)%friction/problem%length(i)
+         problem%law(i)%dilation = problem%law(i)%dilation/problem%length(i)
+         if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
+      end do
+      if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)
+   end subroutine set_contact_problem
+
+   !> Find the jumps that fulfil equilibrium and the law. A reason is given if that fails.
+   subroutine solve_contact(problem, load, given_jump, contact, jump, reason)
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: load(:)  !< g (2 n) [N/m]
+      real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
+      type(contact_t), intent(inout) :: contact  !< replaced only by a solution
+      real(rk), intent(out) :: jump(:)  !< w (2 n) [m]
+      character(len=:), allocatable, intent(out) :: reason
+      integer(ik), parameter :: iterations_max = 50
+      real(rk), parameter :: tolerance = 1.0e-10_rk  ! residual over the largest traction
+      real(rk) :: traction(2, problem%n), before(problem%n), given(problem%n)
+      real(rk) :: residual(2*problem%n, 1), matrix(2*problem%n, 2*problem%n), scale, worst
+      integer(ik) :: state(problem%n), state_before(problem%n), way(problem%n)
+      integer(ik) :: pivots(2*problem%n), i, info, iteration
+      logical :: converged
+
+      call gather(problem, contact%jump(2, :, :), jump(1 :: 2))
+      call gather(problem, contact%jump(1, :, :), jump(2 :: 2))
+      call gather(problem, contact%slip_before, before)
+      call gather(problem, given_jump(1, :, :), given)
+      where (problem%slip_given) jump(2 :: 2) = given
+      way = 0
+      state_before = -1
+      converged = .false.
+      do iteration = 0, iterations_max
+         call evaluate(problem, load, jump, before, given, way, state, traction, residual(:, 1), &
+                       matrix)
+         ! The largest traction: that of the faces as they are, or as if their jumps were none.
+         scale = 0.0_rk
+         do i = 1, problem%n
+            scale = max(scale, maxval(abs(traction(:, i))), &
+                        maxval(abs(load(2*i - 1:2*i)))/problem%length(i), &
+                        problem%stiffness*abs(before(i)), problem%stiffness*abs(given(i)))
+         end do
+         worst = maxval(abs(residual))
+         if (.not. worst <= huge(1.0_rk)) then
+            reason = "the iteration met a value that is not a number"
+            return
+         end if
+         converged = worst <= tolerance*scale .and. all(state == state_before)
+         if (converged) exit
+         state_before = state
+         call dgetrf(2*problem%n, 2*problem%n, matrix, 2*problem%n, pivots, info)
+         if (info /= 0) then
+            reason = "a part of the body that only contact holds is free to move"
+            return
+         end if
+         call dgetrs("T", 2*problem%n, 1_ik, matrix, 2*problem%n, pivots, residual, &
+                     2*problem%n, info)
+         jump = jump - residual(:, 1)/problem%stiffness
+      end do
+      if (.not. converged) then
+         reason = "the iteration on the fracture faces did not converge"
+         return
+      end if
+
+      contact%iterations = iteration
+      worst = 0.0_rk
+      do i = 1, problem%n
+         if (problem%slip_given(i)) cycle
+         worst = max(worst, contact_residual(problem%law(i), problem%stiffness, traction(:, i), &
+                                             jump(2*i - 1:2*i), before(i)))
+      end do
+      contact%residual = worst/max(scale, tiny(1.0_rk))
+      contact%jump = 0.0_rk
+      contact%traction = 0.0_rk
+      contact%state = state_open
+      call scatter(problem, jump, traction, state, contact)
+   end subroutine solve_contact
+
+   !> The equations of all pairs [Pa], and their derivatives by the jumps times the stiffness. An
+   !! equation is a column of the matrix.
+   subroutine evaluate(problem, load, jump, before, given, way, state, traction, residual, matrix)
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: load(:), jump(:), before(:), given(:)
+      integer(ik), intent(inout) :: way(:)
+      integer(ik), intent(out) :: state(:)
+      real(rk), intent(out) :: traction(:, :), residual(:), matrix(:, :)
+      real(rk) :: force(size(load)), by_traction(2, 2), by_jump(2, 2)
+      integer(ik) :: i, k, m, row
+
+      force = matmul(problem%condensed, jump) - load
+      do i = 1, problem%n
+         row = 2*i - 1
+         traction(:, i) = -force(row:row + 1)/problem%length(i)
+         call contact_equations(problem%law(i), problem%stiffness, traction(:, i), &
+                                jump(row:row + 1), before(i), way(i), state(i), &
+                                residual(row:row + 1), by_traction, by_jump)
+         if (problem%slip_given(i)) then
+            residual(row + 1) = problem%stiffness*(jump(row + 1) - given(i))
+            by_traction(2, :) = 0.0_rk
+            by_jump(2, :) = [0.0_rk, problem%stiffness]
+         end if
+         do k = 1, 2
+            associate (slope => matrix(:, row + k - 1))
+               slope = 0.0_rk
+               do m = 1, 2
+                  if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
+                  slope = slope - by_traction(k, m)/(problem%length(i)*problem%stiffness) &
+                          *problem%condensed(:, row + m - 1)
+               end do
+               slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/problem%stiffness
+            end associate
+         end do
+      end do
+   end subroutine evaluate
+
+   !> From values on the cells to values at the pairs: means weighted by the cells' lengths.
+   pure subroutine gather(problem, cells, pairs)
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: cells(:, :)  !< (3, fracture cells)
+      real(rk), intent(out) :: pairs(:)  !< (n)
+      integer(ik) :: cell, k
+
+      pairs = 0.0_rk
+      do cell = 1, size(cells, 2)
+         do k = 1, 3
+            associate (i => problem%place(k, cell))
+               if (i == 0) cycle
+               pairs(i) = pairs(i) + problem%share(k, cell)/problem%length(i)*cells(k, cell)
+            end associate
+         end do
+      end do
+   end subroutine gather
+
+   !> From pairs to cells.
+   pure subroutine scatter(problem, jump, traction, state, contact)
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: jump(:), traction(:, :)
+      integer(ik), intent(in) :: state(:)
+      type(contact_t), intent(inout) :: contact
+      integer(ik) :: cell, k
+
+      do cell = 1, size(problem%place, 2)
+         do k = 1, 3
+            associate (i => problem%place(k, cell))
+               if (i == 0) cycle
+               contact%jump(:, k, cell) = jump([2*i, 2*i - 1])
+               contact%traction(:, k, cell) = traction([2, 1], i)
+               contact%state(k, cell) = state(i)
+            end associate
+         end do
+      end do
+   end subroutine scatter
+
+end module fine_contact
