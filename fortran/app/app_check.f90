@@ -1,25 +1,14 @@
 !> What a scene has and leaves out, without running it.
 module app_check
-   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use scene_types, only: scene_t
-   use twolevel_network, only: network_of_scene, total_length
+   use tips_network, only: network_of_scene, total_length
    implicit none(type, external)
    private
 
-   public :: describe_scene, require_supported
+   public :: describe_scene
 
 contains
-
-   !> Refuse scenes that this version can read but not run.
-   subroutine require_supported(scene, path, error)
-      type(scene_t), intent(in) :: scene
-      character(len=*), intent(in) :: path
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. scene%fluid%viscosity > 0.0_rk) call raise_error(error, "", path//": &fluid: the group is " &
-         //"missing; this version runs poroelastic scenes only, so give compressibility and viscosity")
-   end subroutine require_supported
 
    !> Print the scene's contents and its estimated size.
    subroutine describe_scene(scene, unit)
@@ -36,12 +25,18 @@ contains
          write (unit, '(2a)') "scene:        ", trim(scene%name)
          if (len_trim(scene%title) > 0) write (unit, '(2a)') "title:        ", trim(scene%title)
          write (unit, '(a,2(es10.3,a))') "body:        ", body%x_max - body%x_min, " x", &
-            body%y_max - body%y_min, " m, poroelastic"
+            body%y_max - body%y_min, " m, "//trim(merge("poroelastic", "elastic    ", scene%has_fluid()))
          write (unit, '(a,i0,a,es10.3,a)') "fractures:    ", size(scene%fractures), ", together", length, " m"
-         write (unit, '(a,i0)') "wells:        ", size(scene%injections)
+         if (scene%has_fluid()) write (unit, '(a,i0)') "wells:        ", size(scene%injections)
          write (unit, '(a,i0)') "probes:       ", size(scene%probes)
-         write (unit, '(a,es10.3,a,i0,a)') "time:        ", scene%time%end, " s in ", &
-            ceiling(scene%time%end/scene%time%step), " regular steps"
+         if (scene%has_fluid()) then
+            write (unit, '(a,es10.3,a,i0,a)') "time:        ", scene%time%end, " s in ", &
+               ceiling(scene%time%end/scene%time%step), " regular steps"
+         else
+            write (unit, '(2(a,es10.3),a,i0,a)') "load factor: ", scene%load%from, " to", scene%load%to, &
+               " in ", scene%load%steps, " steps"
+            write (unit, '(a)') "left out:     pressure, flow, coarse level"
+         end if
          write (unit, '(2a)') "tips:         ", trim(merge("growth     ", merge("intensities", "left out   ", &
             scene%growth%intensities), scene%growth%enabled))
          write (unit, '(2a)') "VTU files:    ", trim(merge("yes     ", "left out", scene%output%vtu))

@@ -15,7 +15,7 @@ module app_journal
    use output_tables, only: event_arrest, event_growth, event_opening, event_remesh, event_slip_onset
    use tips_growth, only: growth_drive_t
    use tips_types, only: intensity_t
-   use twolevel_network, only: total_length
+   use tips_network, only: total_length
    use twolevel_simulation, only: simulation_t
    implicit none(type, external)
    private

@@ -9,7 +9,7 @@ module app_run
    use output_record, only: status_failed, status_finished, status_stopped
    use output_tables, only: event_step_cut
    use scene_types, only: scene_t
-   use twolevel_network, only: end_gain
+   use tips_network, only: end_gain
    use twolevel_simulation, only: simulation_t
    implicit none(type, external)
    private

@@ -59,6 +59,9 @@ module output_fields
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
+      ! Only in mechanics-only runs.
+      real(rk) :: load_factor = 0.0_rk  !< [-]
+      real(rk) :: strain_energy = 0.0_rk  !< per metre of thickness [J/m]
    end type history_row_t
 
    !> A free tip after a step or an increment, a row of tips.csv.

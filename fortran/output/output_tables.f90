@@ -96,6 +96,10 @@ contains
          call table%put(row%n_tips)
          call table%put(row%n_intersections)
          call table%put(row%seismic_moment)
+         if (.not. self%has_fluid) then
+            call table%put(row%load_factor)
+            call table%put(row%strain_energy)
+         end if
          call table%end_row()
       end associate
    end subroutine history_row
@@ -239,6 +243,8 @@ contains
       columns = [character(len=column_length) :: columns, "max_slip_m", "max_opening_m", &
          & "n_stick", "n_slip", "n_open", "fracture_length_m", "n_tips", "n_intersections", &
          & "seismic_moment_nm"]
+      if (.not. has_fluid) columns = [character(len=column_length) :: columns, "load_factor", &
+         & "strain_energy_j"]
       call table%open(directory//"/history.csv", columns)
    end subroutine open_history
 

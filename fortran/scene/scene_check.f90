@@ -1,10 +1,11 @@
 !> Checks values against each other: first those that a sheet tells by what it gives and what not,
 !> then those that need the numbers.
 module scene_check
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: integer_text
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
+   use scene_check_mechanics, only: check_laws, check_load, check_points, check_support
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
@@ -25,7 +26,6 @@ contains
       call check_names(sheet, error)
       if (.not. allocated(error)) call check_permeability(sheet, error)
       if (.not. allocated(error)) call check_sides(sheet, error)
-      if (.not. allocated(error)) call check_fluid(sheet, error)
       if (.not. allocated(error)) call check_injections(sheet, error)
    end subroutine check_sheet
 
@@ -38,7 +38,13 @@ contains
       call check_domain(sheet, scene, error)
       if (.not. allocated(error)) call check_material(sheet, scene, error)
       if (.not. allocated(error)) call check_support(sheet, scene, error)
-      if (.not. allocated(error)) call check_times(sheet, scene, error)
+      if (scene%has_fluid()) then
+         if (.not. allocated(error)) call check_times(sheet, scene, error)
+      else
+         if (.not. allocated(error)) call check_load(sheet, scene, error)
+         if (.not. allocated(error)) call check_points(sheet, scene, error)
+      end if
+      if (.not. allocated(error)) call check_laws(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)
       if (.not. allocated(error)) call check_wells(sheet, scene, error)
       if (.not. allocated(error)) call check_probes(sheet, scene, error)
@@ -114,31 +120,6 @@ contains
       end do
    end subroutine check_sides
 
-   !> Without a fluid nothing can be injected and no pressure be prescribed.
-   pure subroutine check_fluid(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i
-
-      if (sheet%has("fluid")) return
-      do i = 1, sheet%length
-         associate (record => sheet%records(i))
-            select case (groups(record%group)%name)
-            case ("injection", "initial")
-               if (record%line > 0) call refuse(error, sheet, i, "", &
-                                                "needs a fluid, but the group &fluid is missing")
-            case ("side")
-               if (record%is_given("pressure")) call refuse(error, sheet, i, "pressure", &
-                                                            "needs a fluid, but the group "// &
-                                                            "&fluid is missing")
-            case default
-               cycle
-            end select
-         end associate
-         if (allocated(error)) return
-      end do
-   end subroutine check_fluid
-
    !> Wells belong to a fracture, and have both coordinates or none.
    pure subroutine check_injections(sheet, error)
       type(sheet_t), intent(in) :: sheet
@@ -202,33 +183,6 @@ contains
       end associate
    end subroutine check_material
 
-   !> The sides hold the body against its three rigid motions.
-   !>
-   !> With u = (a - w y, b + w x): a side held along its own direction fixes b + w x at its x, or
-   !> a - w y at its y; one held in the direction of its normal fixes a and w, or b and w, at once.
-   pure subroutine check_support(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      logical :: x_held(4), y_held(4), rotation_held
-
-      x_held = scene%sides%displacement_given(1)
-      y_held = scene%sides%displacement_given(2)
-      rotation_held = any(x_held(1:2)) .or. all(x_held(3:4)) .or. any(y_held(3:4)) .or. &
-                      all(y_held(1:2))
-      if (.not. any(x_held)) then
-         call raise_error(error, "", sheet%path//": &side: no side has an x_displacement, but "// &
-                          "one must hold the body against moving in x (see docs/input.md)")
-      else if (.not. any(y_held)) then
-         call raise_error(error, "", sheet%path//": &side: no side has a y_displacement, but "// &
-                          "one must hold the body against moving in y (see docs/input.md)")
-      else if (.not. rotation_held) then
-         call raise_error(error, "", sheet%path//": &side: the body can rotate, but a side "// &
-                          "must hold it: left or right an x_displacement, or bottom or top a "// &
-                          "y_displacement (see docs/input.md)")
-      end if
-   end subroutine check_support
-
    pure subroutine check_times(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -271,6 +225,7 @@ contains
                      "is .true. but must be .false., for the scene has no fracture")
          return
       end if
+      if (.not. scene%has_fluid()) return
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
       if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
          call refuse(error, sheet, sheet%find("fine"), "window", "is "// &

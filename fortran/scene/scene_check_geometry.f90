@@ -9,7 +9,7 @@ module scene_check_geometry
    implicit none(type, external)
    private
 
-   public :: check_domain, check_fractures, check_probes, check_wells
+   public :: check_domain, check_fractures, check_probes, check_wells, contains_point, point_text
 
 contains
 
@@ -32,16 +32,23 @@ contains
          end if
          shorter_edge = min(d%x_max - d%x_min, d%y_max - d%y_min)
          if (size_boundary > shorter_edge) then
-            call refuse(error, sheet, sheet%find("coarse"), "size_boundary", "is "// &
+            call refuse(error, sheet, mesh_record(sheet), "size_boundary", "is "// &
                         real_text(size_boundary)//" but must be at most the shorter edge of "// &
                         "the domain, "//rounded_text(shorter_edge))
          else if (scene%discretization%size_fracture > size_boundary) then
-            call refuse(error, sheet, sheet%find("coarse"), "size_fracture", "is "// &
+            call refuse(error, sheet, mesh_record(sheet), "size_fracture", "is "// &
                         real_text(scene%discretization%size_fracture)// &
                         " but must be at most size_boundary, "//real_text(size_boundary))
          end if
       end associate
    end subroutine check_domain
+
+   !> The group that tells the cell sizes.
+   pure integer function mesh_record(sheet)
+      type(sheet_t), intent(in) :: sheet
+
+      mesh_record = sheet%find("coarse") + sheet%find("fe")  ! a scene has one of them
+   end function mesh_record
 
    !> Fractures are polylines inside the domain.
    pure subroutine check_fractures(sheet, scene, error)
@@ -54,7 +61,7 @@ contains
          call check_vertices(sheet, i, scene%fractures(i), scene%domain, error)
          if (allocated(error)) return
          if (scene%discretization%size_fracture > total_length(scene%fractures(i))) then
-            call refuse(error, sheet, sheet%find("coarse"), "size_fracture", "is "// &
+            call refuse(error, sheet, mesh_record(sheet), "size_fracture", "is "// &
                         real_text(scene%discretization%size_fracture)// &
                         " but must be at most the length of fracture '"// &
                         trim(scene%fractures(i)%name)//"', "// &

@@ -1,7 +1,8 @@
 !> docs/input.md, written from the table of parameters.
 module scene_describe
    use scene_intervals, only: in_words
-   use scene_parameters, only: group_t, groups, kind_choice, kind_integer, kind_logical
+   use scene_parameters, only: group_t, groups, in_fluid, in_mechanics, kind_choice, kind_integer
+   use scene_parameters, only: kind_logical, need_friction
    use scene_parameters, only: kind_name, kind_real, kind_reals, need_always, need_fluid
    use scene_parameters, only: need_fracture, need_growth, need_tips, parameter_t, parameters
    implicit none(type, external)
@@ -65,16 +66,37 @@ contains
       else
          write (unit, "(a)") "## &"//trim(group%name)
       end if
-      write (unit, "(a)") "", trim(group%meaning), ""
+      write (unit, "(a)") "", trim(group%meaning)//scene_words(group%scenes), ""
       write (unit, "(a)") "| name | kind | unit | default | allowed | meaning |", &
          "|---|---|---|---|---|---|"
       do i = 1, size(parameters)
          if (parameters(i)%group /= group%name) cycle
          write (unit, "(a)") "| `"//trim(parameters(i)%name)//"` | "//kind_words(parameters(i))// &
             " | "//trim(parameters(i)%unit)//" | "//default_words(parameters(i))//" | "// &
-            allowed_words(parameters(i))//" | "//trim(parameters(i)%meaning)//" |"
+            allowed_words(parameters(i))//" | "//trim(parameters(i)%meaning)// &
+            table_words(parameters(i)%scenes)//" |"
       end do
    end subroutine describe_group
+
+   !> Which scenes may have a group, as a sentence.
+   pure function scene_words(scenes) result(words)
+      integer, intent(in) :: scenes
+      character(len=:), allocatable :: words
+
+      words = ""
+      if (scenes == in_fluid) words = " Only in scenes with &fluid."
+      if (scenes == in_mechanics) words = " Only in scenes without &fluid."
+   end function scene_words
+
+   !> Which scenes may give a parameter, as the end of a phrase.
+   pure function table_words(scenes) result(words)
+      integer, intent(in) :: scenes
+      character(len=:), allocatable :: words
+
+      words = ""
+      if (scenes == in_fluid) words = "; only with &fluid"
+      if (scenes == in_mechanics) words = "; only without &fluid"
+   end function table_words
 
    pure function kind_words(parameter) result(words)
       type(parameter_t), intent(in) :: parameter
@@ -113,6 +135,8 @@ contains
          words = "required with growth or intensities"
       case (need_growth)
          words = "required with growth"
+      case (need_friction)
+         words = "required with the law 'friction'"
       case default
          words = "none: "//trim(parameter%absent)
       end select

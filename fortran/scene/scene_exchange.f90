@@ -2,28 +2,19 @@
 !>
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
-   use base_kinds, only: ik, lk, rk
-   use scene_parameters, only: groups, side_names
-   use scene_sheet, only: add_record, empty_record, parameter_index, record_t, sheet_t
+   use base_kinds, only: ik, rk
+   use scene_exchange_values, only: exchange, radians, set_text, to_degrees
+   use scene_parameters, only: applies, groups, parameters, side_names
+   use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: boundary_side_t, discretization_t, fracture_t, growth_t, injection_t
-   use scene_types, only: material_t, name_length, probe_t, scene_t
+   use scene_types, only: material_t, name_length, point_load_t, probe_t, restraint_t
+   use scene_types, only: scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
    public :: scene_to_sheet, sheet_to_scene
 
-   !> Copy one value: into the scene if `reading` and the sheet has it, else into the sheet.
-   !> A component that equals `nothing` stays out of the sheet.
-   interface exchange
-      module procedure exchange_real
-      module procedure exchange_reals
-      module procedure exchange_integer
-      module procedure exchange_logical
-      module procedure exchange_text
-   end interface exchange
-
-   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  !< [rad/degree]
    real(rk), parameter :: unlimited = huge(1.0_rk)
 
 contains
@@ -34,14 +25,18 @@ contains
       type(scene_t), intent(out) :: scene
       type(record_t) :: record
       type(value_t) :: value
-      integer :: i, n_fractures, n_injections, n_probes, side
+      integer :: i, n_fractures, n_injections, n_point_loads, n_probes, n_restraints, side
 
       allocate (scene%fractures(count_of(sheet, "fracture")))
       allocate (scene%injections(count_of(sheet, "injection")))
       allocate (scene%probes(count_of(sheet, "probe")))
+      allocate (scene%restraints(count_of(sheet, "restraint")))
+      allocate (scene%point_loads(count_of(sheet, "point_load")))
       n_fractures = 0
       n_injections = 0
       n_probes = 0
+      n_restraints = 0
+      n_point_loads = 0
       do i = 1, sheet%length
          record = sheet%records(i)
          select case (groups(record%group)%name)
@@ -55,6 +50,16 @@ contains
                                                     record%is_set("y_displacement")]
             scene%sides(side)%pressure_given = record%is_set("pressure")
             call exchange_side(record, scene%sides(side), .true.)
+         case ("restraint")
+            n_restraints = n_restraints + 1
+            associate (restraint => scene%restraints(n_restraints))
+               restraint%displacement_given = [record%is_set("x_displacement"), &
+                                               record%is_set("y_displacement")]
+               call exchange_restraint(record, restraint, .true.)
+            end associate
+         case ("point_load")
+            n_point_loads = n_point_loads + 1
+            call exchange_point_load(record, scene%point_loads(n_point_loads), .true.)
          case ("injection")
             n_injections = n_injections + 1
             scene%injections(n_injections)%at_point = record%is_set("x")
@@ -75,6 +80,10 @@ contains
          end do
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
+      if (.not. sheet%has("fluid")) then  ! the programme takes one unit of time
+         scene%time%end = 1.0_rk
+         scene%time%step = 1.0_rk/real(scene%load%steps, rk)
+      end if
    end subroutine sheet_to_scene
 
    !> A sheet that says all there is in a scene.
@@ -86,8 +95,11 @@ contains
       integer :: group, i
 
       source = scene  ! exchange takes what it may write to
+      if (.not. allocated(source%restraints)) allocate (source%restraints(0))
+      if (.not. allocated(source%point_loads)) allocate (source%point_loads(0))
       sheet%path = ""
       do group = 1, size(groups)
+         if (.not. applies(groups(group)%scenes, source%has_fluid())) cycle
          select case (groups(group)%name)
          case ("fracture")
             do i = 1, size(source%fractures)
@@ -100,6 +112,18 @@ contains
                record = empty_record(group, 0_ik)
                call set_text(record, "name", trim(side_names(i)))
                call exchange_side(record, source%sides(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case ("restraint")
+            do i = 1, size(source%restraints)
+               record = empty_record(group, 0_ik)
+               call exchange_restraint(record, source%restraints(i), .false.)
+               call add_record(sheet, record)
+            end do
+         case ("point_load")
+            do i = 1, size(source%point_loads)
+               record = empty_record(group, 0_ik)
+               call exchange_point_load(record, source%point_loads(i), .false.)
                call add_record(sheet, record)
             end do
          case ("injection")
@@ -117,14 +141,26 @@ contains
                call add_record(sheet, record)
             end do
          case default
-            if (any(groups(group)%name == [character(len=12) :: "fluid", "initial"]) .and. &
-                .not. source%fluid%viscosity > 0.0_rk) cycle  ! a scene without fluid has neither
+            if (groups(group)%name == "fluid" .and. .not. source%has_fluid()) cycle
             record = empty_record(group, 0_ik)
             call exchange_single(record, source, .false.)
+            call drop_foreign(record, source%has_fluid())
             call add_record(sheet, record)
          end select
       end do
    end subroutine scene_to_sheet
+
+   !> Leave out what a scene of this kind must not give.
+   pure subroutine drop_foreign(record, has_fluid)
+      type(record_t), intent(inout) :: record
+      logical, intent(in) :: has_fluid
+      integer :: item
+
+      do item = lbound(record%values, 1), ubound(record%values, 1)
+         if (applies(parameters(item)%scenes, has_fluid)) cycle
+         record%values(item)%is_set = .false.
+      end do
+   end subroutine drop_foreign
 
    !> The groups that a scene has once.
    pure subroutine exchange_single(record, scene, reading)
@@ -154,7 +190,11 @@ contains
          call exchange(record, "step", scene%time%step, reading)
          call exchange(record, "growth_factor", scene%time%growth_factor, reading)
          call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
-      case ("coarse", "fine")
+      case ("load")
+         call exchange(record, "from", scene%load%from, reading)
+         call exchange(record, "to", scene%load%to, reading)
+         call exchange(record, "steps", scene%load%steps, reading)
+      case ("coarse", "fe", "fine")
          call exchange_discretization(record, scene%discretization, reading)
       case ("growth")
          call exchange_growth(record, scene%growth, reading)
@@ -199,7 +239,10 @@ contains
       call exchange(record, "name", fracture%name, reading)
       call exchange(record, "x", fracture%x, reading)
       call exchange(record, "y", fracture%y, reading)
-      call exchange(record, "friction", fracture%friction, reading)
+      call exchange(record, "law", fracture%law, reading)
+      if (reading .or. fracture%law == "friction") then
+         call exchange(record, "friction", fracture%friction, reading)
+      end if
       dilation_deg = to_degrees(fracture%dilation)
       call exchange(record, "dilation_deg", dilation_deg, reading)
       fracture%dilation = dilation_deg*radians
@@ -225,6 +268,32 @@ contains
       if (side%pressure_given) call exchange(record, "pressure", side%pressure, reading)
    end subroutine exchange_side
 
+   pure subroutine exchange_restraint(record, restraint, reading)
+      type(record_t), intent(inout) :: record
+      type(restraint_t), intent(inout) :: restraint
+      logical, intent(in) :: reading
+      character(len=1), parameter :: axes(2) = ["x", "y"]
+      integer :: axis
+
+      call exchange(record, "x", restraint%x, reading)
+      call exchange(record, "y", restraint%y, reading)
+      do axis = 1, 2
+         if (.not. restraint%displacement_given(axis)) cycle
+         call exchange(record, axes(axis)//"_displacement", restraint%displacement(axis), reading)
+      end do
+   end subroutine exchange_restraint
+
+   pure subroutine exchange_point_load(record, point_load, reading)
+      type(record_t), intent(inout) :: record
+      type(point_load_t), intent(inout) :: point_load
+      logical, intent(in) :: reading
+
+      call exchange(record, "x", point_load%x, reading)
+      call exchange(record, "y", point_load%y, reading)
+      call exchange(record, "x_force", point_load%force(1), reading)
+      call exchange(record, "y_force", point_load%force(2), reading)
+   end subroutine exchange_point_load
+
    !> Without the fracture, which the scene knows by index and the sheet by name.
    pure subroutine exchange_injection(record, injection, reading)
       type(record_t), intent(inout) :: record
@@ -245,18 +314,26 @@ contains
       type(discretization_t), intent(inout) :: discretization
       logical, intent(in) :: reading
 
-      if (groups(record%group)%name == "coarse") then
+      select case (groups(record%group)%name)
+      case ("coarse")
          call exchange(record, "size_fracture", discretization%size_fracture, reading, &
                        nothing=0.0_rk)
          call exchange(record, "size_boundary", discretization%size_boundary, reading)
          call exchange(record, "newton_max", discretization%newton_max, reading)
          call exchange(record, "newton_tolerance", discretization%newton_tolerance, reading)
-      else
+      case ("fe")
+         call exchange(record, "size_fracture", discretization%size_fracture, reading, &
+                       nothing=0.0_rk)
+         call exchange(record, "size_boundary", discretization%size_boundary, reading)
+         call exchange(record, "rosette_radius", discretization%rosette_radius, reading, &
+                       nothing=0.0_rk)
+         call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
+      case default  ! fine
          call exchange(record, "window", discretization%window, reading, nothing=0.0_rk)
          call exchange(record, "size_ratio", discretization%fine_ratio, reading)
          call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
          call exchange(record, "face_condition", discretization%face_condition, reading)
-      end if
+      end select
    end subroutine exchange_discretization
 
    pure subroutine exchange_growth(record, growth, reading)
@@ -283,127 +360,6 @@ contains
       call exchange(record, "x", probe%x, reading)
       call exchange(record, "y", probe%y, reading)
    end subroutine exchange_probe
-
-   pure subroutine exchange_real(record, name, component, reading, nothing)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      real(rk), intent(inout) :: component
-      logical, intent(in) :: reading
-      real(rk), intent(in), optional :: nothing
-
-      associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
-            if (value%is_set) component = value%reals(1)
-         else
-            value%is_set = .true.
-            if (present(nothing)) value%is_set = .not. same_bits(component, nothing)
-            value%reals = [component]
-         end if
-      end associate
-   end subroutine exchange_real
-
-   pure subroutine exchange_reals(record, name, component, reading)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout) :: component(:)
-      logical, intent(in) :: reading
-
-      associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
-            if (value%is_set) component = value%reals
-         else
-            value%is_set = .true.
-            value%reals = component
-         end if
-      end associate
-   end subroutine exchange_reals
-
-   pure subroutine exchange_integer(record, name, component, reading)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      integer(ik), intent(inout) :: component
-      logical, intent(in) :: reading
-
-      associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
-            if (value%is_set) component = value%whole
-         else
-            value%is_set = .true.
-            value%whole = component
-         end if
-      end associate
-   end subroutine exchange_integer
-
-   pure subroutine exchange_logical(record, name, component, reading)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      logical, intent(inout) :: component
-      logical, intent(in) :: reading
-
-      associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
-            if (value%is_set) component = value%flag
-         else
-            value%is_set = .true.
-            value%flag = component
-         end if
-      end associate
-   end subroutine exchange_logical
-
-   pure subroutine exchange_text(record, name, component, reading)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      ! allow(C072)
-      character(len=*), intent(inout) :: component
-      logical, intent(in) :: reading
-      type(value_t) :: value
-
-      if (reading) then
-         value = record%value(name)
-         if (value%is_set) component = value%text
-      else
-         call set_text(record, name, trim(component))
-      end if
-   end subroutine exchange_text
-
-   pure subroutine set_text(record, name, text)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name, text
-
-      associate (value => record%values(parameter_index(record%group, name)))
-         value%is_set = .true.
-         value%text = text
-      end associate
-   end subroutine set_text
-
-   !> The simplest angle in degrees from which the same bits in radians follow.
-   pure real(rk) function to_degrees(angle) result(degrees)
-      real(rk), intent(in) :: angle  !< [rad]
-      character(len=32) :: style, buffer
-      real(rk) :: candidate
-      integer :: n_digits, neighbour
-
-      degrees = angle/radians
-      do n_digits = 1, 17
-         write (style, "(a,i0,a)") "(es32.", n_digits - 1, "e3)"
-         write (buffer, style) angle/radians
-         read (buffer, "(f32.0)") candidate
-         if (same_bits(candidate*radians, angle)) then
-            degrees = candidate
-            return
-         end if
-      end do
-      do neighbour = -4, 4  ! the product may round away from the angle
-         candidate = angle/radians + real(neighbour, rk)*spacing(angle/radians)
-         if (same_bits(candidate*radians, angle)) degrees = candidate
-      end do
-   end function to_degrees
-
-   pure logical function same_bits(a, b)
-      real(rk), intent(in) :: a, b
-
-      same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
-   end function same_bits
 
    pure integer function count_of(sheet, name) result(n)
       type(sheet_t), intent(in) :: sheet

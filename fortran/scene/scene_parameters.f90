@@ -6,14 +6,16 @@ module scene_parameters
    use base_kinds, only: rk
    use scene_intervals, only: at_least_zero, biot_range, dilation_range, interval_t, newton_range, &
                               poisson_range, porosity_range, positive, rosette_range, share, &
-                              tolerance_range
+                              steps_range, tolerance_range
    implicit none(type, external)
    private
 
    public :: group_t, parameter_t
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
-   public :: need_always, need_fluid, need_fracture, need_growth, need_never, need_tips
+   public :: need_always, need_fluid, need_fracture, need_friction, need_growth, need_never
+   public :: need_tips
+   public :: applies, in_all, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
    integer, parameter :: kind_reals = 2  !< a list of any length
@@ -29,6 +31,12 @@ module scene_parameters
    integer, parameter :: need_fracture = 3  !< where there is a fracture
    integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
    integer, parameter :: need_growth = 5  !< where fractures grow
+   integer, parameter :: need_friction = 6  !< in a fracture with the law 'friction'
+
+   ! Scenes that may give a group or a parameter.
+   integer, parameter :: in_all = 0
+   integer, parameter :: in_fluid = 1  !< scenes with &fluid
+   integer, parameter :: in_mechanics = 2  !< scenes without &fluid: mechanics only
 
    integer, parameter :: text_length = 256  !< longest text; names are shorter (scene_types)
 
@@ -40,6 +48,7 @@ module scene_parameters
       character(len=12) :: name = ""
       logical :: repeated = .false.  !< one group per item
       logical :: implied = .false.  !< an absent group stands for one that holds the defaults
+      integer :: scenes = in_all  !< which may have it
       character(len=400) :: meaning = ""
    end type group_t
 
@@ -53,6 +62,7 @@ module scene_parameters
       character(len=16) :: default = ""  !< as a file would give it; empty: none
       character(len=40) :: absent = ""  !< what it means if neither given nor defaulted
       type(interval_t) :: range = interval_t()
+      integer :: scenes = in_all  !< which may give it
       character(len=32) :: choices = ""  !< separated by `|`
       character(len=160) :: meaning = ""
    end type parameter_t
@@ -68,7 +78,8 @@ module scene_parameters
               "is either isotropic or a positive definite tensor."), &
       group_t("fluid", &
               meaning="The fluid in pores and fractures. A scene without this group is "// &
-              "mechanics only, and can have neither injections nor pressures."), &
+              "mechanics only, and can have neither injections nor pressures: finite elements "// &
+              "on the whole body under a load that rises."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary."), &
@@ -76,16 +87,28 @@ module scene_parameters
               meaning="A side of the body. Per component either the displacement or the total "// &
               "traction is prescribed; what is not given is free of traction. The "// &
               "displacements must hold the body against translation and rotation."), &
-      group_t("injection", repeated=.true., &
+      group_t("restraint", repeated=.true., scenes=in_mechanics, &
+              meaning="A point of the body held in place. It becomes a node of the mesh."), &
+      group_t("point_load", repeated=.true., scenes=in_mechanics, &
+              meaning="A force at a point of the body, per metre of thickness, times the load "// &
+              "factor. The point becomes a node of the mesh."), &
+      group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
               "is at the start, or into its cell nearest to a point. That point must lie "// &
               "within `size_fracture` of the fracture."), &
-      group_t("initial", implied=.true., &
-              meaning="State before the first step. Only in scenes with &fluid."), &
-      group_t("time", implied=.true., meaning="Time steps."), &
-      group_t("coarse", implied=.true., &
+      group_t("initial", implied=.true., scenes=in_fluid, &
+              meaning="State before the first step."), &
+      group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
+      group_t("load", implied=.true., scenes=in_mechanics, &
+              meaning="How the load rises: tractions, point loads and displacements are those "// &
+              "of the scene times a factor. With growth the factor at which the next tip grows "// &
+              "is found, and never stepped over."), &
+      group_t("fe", implied=.true., scenes=in_mechanics, &
+              meaning="Finite elements on the whole body: six-node triangles, with "// &
+              "quarter-point elements around the fracture tips."), &
+      group_t("coarse", implied=.true., scenes=in_fluid, &
               meaning="The coarse level: finite volumes on the whole body."), &
-      group_t("fine", implied=.true., &
+      group_t("fine", implied=.true., scenes=in_fluid, &
               meaning="The fine level: finite elements in a window around each fracture tip. "// &
               "Used where growth or stress intensity factors are asked for."), &
       group_t("growth", implied=.true., meaning="Fracture growth."), &
@@ -141,7 +164,11 @@ module scene_parameters
       parameter_t("fracture", "x", kind_reals, "m", need_always, &
                   meaning="x of the vertices, from one end to the other"), &
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
-      parameter_t("fracture", "friction", need=need_always, range=at_least_zero, &
+      parameter_t("fracture", "law", kind_choice, default="'friction'", choices="friction|open", &
+                  meaning="What the faces do: touch with friction, or nothing (open: free of "// &
+                  "traction, and free to overlap; in mechanics-only scenes)"), &
+      parameter_t("fracture", "friction", need=need_friction, range=at_least_zero, &
+                  absent="no friction", &
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
@@ -157,8 +184,18 @@ module scene_parameters
                   meaning="Total traction in x: on the right side, compression is negative"), &
       parameter_t("side", "y_traction", unit="Pa", absent="0, or displacement is given", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
-      parameter_t("side", "pressure", unit="Pa", absent="no flow", &
-                  meaning="Prescribed pore pressure")]
+      parameter_t("side", "pressure", unit="Pa", absent="no flow", scenes=in_fluid, &
+                  meaning="Prescribed pore pressure"), &
+      parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
+      parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
+      parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &
+                  meaning="Prescribed displacement in x, times the load factor"), &
+      parameter_t("restraint", "y_displacement", unit="m", absent="free in y", &
+                  meaning="Prescribed displacement in y, times the load factor"), &
+      parameter_t("point_load", "x", unit="m", need=need_always, meaning="x of the point"), &
+      parameter_t("point_load", "y", unit="m", need=need_always, meaning="y of the point"), &
+      parameter_t("point_load", "x_force", unit="N/m", default="0.0", meaning="Force in x"), &
+      parameter_t("point_load", "y_force", unit="N/m", default="0.0", meaning="Force in y")]
 
    type(parameter_t), parameter :: process_parameters(*) = [ &
       parameter_t("injection", "fracture", kind_name, need=need_always, &
@@ -189,6 +226,22 @@ module scene_parameters
       parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
                   meaning="Share of the regular step below which a cut step ends the run, at "// &
                   "most growth_factor"), &
+      parameter_t("load", "from", default="0.0", &
+                  meaning="Load factor before the first step; with growth at least 0"), &
+      parameter_t("load", "to", default="1.0", meaning="Load factor at the end"), &
+      parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
+                  meaning="Equal steps from the one to the other"), &
+      parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
+                  absent="no fracture", &
+                  meaning="Element size at the fractures, at most size_boundary and the "// &
+                  "length of each fracture"), &
+      parameter_t("fe", "size_boundary", unit="m", need=need_always, range=positive, &
+                  meaning="Element size far from the fractures, at most the shorter edge of "// &
+                  "the domain"), &
+      parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
+                  meaning="Size of the elements around a tip, less where something is near"), &
+      parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
+                  meaning="Quarter-point elements around a tip"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
                   meaning="Cell size dH at the fractures, at most size_boundary and the "// &
@@ -215,14 +268,17 @@ module scene_parameters
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "increment", unit="m", default="0.0", range=at_least_zero, &
-                  meaning="Largest advance l_max of a tip at a time; 0: the fine mesh size"), &
+                  meaning="Largest advance l_max of a tip at a time; 0: the fine mesh size, or "// &
+                  "size_fracture in a mechanics-only scene"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
                   meaning="Exponent m of advance = l_max (G/G_max)^m"), &
-      parameter_t("growth", "threshold", default="0.5", range=positive, &
+      parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
                   meaning="Growth is handed to the coarse level at this share eps_p of dH"), &
       parameter_t("growth", "new_aperture", unit="m", default="1.0e-5", range=positive, &
+                  scenes=in_fluid, &
                   meaning="Residual aperture of new fracture cells"), &
       parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
+                  scenes=in_fluid, &
                   choices="conserved|prefilled", &
                   meaning="Fluid of new cells: drawn from the connected cells, or appearing "// &
                   "with them"), &
@@ -234,9 +290,20 @@ module scene_parameters
       parameter_t("probe", "y", unit="m", need=need_always, meaning="y, within the domain"), &
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
       parameter_t("output", "interval", unit="s", default="0.0", range=at_least_zero, &
+                  scenes=in_fluid, &
                   meaning="Time between written fields; 0: every regular step")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]
+
+contains
+
+   !> Whether a scene with or without a fluid may have a group or a parameter.
+   elemental logical function applies(scenes, has_fluid)
+      integer, intent(in) :: scenes  !< in_all, in_fluid or in_mechanics
+      logical, intent(in) :: has_fluid
+
+      applies = scenes == in_all .or. (scenes == in_fluid .eqv. has_fluid)
+   end function applies
 
 end module scene_parameters

@@ -3,8 +3,8 @@ module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
-   use scene_parameters, only: groups, need_always, need_fluid, need_fracture, need_growth, &
-                               need_tips, parameters
+   use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
+                               need_friction, need_growth, need_tips, parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
                           refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
@@ -209,21 +209,24 @@ contains
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
       type(value_t) :: enabled, intensities
+      logical :: has_fluid
       integer :: i, item, growth
 
+      has_fluid = sheet%has("fluid")
       do i = 1, size(groups)
-         if (groups(i)%implied .and. .not. sheet%has(trim(groups(i)%name))) then
-            call add_record(sheet, empty_record(i, 0_ik))
-         end if
+         if (.not. (groups(i)%implied .and. applies(groups(i)%scenes, has_fluid))) cycle
+         if (.not. sheet%has(trim(groups(i)%name))) call add_record(sheet, empty_record(i, 0_ik))
       end do
       do i = 1, sheet%length
          do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
-            if (.not. sheet%records(i)%values(item)%is_set) then
+            if (sheet%records(i)%values(item)%is_set) cycle
+            if (applies(parameters(item)%scenes, has_fluid)) then
                call default_value(parameters(item), sheet%records(i)%values(item))
             end if
          end do
       end do
       call name_by_file(sheet, error)
+      if (.not. allocated(error)) call refuse_foreign(sheet, error)
       if (allocated(error)) return
       growth = sheet%find("growth")
       enabled = sheet%records(growth)%value("enabled")
@@ -259,15 +262,44 @@ contains
       end associate
    end subroutine name_by_file
 
+   !> Scenes with and without fluid have groups and names of their own.
+   pure subroutine refuse_foreign(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+      logical :: has_fluid
+      integer :: i, item
+
+      has_fluid = sheet%has("fluid")
+      reason = "needs a fluid, but the group &fluid is missing"
+      if (has_fluid) reason = "is for mechanics-only scenes, but this one has the group &fluid"
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (.not. applies(groups(record%group)%scenes, has_fluid)) then
+               call refuse(error, sheet, i, "", reason)
+               return
+            end if
+            do item = lbound(record%values, 1), ubound(record%values, 1)
+               if (record%values(item)%line == 0) cycle
+               if (applies(parameters(item)%scenes, has_fluid)) cycle
+               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
+               return
+            end do
+         end associate
+      end do
+   end subroutine refuse_foreign
+
    !> Refuse a group that lacks a value which this scene needs.
    pure subroutine refuse_missing(sheet, record, has_growth, has_tips, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
       logical, intent(in) :: has_growth, has_tips
       type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: law
       logical :: needed
       integer :: item
 
+      if (.not. applies(groups(sheet%records(record)%group)%scenes, sheet%has("fluid"))) return
       associate (group => groups(sheet%records(record)%group))
          do item = lbound(sheet%records(record)%values, 1), ubound(sheet%records(record)%values, 1)
             if (sheet%records(record)%values(item)%is_set) cycle
@@ -282,6 +314,9 @@ contains
                needed = has_tips
             case (need_growth)
                needed = has_growth
+            case (need_friction)
+               law = sheet%records(record)%value("law")
+               needed = law%text == "friction"
             case default
                needed = .false.
             end select
@@ -314,6 +349,8 @@ contains
          words = words//", which growth and stress intensity factors need"
       case (need_growth)
          words = words//", which growth needs"
+      case (need_friction)
+         words = words//", which the law 'friction' needs"
       case default
          words = words//", which is always needed"
       end select

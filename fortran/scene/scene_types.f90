@@ -5,7 +5,8 @@ module scene_types
    private
 
    public :: boundary_side_t, discretization_t, domain_t, fluid_t, fracture_t, growth_t, initial_t
-   public :: injection_t, material_t, output_t, probe_t, scene_t, time_t
+   public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, restraint_t, scene_t
+   public :: time_t
    public :: name_length
 
    integer, parameter :: name_length = 64
@@ -40,6 +41,7 @@ module scene_types
    type :: fracture_t
       character(len=name_length) :: name = ""
       real(rk), allocatable :: x(:), y(:)  !< vertices [m]
+      character(len=name_length) :: law = "friction"  !< or "open"
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
@@ -53,6 +55,25 @@ module scene_types
       logical :: pressure_given = .false.  !< else no flow
       real(rk) :: pressure = 0.0_rk  !< [Pa]
    end type boundary_side_t
+
+   !> A point of the body that is held, per component.
+   type :: restraint_t
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
+      logical :: displacement_given(2) = .false.  !< x, y
+      real(rk) :: displacement(2) = 0.0_rk  !< [m]
+   end type restraint_t
+
+   !> A force at a point of the body.
+   type :: point_load_t
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
+      real(rk) :: force(2) = 0.0_rk  !< [N/m]
+   end type point_load_t
+
+   !> How the load of a mechanics-only scene rises.
+   type :: load_t
+      real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
+      integer(ik) :: steps = 1  !< equal ones
+   end type load_t
 
    !> A well: fluid injected into a fracture.
    type :: injection_t
@@ -85,6 +106,7 @@ module scene_types
       real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window [m]
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
       integer(ik) :: rosette_sectors = 12  !< elements around a tip
+      real(rk) :: rosette_radius = 0.0_rk  !< 0: size_fracture; mechanics only [m]
       character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
@@ -123,6 +145,9 @@ module scene_types
       type(fluid_t) :: fluid
       type(fracture_t), allocatable :: fractures(:)
       type(boundary_side_t) :: sides(4)  !< left, right, bottom, top
+      type(restraint_t), allocatable :: restraints(:)
+      type(point_load_t), allocatable :: point_loads(:)
+      type(load_t) :: load
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
       type(time_t) :: time
@@ -130,6 +155,17 @@ module scene_types
       type(growth_t) :: growth
       type(probe_t), allocatable :: probes(:)
       type(output_t) :: output
+   contains
+      procedure :: has_fluid
    end type scene_t
+
+contains
+
+   !> Else it is mechanics only.
+   pure logical function has_fluid(self)
+      class(scene_t), intent(in) :: self
+
+      has_fluid = self%fluid%viscosity > 0.0_rk
+   end function has_fluid
 
 end module scene_types

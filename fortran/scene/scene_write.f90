@@ -3,7 +3,7 @@ module scene_write
    use base_errors, only: error_t, raise_error
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
-   use scene_parameters, only: groups, kind_integer, kind_logical, kind_real, kind_reals, &
+   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, kind_reals, &
                                parameter_t, parameters
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
@@ -39,6 +39,7 @@ contains
          call put("")
          call put("&"//trim(groups(sheet%records(i)%group)%name))
          do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
+            if (.not. applies(parameters(item)%scenes, scene%has_fluid())) cycle
             if (sheet%records(i)%values(item)%is_set) then
                call put_value(parameters(item), sheet%records(i)%values(item))
             else

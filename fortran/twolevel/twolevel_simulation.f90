@@ -10,7 +10,7 @@ module twolevel_simulation
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t, point_boundary, point_interior, point_tip
    use scene_types, only: scene_t
-   use twolevel_network, only: network_of_scene
+   use tips_network, only: network_of_scene
    use twolevel_tips, only: find_tips, tips_t
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_window, only: coarse_level_t
@@ -260,7 +260,7 @@ contains
       call self%evaluate_tips(timers, error)
       do k = 1, corrections
          if (allocated(error)) return
-         call self%tips%correct(any_turned)
+         call self%tips%correct_tips(any_turned)
          if (.not. any_turned) exit
          call self%evaluate_tips(timers, error)
       end do

@@ -1,11 +1,5 @@
-!> All free tips with their windows: intensities, growth, and what the coarse level has yet to learn of it.
-!!
-!! Direction of growth. A tip kinks by the angle of the largest tangential stress. Under a strong stress along the
-!! crack this angle is right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the
-!! crack less the one across it; Cotterell and Rice 1980), here a few millimetres: longer explicit steps
-!! overshoot to and fro, and the path meanders more and more. So each step but the first kink of a
-!! fracture's end is corrected until the kink angle at the new tip vanishes, that is, until the
-!! criterion holds at the end of the step (backward Euler for the path; local symmetry).
+!> All free tips with their windows: intensities, growth, and what the coarse level has yet to learn
+!! of it. Directions of growth: tips_path.
 module twolevel_tips
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -14,27 +8,20 @@ module twolevel_tips
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use tips_growth, only: advances, carry_over, growth_drive, growth_drive_t, new_tip
+   use tips_network, only: extend, other_distance
+   use tips_path, only: path_t
    use tips_types, only: intensity_t
-   use twolevel_network, only: extend, other_distance
    use twolevel_window, only: coarse_level_t, window_t
    implicit none(type, external)
    private
 
    public :: find_tips, tip_t, tips_t
 
-   !> A free tip.
-   type :: tip_t
+   !> A free tip; its place is that on the fine level.
+   type, extends(path_t) :: tip_t
       integer(ik) :: fracture = 0  !< in the network
       integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
-      real(rk) :: xy(2) = 0.0_rk  !< where it is on the fine level [m]
-      real(rk) :: direction(2) = 0.0_rk  !< unit vector ahead
-      real(rk) :: carried = 0.0_rk  !< growth too short for the mesh, kept [m]
       real(rk) :: pending = 0.0_rk  !< growth that the coarse level does not know yet [m]
-      real(rk) :: advance = 0.0_rk  !< of the last call of `grow` [m]
-      real(rk) :: kink = 0.0_rk  !< of that advance, anticlockwise [rad]
-      real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
-      logical :: has_wing = .false.  !< has grown before
-      real(rk) :: tried_kink = 0.0_rk, tried_drive = 0.0_rk  !< last try of `correct` [rad]
       integer(ik) :: pending_vertices = 0
       logical :: arrested = .false.
       character(len=:), allocatable :: arrest_reason
@@ -53,7 +40,7 @@ module twolevel_tips
    contains
       procedure :: evaluate
       procedure :: grow
-      procedure :: correct
+      procedure :: correct_tips
       procedure :: coarse_changed
       procedure :: hand_over
    end type tips_t
@@ -148,17 +135,9 @@ contains
             if (tip%arrested) cycle
             call extend(self%network, tip%fracture, tip%end, to)
             call forget_windows(self, tip%xy, to)
-            tip%origin = tip%xy
-            tip%heading = tip%direction
-            tip%direction = (to - tip%xy)/norm2(to - tip%xy)
-            tip%xy = to
-            tip%advance = applied
-            tip%kink = tip%drive%angle
+            call tip%move(to, tip%drive%angle)
             tip%intensity_before = tip%intensity
             tip%drive_before = tip%drive
-            ! Going straight on would leave the drive about as it is.
-            tip%tried_kink = 0.0_rk
-            tip%tried_drive = tip%drive%angle
             tip%pending = tip%pending + applied
             tip%pending_vertices = tip%pending_vertices + 1
             any_grew = .true.
@@ -166,41 +145,31 @@ contains
       end do
    end subroutine grow
 
-   !> Turn the last advance of each tip so that the kink angle at its new end vanishes, by a secant step.
-   !! The tips have to be evaluated before and after.
-   subroutine correct(self, any_turned)
+   !> Turn the last advance of each tip so that it goes on straight. The tips have to be evaluated
+   !! before and after.
+   subroutine correct_tips(self, any_turned)
       class(tips_t), intent(inout) :: self
       logical, intent(out) :: any_turned
 
-      real(rk), parameter :: enough = 0.035_rk  !< two degrees
-      real(rk), parameter :: largest = 1.23_rk  !< pure sliding [rad]
-      real(rk) :: kink, to(2)
+      real(rk) :: before(2)
       integer(ik) :: at, i
+      logical :: has_turned
 
       any_turned = .false.
       do i = 1, size(self%tip)
          associate (tip => self%tip(i))
-            if (.not. (tip%advance > 0.0_rk .and. tip%has_wing)) cycle
-            if (abs(tip%drive%angle) < enough) cycle
-            if (.not. abs(tip%drive%angle - tip%tried_drive) > 1.0e-3_rk) cycle
-            kink = tip%kink - tip%drive%angle*(tip%kink - tip%tried_kink) &
-               /(tip%drive%angle - tip%tried_drive)
-            kink = min(largest, max(-largest, kink))
-            to = new_tip(tip%origin, tip%heading, kink, tip%advance)
+            before = tip%xy
+            call tip%correct(tip%drive%angle, has_turned)
+            if (.not. has_turned) cycle
             at = merge(self%network%first(tip%fracture), self%network%first(tip%fracture + 1) - 1, &
                tip%end == 1)
+            call forget_windows(self, tip%origin, before)
             call forget_windows(self, tip%origin, tip%xy)
-            call forget_windows(self, tip%origin, to)
-            self%network%xy(:, at) = to
-            tip%xy = to
-            tip%direction = (to - tip%origin)/tip%advance
-            tip%tried_kink = tip%kink
-            tip%tried_drive = tip%drive%angle
-            tip%kink = kink
+            self%network%xy(:, at) = tip%xy
             any_turned = .true.
          end associate
       end do
-   end subroutine correct
+   end subroutine correct_tips
 
    !> A tip that comes nearer to another fracture or to the boundary than the coarse cells can resolve stops.
    subroutine find_obstacle(network, scene, tip, to)

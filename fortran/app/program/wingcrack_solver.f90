@@ -1,6 +1,7 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
-   use app_check, only: describe_scene, require_supported
+   use app_check, only: describe_scene
+   use app_load, only: run_load
    use app_process, only: catch_interrupts, keep_heap, use_one_blas_thread
    use app_run, only: run_scene
    use app_version, only: version
@@ -58,14 +59,17 @@ contains
          i = i + 1
       end do
       call read_scene(argument(2), scene, error)
-      if (.not. allocated(error)) call require_supported(scene, argument(2), error)
       if (allocated(error)) call leave(error%message, exit_usage)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
 
       call keep_heap()
       call use_one_blas_thread()
       call catch_interrupts()
-      call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
+      if (scene%has_fluid()) then
+         call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
+      else
+         call run_load(scene, directory, version, quiet, refused, was_interrupted, error)
+      end if
       if (allocated(error)) then
          if (refused) call leave(argument(2)//": "//error%message, exit_usage)
          call leave(error%message, exit_failed)
@@ -80,7 +84,6 @@ contains
 
       if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
       call read_scene(argument(2), scene, error)
-      if (.not. allocated(error)) call require_supported(scene, argument(2), error)
       if (allocated(error)) call leave(error%message, exit_usage)
       call describe_scene(scene, output_unit)
    end subroutine check

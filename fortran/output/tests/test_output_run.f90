@@ -160,7 +160,8 @@ contains
       call checks%no_error(error, "close without fluid")
       call starts(folder//"/history.csv", "time_s,dt_s,newton_iterations,fracture_volume_m2,"// &
          & "max_slip_m,max_opening_m,n_stick,n_slip,n_open,fracture_length_m,n_tips,"// &
-         & "n_intersections,seismic_moment_nm"//nl//"1.0,0.0,0,0.0,0.0,0.0,0,0,0,0.0,0,0,0.0"//nl)
+         & "n_intersections,seismic_moment_nm,load_factor,strain_energy_j"//nl// &
+         & "1.0,0.0,0,0.0,0.0,0.0,0,0,0,0.0,0,0,0.0,0.0,0.0"//nl)
       call starts(folder//"/fractures.csv", "time_s,fracture,s_m,x_m,y_m,aperture_m,jump_n_m,"// &
          & "jump_t_m,traction_n_pa,traction_t_pa,state"//nl)
       call starts(folder//"/probes.csv", "time_s,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,A_sxy_pa"//nl// &

@@ -93,19 +93,46 @@ contains
       if (.not. same([a%time%end, a%time%step, a%time%growth_factor, a%time%smallest_factor], &
                      [b%time%end, b%time%step, b%time%growth_factor, &
                       b%time%smallest_factor])) return
+      if (.not. same_loading(a, b)) return
       if (.not. same_levels(a, b)) return
       if (a%output%vtu .neqv. b%output%vtu) return
       if (.not. same(a%output%interval, b%output%interval)) return
       same_scene = .true.
    end function same_scene
 
+   !> Programme, restraints and point loads.
+   pure logical function same_loading(a, b)
+      type(scene_t), intent(in) :: a, b
+      integer :: i
+
+      same_loading = .false.
+      if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
+      if (a%load%steps /= b%load%steps) return
+      if (size(a%restraints) /= size(b%restraints)) return
+      if (size(a%point_loads) /= size(b%point_loads)) return
+      do i = 1, size(a%restraints)
+         associate (p => a%restraints(i), q => b%restraints(i))
+            if (any(p%displacement_given .neqv. q%displacement_given)) return
+            if (.not. same([p%x, p%y, p%displacement], [q%x, q%y, q%displacement])) return
+         end associate
+      end do
+      do i = 1, size(a%point_loads)
+         associate (p => a%point_loads(i), q => b%point_loads(i))
+            if (.not. same([p%x, p%y, p%force], [q%x, q%y, q%force])) return
+         end associate
+      end do
+      same_loading = .true.
+   end function same_loading
+
    pure logical function same_levels(a, b)
       type(scene_t), intent(in) :: a, b
 
       same_levels = .false.
       associate (d => a%discretization, e => b%discretization)
-         if (.not. same([d%size_fracture, d%size_boundary, d%window, d%fine_ratio], &
-                        [e%size_fracture, e%size_boundary, e%window, e%fine_ratio])) return
+         if (.not. same([d%size_fracture, d%size_boundary, d%window, d%fine_ratio, &
+                         d%rosette_radius], &
+                        [e%size_fracture, e%size_boundary, e%window, e%fine_ratio, &
+                         e%rosette_radius])) return
          if (.not. same(d%newton_tolerance, e%newton_tolerance)) return
          if (d%rosette_sectors /= e%rosette_sectors .or. d%newton_max /= e%newton_max) return
          if (d%face_condition /= e%face_condition) return
@@ -122,7 +149,8 @@ contains
    pure logical function same_fracture(a, b)
       type(fracture_t), intent(in) :: a, b
 
-      same_fracture = a%name == b%name .and. same(a%x, b%x) .and. same(a%y, b%y)
+      same_fracture = a%name == b%name .and. a%law == b%law
+      same_fracture = same_fracture .and. same(a%x, b%x) .and. same(a%y, b%y)
       same_fracture = same_fracture .and. same([a%friction, a%dilation, a%aperture], &
                                                [b%friction, b%dilation, b%aperture])
    end function same_fracture

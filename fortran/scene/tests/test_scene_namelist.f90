@@ -164,15 +164,32 @@ contains
       type(error_t), allocatable :: error
 
       call put_lines(path, [character(len=80) :: smallest(), &
-                            "&fracture name='f' x=0.4,0.6 y=0.5,0.5 friction=0 /"])
+                            "&fracture name='f' x=0.4,0.6 y=0.5,0.5 law='open' /"])
       call read_scene(path, scene, error)
-      call checks%fails_with(error, "&coarse: size_fracture [m], which a scene with a "// &
+      call checks%fails_with(error, "&fe: size_fracture [m], which a scene with a "// &
                              "fracture needs", "a fracture needs its cell size")
       call put_lines(path, [character(len=80) :: smallest(0.1_rk), &
-                            "&fracture name='f' x=0.4,0.6 y=0.5,0.5 friction=0 /"])
+                            "&fracture name='f' x=0.4,0.6 y=0.5,0.5 law='open' /", &
+                            "&restraint x=1 y=1 x_displacement=-0.5 /", &
+                            "&point_load x=0 y=1 x_force=2 y_force=-3e5 /", &
+                            "&load from=0.5 to=2 steps=3 /"])
       call read_scene(path, scene, error)
       call checks%no_error(error, "mechanics only")
       if (allocated(error)) return
+      call checks%is_true(.not. scene%has_fluid(), "mechanics only: no fluid")
+      call checks%is_true(scene%fractures(1)%law == "open", "an open fracture")
+      call checks%is_true(size(scene%restraints) == 1 .and. size(scene%point_loads) == 1, &
+                          "a restraint and a point load")
+      associate (point => scene%restraints(1), force => scene%point_loads(1))
+         call checks%is_true(all(point%displacement_given .eqv. [.true., .false.]), &
+                             "the restraint holds x")
+         call exactly([point%x, point%y, point%displacement], [1.0_rk, 1.0_rk, -0.5_rk, 0.0_rk], &
+                      "restraint")
+         call exactly([force%x, force%y, force%force], [0.0_rk, 1.0_rk, 2.0_rk, -3.0e5_rk], &
+                      "point load")
+      end associate
+      call exactly([scene%load%from, scene%load%to, scene%time%end, scene%time%step], &
+                   [0.5_rk, 2.0_rk, 1.0_rk, 1.0_rk/3.0_rk], "load")
       call exactly([scene%fluid%viscosity], [0.0_rk], "a viscosity of 0 tells that there is "// &
                    "no fluid")
    end subroutine check_mechanics_only
@@ -247,10 +264,10 @@ contains
       lines = [character(len=80) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                "&material young=1e9 poisson=0.2 /", &
                "&side name='bottom' x_displacement=0 y_displacement=0 /", &
-               "&time end=1 step=1 /", &
-               "&coarse size_boundary=0.2 /"]
+               "&output /", &
+               "&fe size_boundary=0.2 /"]
       if (present(size_fracture)) write (lines(5), "(a,f4.2,a)") &
-         "&coarse size_boundary=0.2 size_fracture=", size_fracture, " /"
+         "&fe size_boundary=0.2 size_fracture=", size_fracture, " /"
    end function smallest
 
    subroutine exactly(values, expected, name)

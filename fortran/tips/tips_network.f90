@@ -1,5 +1,5 @@
 !> The fracture network as it grows: polylines that get vertices at their ends.
-module twolevel_network
+module tips_network
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t
    use scene_types, only: scene_t
@@ -156,4 +156,4 @@ contains
       distance = norm2(p - a - min(1.0_rk, max(0.0_rk, t))*(b - a))
    end function point_distance
 
-end module twolevel_network
+end module tips_network

@@ -1,0 +1,132 @@
+!> Values of the finite-element state as files show them: of elements, fracture cells and points.
+module mechanics_fields
+   use base_kinds, only: ik, rk
+   use fine_element, only: shape_values
+   use mechanics_body, only: body_t
+   use tips_faces, only: face_traction
+   implicit none(type, external)
+   private
+
+   public :: cell_displacement, cell_stress, fracture_jump, fracture_traction, point_state
+
+   real(rk), parameter :: third = 1.0_rk/3.0_rk
+
+contains
+
+   !> Displacement in the middle of each element [m].
+   pure function cell_displacement(body) result(displacement)
+      type(body_t), intent(in) :: body
+      real(rk) :: displacement(2, body%mesh%n_cells)
+      integer(ik) :: cell
+
+      do cell = 1, body%mesh%n_cells
+         displacement(:, cell) = matmul(body%displacement(:, body%model%mesh%cell_nodes(:, cell)), &
+                                        shape_values(middle_of(body, cell)))
+      end do
+   end function cell_displacement
+
+   !> Stress in the middle of each element: xx, yy, xy [Pa].
+   pure function cell_stress(body) result(stress)
+      type(body_t), intent(in) :: body
+      real(rk) :: stress(3, body%mesh%n_cells)
+      integer(ik) :: cell
+
+      do cell = 1, body%mesh%n_cells
+         stress(:, cell) = stress_at(body, cell, middle_of(body, cell), [third, third, third])
+      end do
+   end function cell_stress
+
+   !> Jump at the node within each fracture cell: opening and slip along tau [m].
+   pure function fracture_jump(body) result(jump)
+      type(body_t), intent(in) :: body
+      real(rk) :: jump(2, body%mesh%fracture%n_cells)
+      real(rk) :: vector(2), tau(2)
+      integer(ik) :: cell
+
+      do cell = 1, body%mesh%fracture%n_cells
+         associate (nodes => body%model%mesh%face_nodes(3, :, cell))
+            vector = body%displacement(:, nodes(2)) - body%displacement(:, nodes(1))
+         end associate
+         tau = body%model%mesh%face_tangent(:, cell)
+         jump(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]
+      end do
+   end function fracture_jump
+
+   !> Traction on each fracture cell: normal, and along tau [Pa].
+   pure function fracture_traction(body) result(traction)
+      type(body_t), intent(in) :: body
+      real(rk) :: traction(2, body%mesh%fracture%n_cells)
+      real(rk) :: vector(2), tau(2)
+      integer(ik) :: cell
+
+      do cell = 1, body%mesh%fracture%n_cells
+         vector = face_traction(body%model, body%loads, body%displacement, cell)
+         tau = body%model%mesh%face_tangent(:, cell)
+         traction(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]
+      end do
+   end function fracture_traction
+
+   !> Displacement and stress at a point of an element.
+   pure subroutine point_state(body, cell, xy, displacement, stress)
+      type(body_t), intent(in) :: body
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), intent(out) :: displacement(2)  !< [m]
+      real(rk), intent(out) :: stress(3)  !< xx, yy, xy [Pa]
+      real(rk) :: area_coordinates(3), lambda(3)
+      integer(ik) :: k
+
+      associate (fine => body%model%mesh)
+         do k = 1, 3
+            associate (a => fine%xy(:, fine%cell_nodes(mod(k, 3) + 1, cell)) - xy, &
+                       b => fine%xy(:, fine%cell_nodes(mod(k + 1, 3) + 1, cell)) - xy)
+               area_coordinates(k) = a(1)*b(2) - a(2)*b(1)
+            end associate
+         end do
+         area_coordinates = area_coordinates/sum(area_coordinates)
+         lambda = reference_place(area_coordinates, fine%tip_corner(cell))
+         displacement = matmul(body%displacement(:, fine%cell_nodes(:, cell)), shape_values(lambda))
+      end associate
+      stress = stress_at(body, cell, lambda, area_coordinates)
+   end subroutine point_state
+
+   !> Reference coordinates of an element's middle.
+   pure function middle_of(body, cell) result(lambda)
+      type(body_t), intent(in) :: body
+      integer(ik), intent(in) :: cell
+      real(rk) :: lambda(3)
+
+      lambda = reference_place([third, third, third], body%model%mesh%tip_corner(cell))
+   end function middle_of
+
+   !> Reference coordinates from those in space: a quarter-point element maps 1 - lambda of the
+   !! tip's corner to its square.
+   pure function reference_place(area_coordinates, tip_corner) result(lambda)
+      real(rk), intent(in) :: area_coordinates(3)
+      integer(ik), intent(in) :: tip_corner
+      real(rk) :: lambda(3)
+      real(rk) :: t
+
+      lambda = area_coordinates
+      if (tip_corner == 0) return
+      t = sqrt(max(1.0_rk - area_coordinates(tip_corner), tiny(1.0_rk)))
+      lambda = area_coordinates/t
+      lambda(tip_corner) = 1.0_rk - t
+   end function reference_place
+
+   !> Stress, the one in situ included: xx, yy, xy [Pa].
+   pure function stress_at(body, cell, lambda, area_coordinates) result(stress)
+      type(body_t), intent(in) :: body
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: lambda(3), area_coordinates(3)
+      real(rk) :: stress(3)
+      real(rk) :: tensor(2, 2)
+
+      tensor = body%model%elasticity%total_stress( &
+               body%model%displacement_gradient(body%displacement, cell, lambda), 0.0_rk)
+      stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)] &
+               + matmul(body%loads%initial_stress(:, body%mesh%cell_nodes(:, cell)), &
+                        area_coordinates)
+   end function stress_at
+
+end module mechanics_fields

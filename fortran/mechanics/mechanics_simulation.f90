@@ -1,0 +1,270 @@
+!> A mechanics-only scene in progress: the body, its tips, and the load factor, which rises to each
+!! onset of growth and never past one.
+module mechanics_simulation
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_mesh, phase_remesh, timers_t
+   use mechanics_body, only: body_t
+   use mesh_types, only: network_t
+   use scene_types, only: scene_t
+   use tips_growth, only: advances, carry_over, growth_drive, growth_drive_t, new_tip
+   use tips_network, only: extend, network_of_scene, other_distance
+   use tips_path, only: path_t
+   use tips_types, only: intensity_t
+   implicit none(type, external)
+   private
+
+   public :: simulation_t, tip_t
+
+   !> Share of the toughness within which a tip is at its onset.
+   real(rk), parameter :: at_onset = 1.0e-9_rk
+
+   !> A free tip.
+   type, extends(path_t) :: tip_t
+      integer(ik) :: fracture = 0  !< in the network
+      integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
+      logical :: arrested = .false.
+      character(len=:), allocatable :: arrest_reason
+      type(intensity_t) :: intensity  !< at the present tip
+      type(growth_drive_t) :: drive
+      type(intensity_t) :: intensity_before  !< before the last increment of any tip
+      type(growth_drive_t) :: drive_before
+      real(rk) :: rosette_radius = 0.0_rk  !< [m]
+   end type tip_t
+
+   !> Everything that changes while a scene runs.
+   type :: simulation_t
+      type(scene_t) :: scene
+      type(network_t) :: start  !< network of the scene
+      type(network_t) :: network
+      type(body_t) :: body
+      type(tip_t), allocatable :: tip(:)
+      real(rk) :: factor = 0.0_rk  !< of the load [-]
+   contains
+      procedure :: begin
+      procedure :: respond
+      procedure :: rise
+      procedure :: grow
+      procedure :: time
+   end type simulation_t
+
+contains
+
+   !> Mesh the body; nothing is loaded yet.
+   subroutine begin(self, scene, timers, error)
+      class(simulation_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+
+      self%scene = scene
+      self%factor = scene%load%from
+      self%start = network_of_scene(scene)
+      self%network = self%start
+      call self%body%build(scene, self%network, phase_mesh, timers, error)
+      if (allocated(error)) return
+      associate (fracture => self%body%mesh%fracture)
+         allocate (self%tip(fracture%n_tips))
+         do i = 1, fracture%n_tips
+            self%tip(i)%fracture = fracture%tip_fracture(i)
+            self%tip(i)%end = fracture%tip_end(i)
+            self%tip(i)%xy = fracture%point_xy(:, fracture%tip_point(i))
+            self%tip(i)%direction = fracture%tip_direction(:, i)
+         end do
+      end associate
+   end subroutine begin
+
+   !> The programme's parameter: 0 at the start, 1 at the end [s].
+   pure real(rk) function time(self)
+      class(simulation_t), intent(in) :: self
+
+      associate (load => self%scene%load)
+         time = (self%factor - load%from)/(load%to - load%from)
+      end associate
+   end function time
+
+   !> State and tips at a load factor.
+   subroutine respond(self, factor, timers, error)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: factor  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i, k
+
+      call self%body%respond(self%scene, factor, timers, error)
+      if (allocated(error)) return
+      self%factor = factor
+      if (.not. self%scene%growth%intensities) return
+      associate (fracture => self%body%mesh%fracture)
+         do i = 1, size(self%tip)
+            associate (tip => self%tip(i))
+               k = findloc(fracture%tip_fracture == tip%fracture .and. &
+                           fracture%tip_end == tip%end, .true., dim=1)
+               if (k == 0) cycle  ! no longer free
+               tip%intensity = self%body%intensity(k)
+               tip%rosette_radius = fracture%tip_radius(k)
+               tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
+                                        self%body%model%elasticity%crack_modulus())
+            end associate
+         end do
+      end associate
+   end subroutine respond
+
+   !> Raise the load up to a factor, or to the onset of growth if that comes first.
+   !!
+   !! Without contact the intensities are linear in the factor. The equivalent intensity, the
+   !! largest over all angles of linear functions, is then convex: where it is below the toughness
+   !! at both ends of an interval, it is so within. Its root is found by regula falsi with the
+   !! Illinois rule (Dowell and Jarratt 1971), which keeps it bracketed.
+   subroutine rise(self, target, has_onset, timers, error)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: target  !< [-]
+      logical, intent(out) :: has_onset
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: iterations = 60
+      real(rk) :: low, high, excess_low, excess_high, excess, middle
+      integer :: k
+
+      has_onset = .false.
+      low = self%factor
+      if (.not. allocated(self%body%displacement)) then
+         call self%respond(low, timers, error)
+         if (allocated(error)) return
+      end if
+      if (.not. self%scene%growth%enabled) then
+         call self%respond(target, timers, error)
+         return
+      end if
+      excess_low = largest_excess(self)
+      has_onset = excess_low >= -at_onset
+      if (has_onset) return
+      call self%respond(target, timers, error)
+      if (allocated(error)) return
+      high = target
+      excess_high = largest_excess(self)
+      if (excess_high < -at_onset) return
+      has_onset = .true.
+      do k = 1, iterations
+         if (abs(largest_excess(self)) <= at_onset) return
+         middle = high - excess_high*(high - low)/(excess_high - excess_low)
+         call self%respond(middle, timers, error)
+         if (allocated(error)) return
+         excess = largest_excess(self)
+         if (excess >= 0.0_rk) then
+            if (excess_low < 0.0_rk .and. middle < high) excess_low = 0.5_rk*excess_low
+            high = middle
+            excess_high = excess
+         else
+            if (middle > low) excess_high = 0.5_rk*excess_high
+            low = middle
+            excess_low = excess
+         end if
+      end do
+      call raise_error(error, "", "the load at which the next tip grows was not found")
+   end subroutine rise
+
+   !> By how much the tip nearest to growth exceeds the toughness, relative to it.
+   pure real(rk) function largest_excess(self)
+      type(simulation_t), intent(in) :: self
+
+      largest_excess = -1.0_rk
+      if (.not. all(self%tip%arrested)) then
+         largest_excess = maxval(self%tip%drive%intensity, mask=.not. self%tip%arrested) &
+                          /self%scene%material%toughness - 1.0_rk
+      end if
+   end function largest_excess
+
+   !> Advance the tips at their onset, each in the direction in which it goes on straight
+   !! (tips_path), on a new mesh and at the same load.
+   subroutine grow(self, increment, any_grew, timers, error)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: increment  !< l_max [m]
+      logical, intent(out) :: any_grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: corrections = 3
+      real(rk) :: wanted(size(self%tip)), applied, left, to(2)
+      logical :: grows(size(self%tip)), any_turned, has_turned
+      integer(ik) :: i, k, at
+
+      any_grew = .false.
+      self%tip%advance = 0.0_rk
+      do i = 1, size(self%tip)
+         self%tip(i)%intensity_before = self%tip(i)%intensity
+         self%tip(i)%drive_before = self%tip(i)%drive
+         grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - at_onset) &
+                    *self%scene%material%toughness .and. .not. self%tip(i)%arrested
+      end do
+      if (.not. any(grows)) return
+      wanted = advances(self%tip%drive%energy, grows, increment, self%scene%growth%exponent)
+      do i = 1, size(self%tip)
+         if (.not. grows(i)) cycle
+         associate (tip => self%tip(i))
+            call carry_over(wanted(i), tip%carried, tip%rosette_radius, applied, left)
+            tip%carried = left
+            if (.not. applied > 0.0_rk) cycle
+            to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
+            call find_obstacle(self%network, self%scene, tip, to)
+            if (tip%arrested) cycle
+            call extend(self%network, tip%fracture, tip%end, to)
+            call tip%move(to, tip%drive%angle)
+            any_grew = .true.
+         end associate
+      end do
+      if (.not. any_grew) return
+      call rebuild(self, timers, error)
+      do k = 1, corrections
+         if (allocated(error)) return
+         any_turned = .false.
+         do i = 1, size(self%tip)
+            associate (tip => self%tip(i))
+               call tip%correct(tip%drive%angle, has_turned)
+               if (.not. has_turned) cycle
+               at = merge(self%network%first(tip%fracture), &
+                          self%network%first(tip%fracture + 1) - 1, tip%end == 1)
+               self%network%xy(:, at) = tip%xy
+               any_turned = .true.
+            end associate
+         end do
+         if (.not. any_turned) exit
+         call rebuild(self, timers, error)
+      end do
+      where (self%tip%advance > 0.0_rk) self%tip%has_wing = .true.
+   end subroutine grow
+
+   !> The state on a new mesh of the present network, at the same load.
+   subroutine rebuild(self, timers, error)
+      type(simulation_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%body%build(self%scene, self%network, phase_remesh, timers, error)
+      if (.not. allocated(error)) call self%respond(self%factor, timers, error)
+   end subroutine rebuild
+
+   !> A tip that comes nearer to another fracture or to the boundary than the mesh can resolve
+   !! stops.
+   subroutine find_obstacle(network, scene, tip, to)
+      type(network_t), intent(in) :: network
+      type(scene_t), intent(in) :: scene
+      type(tip_t), intent(inout) :: tip
+      real(rk), intent(in) :: to(2)
+      real(rk) :: distance
+      integer(ik) :: nearest
+
+      associate (domain => scene%domain, reach => scene%discretization%size_fracture)
+         call other_distance(network, tip%fracture, tip%xy, to, distance, nearest)
+         if (distance < reach) then
+            tip%arrested = .true.
+            tip%arrest_reason = "next to fracture "//trim(scene%fractures(nearest)%name)
+         else if (min(to(1) - domain%x_min, domain%x_max - to(1), to(2) - domain%y_min, &
+                      domain%y_max - to(2)) < reach) then
+            tip%arrested = .true.
+            tip%arrest_reason = "next to the outer boundary"
+         end if
+      end associate
+   end subroutine find_obstacle
+
+end module mechanics_simulation

@@ -1,0 +1,86 @@
+!> Mechanics-only scenes: what they must not say, and what must go together.
+program test_scene_mechanics
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use scene_namelist, only: read_scene
+   use scene_test_files, only: delete_file, put_lines
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   character(len=*), parameter :: path = "test_scene_mechanics.nml"
+   character(len=80), parameter :: good(*) = [character(len=80) :: &
+                                              "&domain x_min=0 x_max=2 y_min=0 y_max=1 /", &  ! 1
+                                              "&material young=1e9 poisson=0.2 toughness=1e6 /", &
+                                              "&fracture name='f' x=0.5 1 y=2*0.5 law='open' /", &
+                                              "&restraint x=0 y=0 x_displacement=0 "// &
+                                              "y_displacement=0 /", &  ! 4
+                                              "&restraint x=2 y=0 y_displacement=0 /", &
+                                              "&side name='top' y_traction=1e6 /", &  ! 6
+                                              "&point_load x=1 y=0 y_force=-2e6 /", &
+                                              "&load from=0 to=2 steps=4 /", &  ! 8
+                                              "&fe size_fracture=0.1 size_boundary=0.2 /", &
+                                              "&growth enabled=.true. /"]
+   type(checks_t) :: checks
+
+   call accept("the scene without a fault", 8, trim(good(8)))
+   call accept("held by a side and a point", 5, "&side name='left' x_displacement=0 /")
+   call refuse(1, trim(good(1))//" &time end=1 step=1 /", "&time: needs a fluid, but the group "// &
+               "&fluid is missing")
+   call refuse(6, "&side name='top' pressure=1 /", ":6: &side: pressure needs a fluid")
+   call refuse(10, "&growth enabled=.true. threshold=0.5 /", "threshold needs a fluid")
+   call refuse(8, trim(good(8))//" &fluid compressibility=0 viscosity=1 /", &
+               ":4: &restraint: is for mechanics-only scenes, but this one has the group &fluid")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 /", "friction, which the law 'friction' "// &
+               "needs, is missing")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=0.5 /", &
+               ":3: &fracture: law is 'friction' but must be 'open' in a mechanics-only scene")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' friction=0.5 /", &
+               ":3: &fracture: friction is given with the law 'open', which has none")
+   call refuse(5, "&restraint x=0 y=1 x_displacement=0 /", "", accepted=.true.)
+   call refuse(5, "&restraint x=2 y=0 x_displacement=0 /", "the body can rotate")
+   call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "no side has an x_displacement")
+   call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: holds nothing", &
+               and_4="&side name='left' x_displacement=0 y_displacement=0 /")
+   call refuse(5, "&restraint x=2 y=-1 y_displacement=0 /", &
+               ":5: &restraint: x and y are (2.0, -1.0) but must lie within the domain")
+   call refuse(7, "&point_load x=3 y=0 y_force=-2e6 /", &
+               ":7: &point_load: x and y are (3.0, 0.0) but must lie within the domain")
+   call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must be greater than from, 2.0")
+   call refuse(8, "&load from=-1 to=2 /", ":8: &load: from is -1.0 but must be at least 0.0 "// &
+               "where fractures grow")
+   call refuse(9, "&fe size_fracture=0.1 size_boundary=1.2 /", ":9: &fe: size_boundary is 1.2")
+   call refuse(2, "&material young=1e9 poisson=0.2 /", "toughness [Pa m^1/2], which growth needs")
+   call delete_file(path)
+   call checks%finish()
+
+contains
+
+   subroutine accept(name, line, text)
+      character(len=*), intent(in) :: name, text
+      integer, intent(in) :: line
+
+      call refuse(line, text, name, accepted=.true.)
+   end subroutine accept
+
+   !> One line of the good scene is another one; then it is refused with these words.
+   subroutine refuse(line, text, words, accepted, and_4)
+      integer, intent(in) :: line
+      character(len=*), intent(in) :: text, words
+      logical, intent(in), optional :: accepted  !< the scene is good
+      character(len=*), intent(in), optional :: and_4  !< another line 4
+      character(len=160) :: lines(size(good))
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      lines = good
+      lines(line) = text
+      if (present(and_4)) lines(4) = and_4
+      call put_lines(path, lines)
+      call read_scene(path, scene, error)
+      if (present(accepted)) then
+         call checks%no_error(error, text)
+      else
+         call checks%fails_with(error, words, text)
+      end if
+   end subroutine refuse
+
+end program test_scene_mechanics

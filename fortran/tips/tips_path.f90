@@ -1,0 +1,74 @@
+!> The end of a fracture as it grows, and the direction in which it goes on straight.
+!!
+!! A tip kinks by the angle of the largest tangential stress. Under a strong stress along the crack
+!! this angle is right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the
+!! crack less the one across it; Cotterell and Rice 1980): longer explicit steps overshoot to and
+!! fro, and the path meanders more and more. So each step but the first kink of a fracture's end is
+!! corrected until the kink angle at the new tip vanishes, that is, until the criterion holds at
+!! the end of the step (backward Euler for the path; local symmetry).
+module tips_path
+   use base_kinds, only: rk
+   use tips_growth, only: new_tip
+   implicit none(type, external)
+   private
+
+   public :: path_t
+
+   !> A free tip on its way.
+   type :: path_t
+      real(rk) :: xy(2) = 0.0_rk  !< where it is [m]
+      real(rk) :: direction(2) = 0.0_rk  !< unit vector ahead
+      real(rk) :: carried = 0.0_rk  !< growth too short for the mesh, kept [m]
+      real(rk) :: advance = 0.0_rk  !< of the last increment; 0: did not grow [m]
+      real(rk) :: kink = 0.0_rk  !< of that advance, anticlockwise [rad]
+      real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
+      logical :: has_wing = .false.  !< has grown before
+      real(rk) :: tried_kink = 0.0_rk, tried_drive = 0.0_rk  !< last try of `correct` [rad]
+   contains
+      procedure :: move
+      procedure :: correct
+   end type path_t
+
+contains
+
+   !> Grow straight to a new place.
+   pure subroutine move(self, to, kink)
+      class(path_t), intent(inout) :: self
+      real(rk), intent(in) :: to(2)  !< [m]
+      real(rk), intent(in) :: kink  !< anticlockwise; that of the criterion [rad]
+
+      self%origin = self%xy
+      self%heading = self%direction
+      self%advance = norm2(to - self%xy)
+      self%direction = (to - self%xy)/self%advance
+      self%xy = to
+      self%kink = kink
+      ! Going straight on would leave the drive about as it is.
+      self%tried_kink = 0.0_rk
+      self%tried_drive = kink
+   end subroutine move
+
+   !> Turn the last advance so that the kink angle at its new end vanishes, by a secant step.
+   pure subroutine correct(self, drive_angle, has_turned)
+      class(path_t), intent(inout) :: self
+      real(rk), intent(in) :: drive_angle  !< kink angle of the criterion at the new end [rad]
+      logical, intent(out) :: has_turned
+      real(rk), parameter :: enough = 0.035_rk  ! two degrees
+      real(rk), parameter :: largest = 1.23_rk  ! pure sliding [rad]
+      real(rk) :: kink
+
+      has_turned = .false.
+      if (.not. (self%advance > 0.0_rk .and. self%has_wing)) return
+      if (abs(drive_angle) < enough) return
+      if (.not. abs(drive_angle - self%tried_drive) > 1.0e-3_rk) return
+      kink = self%kink - drive_angle*(self%kink - self%tried_kink)/(drive_angle - self%tried_drive)
+      kink = min(largest, max(-largest, kink))
+      self%xy = new_tip(self%origin, self%heading, kink, self%advance)
+      self%direction = (self%xy - self%origin)/self%advance
+      self%tried_kink = self%kink
+      self%tried_drive = drive_angle
+      self%kink = kink
+      has_turned = .true.
+   end subroutine correct
+
+end module tips_path

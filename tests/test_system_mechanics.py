@@ -1,0 +1,112 @@
+"""Mechanics-only scenes through the command line, against exact and converged values."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from system_scene import TOP, call, numbers, rows
+
+pytestmark = pytest.mark.usefixtures("program")
+
+FLUID_COLUMNS = ("pressure", "injected", "leakoff", "prefilled", "mass_error", "_p_pa")
+
+
+def run_input(place: Path, name: str, *changes: tuple[str, str]) -> Path:
+    """Run a scene of inputs/, changed in places, and give the directory of its files."""
+    text = (TOP / "inputs" / name).read_text()
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    scene = place / Path(name).name
+    scene.write_text(text)
+    done = call(place, "run", scene.name, "--out", "out", "--quiet", "--no-plot")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    return place / "out"
+
+
+def record(out: Path) -> dict[str, object]:
+    """Give what run.json holds."""
+    content = json.loads((out / "run.json").read_text())
+    assert isinstance(content, dict)
+    return content
+
+
+def test_edge_crack_in_tension(tmp_path: Path) -> None:
+    """Catalogue 1.11: K_I within 0.1 % on at most 5000 unknowns, and the strain energy."""
+    out = run_input(tmp_path, "paper_b/edge_mode1.nml")
+    dofs = record(out)["dofs"]
+    assert isinstance(dofs, dict)
+    assert set(dofs) == {"displacement"}
+    assert dofs["displacement"] <= 5000
+    (tip,) = rows(out / "tips.csv")
+    exact = 2.825457622e6 * math.sqrt(math.pi * 0.5)
+    assert float(tip["k1_pa_sqrtm"]) == pytest.approx(exact, rel=1e-3)
+    assert abs(float(tip["k2_pa_sqrtm"])) < 1e-4 * exact
+    assert float(tip["k1_dc_pa_sqrtm"]) == pytest.approx(exact, rel=2e-2)
+    (energy,) = numbers(out / "history.csv", "strain_energy_j")
+    assert energy == pytest.approx(2.5270144e12 / 70.0e9, rel=1e-3)
+    assert numbers(out / "history.csv", "load_factor") == [1.0]
+
+
+def test_two_collinear_cracks(tmp_path: Path) -> None:
+    """Willmore (1949): inner and outer tips, and their symmetry."""
+    out = run_input(tmp_path, "paper_b/interacting_cracks.nml")
+    single = 1.0e6 * math.sqrt(math.pi * 0.1)
+    ratios = [k1 / single for k1 in numbers(out / "tips.csv", "k1_pa_sqrtm")]
+    expected = [1.091073374, 1.280298487, 1.280298487, 1.091073374]
+    assert ratios == pytest.approx(expected, rel=3e-3)
+    assert ratios == pytest.approx(ratios[::-1], rel=2e-4)
+    assert max(map(abs, numbers(out / "tips.csv", "k2_pa_sqrtm"))) < 1e-3 * single
+
+
+def test_no_trace_of_fluid(tmp_path: Path) -> None:
+    """No column of a table speaks of a fluid, and scene.nml runs again to the same results."""
+    out = run_input(tmp_path, "paper_b/edge_mode1.nml")
+    for table in sorted(out.glob("*.csv")):
+        header = table.read_text().splitlines()[0]
+        assert not any(word in header for word in FLUID_COLUMNS), table.name
+    assert "&fluid" not in (out / "scene.nml").read_text()
+    assert record(out)["status"] == "finished"
+    again = call(tmp_path, "run", "out/scene.nml", "--out", "again", "--quiet", "--no-plot")
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+    for name in ("tips.csv", "history.csv", "fractures.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
+
+
+def test_load_factor_scales_everything(tmp_path: Path) -> None:
+    """Open faces: the response is linear in the load factor, in all steps of the programme."""
+    out = run_input(
+        tmp_path,
+        "paper_b/edge_mode1.nml",
+        ("&growth", "&load from = 1.0, to = 3.0, steps = 4 /\n&growth"),
+    )
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors == [1.5, 2.0, 2.5, 3.0]
+    assert numbers(out / "history.csv", "time_s") == [0.25, 0.5, 0.75, 1.0]
+    intensities = numbers(out / "tips.csv", "k1_pa_sqrtm")
+    energies = numbers(out / "history.csv", "strain_energy_j")
+    for factor, k1, energy in zip(factors, intensities, energies, strict=True):
+        assert k1 / intensities[0] == pytest.approx(factor / 1.5, rel=1e-9)
+        assert energy / energies[0] == pytest.approx((factor / 1.5) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("&fe", "&coarse size_boundary = 1.0 /\n&fe", "&coarse: needs a fluid"),
+        ("law = 'open'", "friction = 0.5", "law is 'friction' but must be 'open'"),
+        ("x_displacement = 0.0 /\n\n&fe", "y_displacement = 0.0 /\n\n&fe", "can rotate"),
+    ],
+)
+def test_refusals(tmp_path: Path, old: str, new: str, words: str) -> None:
+    """What makes no sense is refused with a sentence, and nothing is written."""
+    text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
+    assert old in text
+    (tmp_path / "bad.nml").write_text(text.replace(old, new, 1))
+    done = call(tmp_path, "run", "bad.nml", "--out", "out")
+    assert done.returncode == 2
+    assert words in done.stderr.splitlines()[-1]
+    assert not (tmp_path / "out").exists()
