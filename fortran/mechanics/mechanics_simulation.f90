@@ -184,7 +184,7 @@ contains
       logical, intent(out) :: any_grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: corrections = 3
+      integer, parameter :: corrections = 8
       real(rk) :: wanted(size(self%tip)), applied, left, to(2)
       logical :: grows(size(self%tip)), any_turned, has_turned
       integer(ik) :: i, k, at

@@ -23,7 +23,8 @@ module tips_path
       real(rk) :: kink = 0.0_rk  !< of that advance, anticlockwise [rad]
       real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
       logical :: has_wing = .false.  !< has grown before
-      real(rk) :: tried_kink = 0.0_rk, tried_drive = 0.0_rk  !< last try of `correct` [rad]
+      real(rk) :: tried_kink(2) = 0.0_rk, tried_drive(2) = 0.0_rk  !< last tries of `correct` [rad]
+      logical :: is_bracketed = .false.  !< the two tries lie on either side of the right kink
    contains
       procedure :: move
       procedure :: correct
@@ -46,27 +47,43 @@ contains
       ! Going straight on would leave the drive about as it is.
       self%tried_kink = 0.0_rk
       self%tried_drive = kink
+      self%is_bracketed = .false.
    end subroutine move
 
-   !> Turn the last advance so that the kink angle at its new end vanishes, by a secant step.
+   !> Turn the last advance so that the kink angle at its new end vanishes: one step of the Illinois
+   !! method, which keeps the right direction between two tries (the drive angle saturates at
+   !! pure sliding, where a secant would go astray).
    pure subroutine correct(self, drive_angle, has_turned)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive_angle  !< kink angle of the criterion at the new end [rad]
       logical, intent(out) :: has_turned
       real(rk), parameter :: enough = 0.035_rk  ! two degrees
+      real(rk), parameter :: narrow = 0.005_rk  ! bracket [rad]
       real(rk), parameter :: largest = 1.23_rk  ! pure sliding [rad]
       real(rk) :: kink
 
       has_turned = .false.
       if (.not. (self%advance > 0.0_rk .and. self%has_wing)) return
-      if (abs(drive_angle) < enough) return
-      if (.not. abs(drive_angle - self%tried_drive) > 1.0e-3_rk) return
-      kink = self%kink - drive_angle*(self%kink - self%tried_kink)/(drive_angle - self%tried_drive)
-      kink = min(largest, max(-largest, kink))
+      if (.not. abs(drive_angle) > enough) return
+      if (self%is_bracketed .and. drive_angle*self%tried_drive(2) > 0.0_rk) then
+         self%tried_drive(1) = 0.5_rk*self%tried_drive(1)
+      else
+         self%tried_kink(1) = self%tried_kink(2)
+         self%tried_drive(1) = self%tried_drive(2)
+      end if
+      self%tried_kink(2) = self%kink
+      self%tried_drive(2) = drive_angle
+      self%is_bracketed = self%tried_drive(1)*self%tried_drive(2) < 0.0_rk
+      if (self%is_bracketed) then
+         if (abs(self%tried_kink(2) - self%tried_kink(1)) < narrow) return
+         kink = self%kink - drive_angle*(self%tried_kink(2) - self%tried_kink(1)) &
+                /(self%tried_drive(2) - self%tried_drive(1))
+      else
+         kink = min(largest, max(-largest, self%kink + drive_angle))
+         if (.not. abs(kink - self%kink) > narrow) return
+      end if
       self%xy = new_tip(self%origin, self%heading, kink, self%advance)
       self%direction = (self%xy - self%origin)/self%advance
-      self%tried_kink = self%kink
-      self%tried_drive = drive_angle
       self%kink = kink
       has_turned = .true.
    end subroutine correct

@@ -251,7 +251,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      integer, parameter :: corrections = 3
+      integer, parameter :: corrections = 8
       integer :: k
       logical :: any_turned
 

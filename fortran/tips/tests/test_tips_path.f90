@@ -1,0 +1,74 @@
+!> The path of a tip: moving, and the search for the direction in which it goes on straight.
+program test_tips_path
+   use base_checks, only: checks_t
+   use base_kinds, only: rk
+   use tips_path, only: path_t
+   implicit none(type, external)
+
+   real(rk), parameter :: degree = 0.0174532925199433_rk
+   type(checks_t) :: checks
+
+   call moves()
+   call keeps_the_first_kink()
+   call finds_direction(-5.0_rk, "steep")
+   call finds_direction(-1.0_rk, "as the criterion foretells")
+   call finds_direction(-0.3_rk, "mild")
+   call finds_direction(-40.0_rk, "saturated")
+   call checks%finish()
+
+contains
+
+   !> A tip that has grown before and goes on by 0.1 m, first by the given kink.
+   subroutine start(path, kink, has_wing)
+      type(path_t), intent(out) :: path
+      real(rk), intent(in) :: kink  !< [rad]
+      logical, intent(in) :: has_wing
+
+      path%xy = [1.0_rk, 2.0_rk]
+      path%direction = [0.0_rk, 1.0_rk]
+      path%has_wing = has_wing
+      call path%move([1.0_rk, 2.0_rk] + 0.1_rk*[-sin(kink), cos(kink)], kink)
+   end subroutine start
+
+   subroutine moves()
+      type(path_t) :: path
+
+      call start(path, 30.0_rk*degree, .true.)
+      call checks%is_close(path%advance, 0.1_rk, 1.0e-15_rk, "advance")
+      call checks%is_close(path%direction(1), -0.5_rk, 1.0e-14_rk, "direction")
+      call checks%is_close(path%heading(2), 1.0_rk, 0.0_rk, "heading before")
+   end subroutine moves
+
+   subroutine keeps_the_first_kink()
+      type(path_t) :: path
+      logical :: has_turned
+
+      call start(path, 70.0_rk*degree, .false.)
+      call path%correct(-30.0_rk*degree, has_turned)
+      call checks%is_true(.not. has_turned, "the first kink is the criterion's")
+   end subroutine keeps_the_first_kink
+
+   !> The drive at the new end answers to the kink like slope*(kink - right), at most by pure sliding:
+   !! the search must end within two degrees of zero drive or half a degree of the right kink.
+   subroutine finds_direction(slope, name)
+      real(rk), intent(in) :: slope  !< d drive / d kink [-]
+      character(len=*), intent(in) :: name
+      real(rk), parameter :: right = -3.0_rk*degree
+      type(path_t) :: path
+      real(rk) :: drive
+      logical :: has_turned
+      integer :: tries
+
+      call start(path, 20.0_rk*degree, .true.)
+      do tries = 0, 8
+         drive = max(-1.23_rk, min(1.23_rk, slope*(path%kink - right)))
+         call path%correct(drive, has_turned)
+         if (.not. has_turned) exit
+      end do
+      call checks%is_true(tries <= 8, name//": found in eight tries")
+      call checks%is_true(abs(drive) <= 2.01_rk*degree .or. abs(path%kink - right) <= 0.5_rk*degree, &
+                          name//": goes on straight")
+      call checks%is_close(norm2(path%xy - path%origin), 0.1_rk, 1.0e-14_rk, name//": length kept")
+   end subroutine finds_direction
+
+end program test_tips_path
