@@ -6,11 +6,23 @@
 #include "mesh.hpp"
 
 #include <memory>
-#include <numeric>
+#include <mutex>
 #include <string>
 
 struct cm_mesh {
     cpp_mesh::Mesh mesh;
+    // Made when a point is looked for, kept for the next one.
+    mutable std::once_flag tree_is_made;
+    mutable std::unique_ptr<const cpp_mesh::CellTree> tree;
+
+    explicit cm_mesh(cpp_mesh::Mesh made) : mesh(std::move(made)) {}
+
+    const cpp_mesh::CellTree& cells_by_place() const {
+        std::call_once(tree_is_made, [this] {
+            tree = std::make_unique<const cpp_mesh::CellTree>(mesh.plane.xy, mesh.plane.cells);
+        });
+        return *tree;
+    }
 };
 
 namespace {
@@ -167,6 +179,19 @@ int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh) {
     });
 }
 
+int cm_create_sized(const cm_spec* spec, const cm_network* network, const cm_mesh* old_mesh,
+                    const double* cell_size, cm_mesh** mesh) {
+    return guarded([&] {
+        require(mesh != nullptr, "no place was given for the mesh");
+        *mesh = nullptr;
+        require(old_mesh != nullptr && cell_size != nullptr, "no old mesh or no sizes were given");
+        const Network fractures = network_from(network);
+        const std::vector<double> sizes(cell_size, cell_size + old_mesh->mesh.plane.cells.size());
+        *mesh = new cm_mesh{create_mesh_sized(specification_from(spec, fractures.size()), fractures,
+                                              old_mesh->mesh, sizes)};
+    });
+}
+
 int cm_sizes(const cm_mesh* mesh, cm_counts* counts) {
     return guarded([&] {
         require(mesh != nullptr && counts != nullptr, "no mesh was given");
@@ -192,12 +217,9 @@ int cm_copy(const cm_mesh* mesh, const cm_arrays* arrays) {
 int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy, int32_t* cells) {
     return guarded([&] {
         require(mesh != nullptr, "no mesh was given");
-        const PlaneMesh& plane = mesh->mesh.plane;
-        std::vector<int> all(plane.cells.size());
-        std::iota(all.begin(), all.end(), 0);
-        const CellBins bins(plane.xy, plane.cells, std::move(all));
+        const CellTree& tree = mesh->cells_by_place();
         for (int32_t p = 0; p < n_points; ++p)
-            cells[p] = bins.locate({xy[2 * p], xy[2 * p + 1]});
+            cells[p] = tree.locate({xy[2 * p], xy[2 * p + 1]});
     });
 }
 

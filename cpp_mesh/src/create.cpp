@@ -60,11 +60,9 @@ std::vector<int> points_of_their_own(const Graph& graph, const std::vector<int>&
     return {nodes.begin(), nodes.end()};
 }
 
-} // namespace
-
-Mesh create_mesh(const Specification& specification, const Network& network) {
-    check_specification(specification);
-    check_network(network);
+// The sizes are wanted at the nodes of another mesh, or else grow from the fractures.
+Mesh make_mesh(const Specification& specification, const Network& network,
+               std::shared_ptr<const NodalSizes> wanted) {
     Mesh mesh;
     mesh.specification = specification;
     mesh.network = network;
@@ -73,13 +71,16 @@ Mesh create_mesh(const Specification& specification, const Network& network) {
 
     const Graph graph = build_graph(segments_of(network), specification.fixed_points, domain,
                                     specification.is_window, tolerances);
-    std::vector<SizeSource> sources;
-    for (const GraphEdge& edge : graph.edges)
-        sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
-                           specification.size_fracture});
-    mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
-
-    if (is_for_elements(specification))
+    if (wanted != nullptr) {
+        mesh.size = SizeField(std::move(wanted));
+    } else {
+        std::vector<SizeSource> sources;
+        for (const GraphEdge& edge : graph.edges)
+            sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
+                               specification.size_fracture});
+        mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
+    }
+    if (mesh.size.follows_other_mesh() || is_for_elements(specification))
         mesh.size.make_scale_free();
 
     std::vector<RosettePlan> plans;
@@ -124,6 +125,28 @@ Mesh create_mesh(const Specification& specification, const Network& network) {
     mesh.split = split(mesh.plane, domain);
     check_mesh(mesh.split, domain);
     return mesh;
+}
+
+} // namespace
+
+Mesh create_mesh(const Specification& specification, const Network& network) {
+    check_specification(specification);
+    check_network(network);
+    return make_mesh(specification, network, nullptr);
+}
+
+Mesh create_mesh_sized(const Specification& specification, const Network& network,
+                       const Mesh& old_mesh, const std::vector<double>& cell_size) {
+    check_specification(specification);
+    check_network(network);
+    const Domain& domain = specification.domain;
+    const Domain& old_domain = old_mesh.specification.domain;
+    if (domain.is_rectangle() != old_domain.is_rectangle() ||
+        domain.corners() != old_domain.corners())
+        throw MeshError("the old mesh is one of another body");
+    return make_mesh(
+        specification, network,
+        std::make_shared<const NodalSizes>(old_mesh.plane, cell_size, specification.size_boundary));
 }
 
 } // namespace cpp_mesh

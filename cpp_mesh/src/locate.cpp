@@ -1,5 +1,8 @@
 #include "locate.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace cpp_mesh {
 
 namespace {
@@ -7,85 +10,122 @@ namespace {
 // Points this far outside, relative to the box of the mesh, count as on its boundary.
 constexpr double tolerance = 1e-12;
 
+constexpr int leaf_size = 4;
+
+std::vector<int> count_up(std::size_t n) {
+    std::vector<int> numbers(n);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
 } // namespace
 
-CellBins::CellBins(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells,
+CellTree::CellTree(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells)
+    : CellTree(xy, cells, count_up(cells.size())) {}
+
+CellTree::CellTree(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells,
                    std::vector<int> members)
-    : xy_(xy), cells_(cells) {
-    if (members.empty()) {
-        first_.assign(2, 0);
-        return;
+    : xy_(xy), cells_(cells), members_(std::move(members)) {
+    if (!members_.empty())
+        grow(0, static_cast<int>(members_.size()));
+}
+
+CellTree::Box CellTree::box_of(int cell) const {
+    const Vec2 p = xy_[cells_[cell][0]], q = xy_[cells_[cell][1]], r = xy_[cells_[cell][2]];
+    return {{std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y})},
+            {std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y})}};
+}
+
+// Halve the members by the middles of their boxes, across the longer side of the whole.
+void CellTree::grow(int first, int last) {
+    const int here = static_cast<int>(branches_.size());
+    Branch branch;
+    branch.first = first;
+    branch.last = last;
+    branch.box = box_of(members_[first]);
+    for (int k = first + 1; k < last; ++k) {
+        const Box box = box_of(members_[k]);
+        branch.box.low = {std::min(branch.box.low.x, box.low.x),
+                          std::min(branch.box.low.y, box.low.y)};
+        branch.box.high = {std::max(branch.box.high.x, box.high.x),
+                           std::max(branch.box.high.y, box.high.y)};
     }
-    low_ = high_ = xy[cells[members[0]][0]];
-    for (int c : members) {
-        for (int node : cells[c]) {
-            low_ = {std::min(low_.x, xy[node].x), std::min(low_.y, xy[node].y)};
-            high_ = {std::max(high_.x, xy[node].x), std::max(high_.y, xy[node].y)};
+    branches_.push_back(branch);
+    if (last - first <= leaf_size)
+        return;
+    const Vec2 extent = branch.box.high - branch.box.low;
+    const auto key = [&](int cell) {
+        const Box box = box_of(cell);
+        return extent.x > extent.y ? box.low.x + box.high.x : box.low.y + box.high.y;
+    };
+    const int middle = (first + last) / 2;
+    std::nth_element(members_.begin() + first, members_.begin() + middle, members_.begin() + last,
+                     [&](int a, int b) {
+                         const double key_a = key(a), key_b = key(b);
+                         return key_a != key_b ? key_a < key_b : a < b;
+                     });
+    grow(first, middle);
+    branches_[here].right = static_cast<int>(branches_.size());
+    grow(middle, last);
+}
+
+template <typename Action> void CellTree::visit(Vec2 low, Vec2 high, Action&& action) const {
+    if (branches_.empty())
+        return;
+    std::array<int, 64> waiting; // halves: no deeper than the bits of an index
+    int n_waiting = 0;
+    waiting[n_waiting++] = 0;
+    while (n_waiting > 0) {
+        const int here = waiting[--n_waiting];
+        const Branch& branch = branches_[here];
+        if (!branch.box.touches(low, high))
+            continue;
+        if (branch.right < 0) {
+            for (int k = branch.first; k < branch.last; ++k)
+                action(members_[k]);
+        } else {
+            waiting[n_waiting++] = branch.right;
+            waiting[n_waiting++] = here + 1;
         }
     }
-    n_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(members.size()))), 1, 512);
-    const auto each_bin = [&](int c, auto&& action) {
-        const Vec2 p = xy_[cells_[c][0]], q = xy_[cells_[c][1]], r = xy_[cells_[c][2]];
-        const int x0 = column(std::min({p.x, q.x, r.x})), x1 = column(std::max({p.x, q.x, r.x}));
-        const int y0 = row(std::min({p.y, q.y, r.y})), y1 = row(std::max({p.y, q.y, r.y}));
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x)
-                action(y * n_ + x);
+}
+
+// Distance from the cell's nearest edge; negative outside.
+double CellTree::depth_in(int cell, Vec2 p) const {
+    const Triangle& node = cells_[cell];
+    const auto height = [&](int i) {
+        const Vec2 a = xy_[node[i]], b = xy_[node[(i + 1) % 3]];
+        return twice_area(a, b, p) / distance(a, b);
     };
-    first_.assign(n_ * n_ + 1, 0);
-    for (int c : members)
-        each_bin(c, [&](int bin) { ++first_[bin + 1]; });
-    for (int bin = 0; bin < n_ * n_; ++bin)
-        first_[bin + 1] += first_[bin];
-    members_.resize(first_.back());
-    std::vector<int> next(first_.begin(), first_.end() - 1);
-    for (int c : members)
-        each_bin(c, [&](int bin) { members_[next[bin]++] = c; });
+    return std::min({height(0), height(1), height(2)});
 }
 
-int CellBins::column(double x) const {
-    const double share = (x - low_.x) / (high_.x - low_.x);
-    return std::clamp(static_cast<int>(std::floor(share * n_)), 0, n_ - 1);
-}
-
-int CellBins::row(double y) const {
-    const double share = (y - low_.y) / (high_.y - low_.y);
-    return std::clamp(static_cast<int>(std::floor(share * n_)), 0, n_ - 1);
-}
-
-int CellBins::locate(Vec2 p) const {
-    const double slack = tolerance * std::max(high_.x - low_.x, high_.y - low_.y);
-    if (!(p.x >= low_.x - slack && p.x <= high_.x + slack && p.y >= low_.y - slack &&
-          p.y <= high_.y + slack))
+int CellTree::locate(Vec2 p) const {
+    if (branches_.empty())
         return -1;
+    const Vec2 extent = branches_[0].box.high - branches_[0].box.low;
+    const double slack = tolerance * std::max(extent.x, extent.y);
     // The cell in which the point lies deepest; a point on an edge may round to just outside of
     // both.
     int best = -1;
     double best_depth = -slack;
-    const int bin = row(p.y) * n_ + column(p.x);
-    for (int k = first_[bin]; k < first_[bin + 1]; ++k) {
-        const Triangle& cell = cells_[members_[k]];
-        double depth = high_.x - low_.x + high_.y - low_.y;
-        for (int i = 0; i < 3; ++i) {
-            const Vec2 a = xy_[cell[i]], b = xy_[cell[(i + 1) % 3]];
-            depth = std::min(depth, twice_area(a, b, p) / distance(a, b));
-        }
-        if (depth > best_depth) {
-            best = members_[k];
+    visit(p - Vec2{slack, slack}, p + Vec2{slack, slack}, [&](int cell) {
+        const double depth = depth_in(cell, p);
+        if (depth > best_depth || (depth == best_depth && best >= 0 && cell < best)) {
+            best = cell;
             best_depth = depth;
         }
-    }
+    });
     return best;
 }
 
-void CellBins::candidates(Vec2 low, Vec2 high, std::vector<int>& found) const {
+void CellTree::candidates(Vec2 low, Vec2 high, std::vector<int>& found) const {
     found.clear();
-    for (int y = row(low.y); y <= row(high.y); ++y)
-        for (int x = column(low.x); x <= column(high.x); ++x)
-            found.insert(found.end(), members_.begin() + first_[y * n_ + x],
-                         members_.begin() + first_[y * n_ + x + 1]);
+    visit(low, high, [&](int cell) {
+        if (box_of(cell).touches(low, high))
+            found.push_back(cell);
+    });
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 } // namespace cpp_mesh

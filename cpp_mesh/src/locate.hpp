@@ -8,28 +8,47 @@
 
 namespace cpp_mesh {
 
-// Triangles by the bins of a regular grid that their boxes touch.
-class CellBins {
+// A tree of boxes around cells: cells may differ in size by orders of magnitude.
+class CellTree {
 public:
-    // Only the given cells of the mesh.
-    CellBins(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells,
+    // Only the given cells of the mesh, which must stay where it is.
+    CellTree(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells,
              std::vector<int> members);
+    CellTree(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells); // all cells
 
     // The cell that holds p, or -1. On an edge it is one of the cells that share it.
     int locate(Vec2 p) const;
 
-    // Cells whose bins the box touches, each once, in ascending order.
+    // Cells whose boxes touch the given one, each once, in ascending order.
     void candidates(Vec2 low, Vec2 high, std::vector<int>& found) const;
 
 private:
-    int column(double x) const;
-    int row(double y) const;
+    struct Box {
+        Vec2 low, high;
+
+        bool touches(Vec2 other_low, Vec2 other_high) const {
+            return low.x <= other_high.x && high.x >= other_low.x && low.y <= other_high.y &&
+                   high.y >= other_low.y;
+        }
+    };
+
+    // Members first .. last-1; a branch is followed by its left half, `right` is the other.
+    struct Branch {
+        Box box;
+        int first = 0, last = 0;
+        int right = -1; // -1: a leaf
+    };
+
+    void grow(int first, int last);
+    Box box_of(int cell) const;
+    double depth_in(int cell, Vec2 p) const;
+    // The action on every member of every leaf whose box touches the given one.
+    template <typename Action> void visit(Vec2 low, Vec2 high, Action&& action) const;
 
     const std::vector<Vec2>& xy_;
     const std::vector<Triangle>& cells_;
-    Vec2 low_, high_;
-    int n_ = 1; // columns and rows
-    std::vector<int> first_, members_;
+    std::vector<int> members_;
+    std::vector<Branch> branches_;
 };
 
 } // namespace cpp_mesh

@@ -43,6 +43,11 @@ struct Mesh {
 // A new mesh of the body and the part of the network in it.
 Mesh create_mesh(const Specification& specification, const Network& network);
 
+// The same with sizes that are wanted in the cells of an old mesh of the body [m], up to
+// size_boundary; fractures may have grown since.
+Mesh create_mesh_sized(const Specification& specification, const Network& network,
+                       const Mesh& old_mesh, const std::vector<double>& cell_size);
+
 // A mesh that differs from an old one only near the centres, where fractures have grown; new
 // fracture cells have about the given size [m].
 Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,

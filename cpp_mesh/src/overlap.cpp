@@ -53,7 +53,7 @@ double common_area(const std::array<Vec2, 3>& first, const std::array<Vec2, 3>& 
 
 void find_overlaps(const PlaneMesh& old_mesh, const std::vector<int>& patch,
                    const PlaneMesh& new_mesh, PatchMap& map) {
-    const CellBins bins(old_mesh.xy, old_mesh.cells, patch);
+    const CellTree tree(old_mesh.xy, old_mesh.cells, patch);
     std::vector<int> candidates;
     map.overlap_first.assign(1, 0);
     for (int c = 0; c < static_cast<int>(new_mesh.cells.size()); ++c) {
@@ -65,7 +65,7 @@ void find_overlaps(const PlaneMesh& old_mesh, const std::vector<int>& patch,
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
-            bins.candidates(low, high, candidates);
+            tree.candidates(low, high, candidates);
             double covered = 0.0;
             for (int old_cell : candidates) {
                 const double common = common_area(corner, corners_of(old_mesh, old_cell));

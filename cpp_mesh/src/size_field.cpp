@@ -44,7 +44,7 @@ SizeField::SizeField(std::vector<SizeSource> sources, const Domain& domain, doub
 }
 
 double SizeField::operator()(Vec2 p) const {
-    double size = largest_;
+    double size = wanted_ != nullptr ? (*wanted_)(p) : largest_;
     for (const SizeSource& source : sources_)
         size = std::min(size, source.size + slope_ * distance_to_segment(p, source.a, source.b));
     for (const SizeDisc& disc : discs_)
@@ -53,7 +53,36 @@ double SizeField::operator()(Vec2 p) const {
     return size;
 }
 
-std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
+namespace {
+
+// Cells counted from the start of a segment, at samples along it.
+struct CellCount {
+    std::vector<double> t, cells;
+    bool is_uniform = false;
+};
+
+// Samples a quarter of the size apart wherever they are; sizes may differ by orders of magnitude.
+CellCount count_cells(Vec2 a, Vec2 b, const SizeField& size) {
+    constexpr double step_in_sizes = 0.25, largest_step = 1.0 / 16.0;
+    const double whole = distance(a, b);
+    CellCount count{{0.0}, {0.0}};
+    double here = size(a);
+    while (count.t.back() < 1.0) {
+        const double t = count.t.back();
+        double next = t + std::min(step_in_sizes * here / whole, largest_step);
+        if (next > 1.0 - 1e-6 * (next - t))
+            next = 1.0;
+        const double there = size(along(a, b, next));
+        count.cells.push_back(count.cells.back() +
+                              0.5 * (1.0 / here + 1.0 / there) * (next - t) * whole);
+        count.t.push_back(next);
+        here = there;
+    }
+    return count;
+}
+
+// Evenly spaced samples.
+CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
     const double whole = distance(a, b);
     double smallest_seen = size(a);
     for (int k = 1; k <= 8; ++k)
@@ -61,27 +90,42 @@ std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
     const double nudge = size.is_scale_free() ? tie_margin : 0.0;
     const int n_samples = static_cast<int>(
         std::clamp(std::ceil(4.0 * whole / smallest_seen * (1.0 - nudge)), 16.0, 1024.0));
-    std::vector<double> count(n_samples + 1, 0.0); // cells from the start to the sample
+    CellCount count{{0.0}, {0.0}};
     double previous = size(a), smallest = previous, largest = previous;
     for (int k = 1; k <= n_samples; ++k) {
-        const double here = size(along(a, b, static_cast<double>(k) / n_samples));
-        count[k] = count[k - 1] + 0.5 * (1.0 / previous + 1.0 / here) * whole / n_samples;
+        count.t.push_back(static_cast<double>(k) / n_samples);
+        const double here = size(along(a, b, count.t[k]));
+        count.cells.push_back(count.cells[k - 1] +
+                              0.5 * (1.0 / previous + 1.0 / here) * whole / n_samples);
         smallest = std::min(smallest, here);
         largest = std::max(largest, here);
         previous = here;
     }
-    const int n = std::max(1, static_cast<int>(std::lround(count[n_samples] * (1.0 + nudge))));
+    count.is_uniform = largest - smallest <= 1e-9 * largest;
+    return count;
+}
+
+} // namespace
+
+std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
+    const CellCount count =
+        size.follows_other_mesh() ? count_cells(a, b, size) : count_cells_evenly(a, b, size);
+    const double total = count.cells.back();
+    const double nudge = size.is_scale_free() ? tie_margin : 0.0;
+    const int n = std::max(1, static_cast<int>(std::lround(total * (1.0 + nudge))));
     std::vector<double> t(n + 1);
-    const bool is_uniform = largest - smallest <= 1e-9 * largest;
-    int k = 0;
+    std::size_t k = 0;
     for (int i = 0; i <= n; ++i) {
         t[i] = static_cast<double>(i) / n;
-        if (is_uniform || i == 0 || i == n)
+        if (count.is_uniform || i == 0 || i == n)
             continue;
-        const double wanted = t[i] * count[n_samples];
-        while (count[k + 1] < wanted)
+        const double wanted = t[i] * total;
+        while (count.cells[k + 1] < wanted)
             ++k;
-        t[i] = (k + (wanted - count[k]) / (count[k + 1] - count[k])) / n_samples;
+        const double share = (wanted - count.cells[k]) / (count.cells[k + 1] - count.cells[k]);
+        t[i] = size.follows_other_mesh()
+                   ? count.t[k] + share * (count.t[k + 1] - count.t[k])
+                   : (static_cast<double>(k) + share) / static_cast<double>(count.t.size() - 1);
     }
     return t;
 }

@@ -4,7 +4,9 @@
 
 #include "domain.hpp"
 #include "geometry.hpp"
+#include "nodal_sizes.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace cpp_mesh {
@@ -29,7 +31,11 @@ public:
     // Grows from the sources to size_far at half the distance to the body's farthest point.
     SizeField(std::vector<SizeSource> sources, const Domain& domain, double size_far);
 
+    // As wanted at the nodes of another mesh.
+    explicit SizeField(std::shared_ptr<const NodalSizes> wanted) : wanted_(std::move(wanted)) {}
+
     double operator()(Vec2 p) const;
+    bool follows_other_mesh() const { return wanted_ != nullptr; }
     void add(const SizeSource& source) { sources_.push_back(source); }
     void add(const SizeDisc& disc) { discs_.push_back(disc); }
     // Decisions must not depend on rounding errors: the same body in another unit of length is to
@@ -41,6 +47,7 @@ public:
 private:
     std::vector<SizeSource> sources_;
     std::vector<SizeDisc> discs_;
+    std::shared_ptr<const NodalSizes> wanted_;
     double slope_ = 0.0;
     double largest_ = 0.0;
     bool is_scale_free_ = false;

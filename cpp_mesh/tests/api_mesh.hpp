@@ -62,6 +62,13 @@ public:
         return read(cm_create(&spec, &view, &handle));
     }
 
+    bool create_sized(const cm_spec& spec, TestNetwork network, const ApiMesh& old_mesh,
+                      const std::vector<double>& cell_size) {
+        cm_destroy(&handle);
+        const cm_network view = network.view();
+        return read(cm_create_sized(&spec, &view, old_mesh.handle, cell_size.data(), &handle));
+    }
+
     bool remesh(const ApiMesh& old_mesh, TestNetwork network, const std::vector<Point>& centres,
                 double radius, double size) {
         cm_destroy(&handle);
@@ -89,6 +96,17 @@ public:
                     d = node(cell_nodes[3 * c + 2]);
         return 0.5 * ((b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0]));
     }
+
+    Point centre(int c) const {
+        Point p = {0.0, 0.0};
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 2; ++i)
+                p[i] += node(cell_nodes[3 * c + k])[i] / 3.0;
+        return p;
+    }
+
+    // Edge of the equilateral triangle of the same area.
+    double size(int c) const { return std::sqrt(4.0 / std::sqrt(3.0) * area(c)); }
 
     double total_area() const {
         double total = 0.0;

@@ -84,6 +84,13 @@ const char* cm_last_error(void);
 
 int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh);
 
+/* A new mesh of the same body whose cells have about the sizes (lengths of edges) that are wanted
+   in the cells of an old mesh, where they lie; sizes grow from cell to cell by a factor of at most
+   about 1.3 and stay below size_boundary; size_fracture gives tolerances only. Fractures may have
+   grown; their cells follow the sizes too. Rosettes are made as the specification says. */
+int cm_create_sized(const cm_spec* spec, const cm_network* network, const cm_mesh* old_mesh,
+                    const double* cell_size /* [old n_cells] */, cm_mesh** mesh);
+
 /* A new mesh that differs from `old_mesh` only within `radius` of the given centres; `network` is
    the old one with vertices added at the ends of fractures. Existing fracture cells stay as they
    are; each new segment becomes one or more fracture cells of about `size`. Nodes and cells outside
