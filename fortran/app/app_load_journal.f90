@@ -7,7 +7,7 @@ module app_load_journal
                                point_state
    use mechanics_simulation, only: simulation_t
    use mesh_builder, only: locate
-   use mesh_states, only: state_open
+   use contact_states, only: state_open
    use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
                             matrix_fields_t, tip_row_t
    use output_progress, only: progress_t, progress_values_t

@@ -24,6 +24,7 @@ module tips_path
       real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
       logical :: has_wing = .false.  !< has grown before
       real(rk) :: tried_kink(2) = 0.0_rk, tried_drive(2) = 0.0_rk  !< last tries of `correct` [rad]
+      integer :: tries = 0
       logical :: is_bracketed = .false.  !< the two tries lie on either side of the right kink
    contains
       procedure :: move
@@ -44,9 +45,10 @@ contains
       self%direction = (to - self%xy)/self%advance
       self%xy = to
       self%kink = kink
-      ! Going straight on would leave the drive about as it is.
+      ! A guess for the first correction: going straight on would leave the drive about as it is.
       self%tried_kink = 0.0_rk
       self%tried_drive = kink
+      self%tries = 0
       self%is_bracketed = .false.
    end subroutine move
 
@@ -60,7 +62,8 @@ contains
       real(rk), parameter :: enough = 0.035_rk  ! two degrees
       real(rk), parameter :: narrow = 0.005_rk  ! bracket [rad]
       real(rk), parameter :: largest = 1.23_rk  ! pure sliding [rad]
-      real(rk) :: kink
+      real(rk), parameter :: longest = 0.6_rk  ! step [rad]
+      real(rk) :: kink, slope
 
       has_turned = .false.
       if (.not. (self%advance > 0.0_rk .and. self%has_wing)) return
@@ -73,15 +76,18 @@ contains
       end if
       self%tried_kink(2) = self%kink
       self%tried_drive(2) = drive_angle
-      self%is_bracketed = self%tried_drive(1)*self%tried_drive(2) < 0.0_rk
-      if (self%is_bracketed) then
-         if (abs(self%tried_kink(2) - self%tried_kink(1)) < narrow) return
-         kink = self%kink - drive_angle*(self%tried_kink(2) - self%tried_kink(1)) &
-                /(self%tried_drive(2) - self%tried_drive(1))
-      else
-         kink = min(largest, max(-largest, self%kink + drive_angle))
-         if (.not. abs(kink - self%kink) > narrow) return
-      end if
+      self%tries = self%tries + 1
+      ! The first try has only a guess beside it, which must not bound the search.
+      self%is_bracketed = self%tries > 1 .and. self%tried_drive(1)*self%tried_drive(2) < 0.0_rk
+      if (self%is_bracketed .and. abs(self%tried_kink(2) - self%tried_kink(1)) < narrow) return
+      ! A drive that does not fall with the kink tells nothing: then turn as the criterion says.
+      slope = -1.0_rk
+      if (abs(self%tried_kink(2) - self%tried_kink(1)) > 0.0_rk) &
+         slope = (self%tried_drive(2) - self%tried_drive(1))/(self%tried_kink(2) - self%tried_kink(1))
+      if (.not. slope < -0.1_rk) slope = -1.0_rk
+      kink = self%kink - max(-longest, min(longest, drive_angle/slope))
+      kink = min(largest, max(-largest, kink))
+      if (.not. abs(kink - self%kink) > 0.0_rk) return
       self%xy = new_tip(self%origin, self%heading, kink, self%advance)
       self%direction = (self%xy - self%origin)/self%advance
       self%kink = kink
