@@ -62,6 +62,19 @@ def test_two_collinear_cracks(tmp_path: Path) -> None:
     assert max(map(abs, numbers(out / "tips.csv", "k2_pa_sqrtm"))) < 1e-3 * single
 
 
+def test_cracked_disc(tmp_path: Path) -> None:
+    """Catalogue 1.10, a/R = 5/42, 45 degrees: within 0.2 % of the largest in the column."""
+    out = run_input(tmp_path, "paper_b/disc_sif.nml")
+    unit = math.sqrt(0.005) / (math.sqrt(math.pi) * 0.042)
+    tips = rows(out / "tips.csv")
+    assert len(tips) == 2
+    for tip in tips:
+        assert float(tip["k1_pa_sqrtm"]) / unit == pytest.approx(
+            -1.04944378, abs=2e-3 * 3.007387468
+        )
+        assert abs(float(tip["k2_pa_sqrtm"])) / unit == pytest.approx(2.013579108, rel=2e-3)
+
+
 def test_no_trace_of_fluid(tmp_path: Path) -> None:
     """No column of a table speaks of a fluid, and scene.nml runs again to the same results."""
     out = run_input(tmp_path, "paper_b/edge_mode1.nml")

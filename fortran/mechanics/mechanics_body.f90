@@ -10,6 +10,7 @@ module mechanics_body
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
+   use mechanics_outline, only: outline_of_scene, outline_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
@@ -66,11 +67,12 @@ contains
    pure function body_spec(scene) result(spec)
       type(scene_t), intent(in) :: scene
       type(mesh_spec_t) :: spec
+      type(outline_t) :: outline
 
-      spec%x_min = scene%domain%x_min
-      spec%x_max = scene%domain%x_max
-      spec%y_min = scene%domain%y_min
-      spec%y_max = scene%domain%y_max
+      outline = outline_of_scene(scene)
+      spec%corners = outline%corners
+      spec%edge_side = outline%edge_side
+      spec%fixed_points = outline%fixed_points
       spec%size_boundary = scene%discretization%size_boundary
       spec%size_fracture = scene%discretization%size_fracture
       if (.not. spec%size_fracture > 0.0_rk) spec%size_fracture = spec%size_boundary

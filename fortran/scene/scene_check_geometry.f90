@@ -11,6 +11,8 @@ module scene_check_geometry
 
    public :: check_domain, check_fractures, check_probes, check_wells, contains_point, point_text
 
+   real(rk), parameter :: round_off = 1.0e-9_rk  !< in points given on a circle, over its radius
+
 contains
 
    !> The rectangle has an area, and the cells fit into it.
@@ -20,6 +22,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: shorter_edge
 
+      call check_shape(sheet, scene, error)
+      if (allocated(error)) return
       associate (d => scene%domain, size_boundary => scene%discretization%size_boundary)
          if (.not. d%x_max > d%x_min) then
             call refuse(error, sheet, sheet%find("domain"), "x_max", "is "//real_text(d%x_max)// &
@@ -42,6 +46,41 @@ contains
          end if
       end associate
    end subroutine check_domain
+
+   !> What is given belongs to the body's shape.
+   pure subroutine check_shape(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      character(len=8), parameter :: of_rectangle(4) = ["x_min   ", "x_max   ", "y_min   ", &
+                                                        "y_max   "]
+      character(len=8), parameter :: of_disc(3) = ["x_centre", "y_centre", "radius  "]
+      logical :: is_disc
+      integer :: i, record
+
+      is_disc = scene%domain%shape == "disc"
+      record = sheet%find("domain")
+      if (is_disc .and. scene%has_fluid()) then
+         call refuse(error, sheet, record, "shape", "is 'disc' but must be 'rectangle' in a "// &
+                     "scene with &fluid")
+         return
+      else if (is_disc .and. sheet%has("side")) then
+         call refuse(error, sheet, sheet%find("side"), "", "is given, but a disc has no sides")
+         return
+      end if
+      do i = 1, merge(size(of_rectangle), size(of_disc), is_disc)
+         if (is_disc) then
+            if (.not. sheet%records(record)%is_given(trim(of_rectangle(i)))) cycle
+            call refuse(error, sheet, record, trim(of_rectangle(i)), "is given for a disc, "// &
+                        "which has a centre and a radius instead")
+         else
+            if (.not. sheet%records(record)%is_given(trim(of_disc(i)))) cycle
+            call refuse(error, sheet, record, trim(of_disc(i)), "is given for a rectangle, "// &
+                        "which has four sides instead")
+         end if
+         return
+      end do
+   end subroutine check_shape
 
    !> The group that tells the cell sizes.
    pure integer function mesh_record(sheet)
@@ -169,6 +208,9 @@ contains
 
       contains_point = x >= domain%x_min .and. x <= domain%x_max .and. &
                        y >= domain%y_min .and. y <= domain%y_max
+      if (domain%shape == "disc") then
+         contains_point = from_centre(domain, x, y) <= domain%radius*(1.0_rk + round_off)
+      end if
    end function contains_point
 
    !> A point of the domain lies on its boundary.
@@ -176,15 +218,29 @@ contains
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x, y
 
+      if (domain%shape == "disc") then
+         on_boundary = from_centre(domain, x, y) >= domain%radius*(1.0_rk - round_off)
+         return
+      end if
       on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. &
                     y >= domain%y_max
    end function on_boundary
 
-   !> Both ends of a segment of the domain lie on the same side.
+   !> Distance from the centre of a disc [m].
+   pure real(rk) function from_centre(domain, x, y)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: x, y
+
+      from_centre = hypot(x - domain%x_centre, y - domain%y_centre)
+   end function from_centre
+
+   !> Both ends of a segment of the domain lie on the same side; never so in a disc.
    pure logical function along_boundary(domain, x, y)
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x(2), y(2)
 
+      along_boundary = .false.
+      if (domain%shape == "disc") return
       along_boundary = all(x <= domain%x_min) .or. all(x >= domain%x_max) .or. &
                        all(y <= domain%y_min) .or. all(y >= domain%y_max)
    end function along_boundary

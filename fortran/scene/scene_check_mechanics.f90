@@ -31,7 +31,7 @@ contains
                         [2, 2, 4])
       end associate
       held = 0.0_rk
-      do side = 1, 4
+      do side = 1, merge(0, 4, scene%domain%shape == "disc")
          do k = 1, 2
             call hold(ends(:, k, side), scene%sides(side)%displacement_given, held)
          end do

@@ -6,8 +6,8 @@ module scene_exchange
    use scene_exchange_values, only: exchange, radians, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: boundary_side_t, discretization_t, fracture_t, growth_t, injection_t
-   use scene_types, only: material_t, name_length, point_load_t, probe_t, restraint_t
+   use scene_types, only: boundary_side_t, discretization_t, domain_t, fracture_t, growth_t
+   use scene_types, only: injection_t, material_t, name_length, point_load_t, probe_t, restraint_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
    implicit none(type, external)
@@ -108,6 +108,7 @@ contains
                call add_record(sheet, record)
             end do
          case ("side")
+            if (source%domain%shape == "disc") cycle  ! it has none
             do i = 1, size(source%sides)
                record = empty_record(group, 0_ik)
                call set_text(record, "name", trim(side_names(i)))
@@ -173,10 +174,7 @@ contains
          call exchange(record, "name", scene%name, reading)
          call exchange(record, "title", scene%title, reading)
       case ("domain")
-         call exchange(record, "x_min", scene%domain%x_min, reading)
-         call exchange(record, "x_max", scene%domain%x_max, reading)
-         call exchange(record, "y_min", scene%domain%y_min, reading)
-         call exchange(record, "y_max", scene%domain%y_max, reading)
+         call exchange_domain(record, scene%domain, reading)
       case ("material")
          call exchange_material(record, scene%material, reading)
       case ("fluid")
@@ -205,6 +203,28 @@ contains
          return
       end select
    end subroutine exchange_single
+
+   pure subroutine exchange_domain(record, domain, reading)
+      type(record_t), intent(inout) :: record
+      type(domain_t), intent(inout) :: domain
+      logical, intent(in) :: reading
+
+      call exchange(record, "shape", domain%shape, reading)
+      if (domain%shape == "disc") then
+         call exchange(record, "x_centre", domain%x_centre, reading)
+         call exchange(record, "y_centre", domain%y_centre, reading)
+         call exchange(record, "radius", domain%radius, reading)
+         domain%x_min = domain%x_centre - domain%radius
+         domain%x_max = domain%x_centre + domain%radius
+         domain%y_min = domain%y_centre - domain%radius
+         domain%y_max = domain%y_centre + domain%radius
+      else
+         call exchange(record, "x_min", domain%x_min, reading)
+         call exchange(record, "x_max", domain%x_max, reading)
+         call exchange(record, "y_min", domain%y_min, reading)
+         call exchange(record, "y_max", domain%y_max, reading)
+      end if
+   end subroutine exchange_domain
 
    pure subroutine exchange_material(record, material, reading)
       type(record_t), intent(inout) :: record

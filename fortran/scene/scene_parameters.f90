@@ -14,7 +14,7 @@ module scene_parameters
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
    public :: need_always, need_fluid, need_fracture, need_friction, need_growth, need_never
-   public :: need_tips
+   public :: need_disc, need_rectangle, need_tips
    public :: applies, in_all, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
@@ -32,6 +32,8 @@ module scene_parameters
    integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
    integer, parameter :: need_growth = 5  !< where fractures grow
    integer, parameter :: need_friction = 6  !< in a fracture with the law 'friction'
+   integer, parameter :: need_rectangle = 7  !< where the body is a rectangle
+   integer, parameter :: need_disc = 8  !< where the body is a disc
 
    ! Scenes that may give a group or a parameter.
    integer, parameter :: in_all = 0
@@ -71,7 +73,8 @@ module scene_parameters
    !&<
    type(group_t), parameter :: groups(*) = [ &
       group_t("scene", implied=.true., meaning="What the scene is called."), &
-      group_t("domain", implied=.true., meaning="The body: a rectangle of unit thickness."), &
+      group_t("domain", implied=.true., &
+              meaning="The body: a rectangle or a disc of unit thickness."), &
       group_t("material", implied=.true., &
               meaning="The rock, linear elastic and porous. The storage coefficient that "// &
               "follows from it must be positive, and `biot` at least `porosity`. Permeability "// &
@@ -121,11 +124,23 @@ module scene_parameters
                   meaning="Short name; results go to `out/<name>` unless told otherwise"), &
       parameter_t("scene", "title", kind_text, default="''", &
                   meaning="What the scene shows, in a line"), &
-      parameter_t("domain", "x_min", unit="m", need=need_always, meaning="Left side"), &
-      parameter_t("domain", "x_max", unit="m", need=need_always, &
+      parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
+                  choices="rectangle|disc", &
+                  meaning="Rectangle, or disc: in mechanics-only scenes, free of traction"), &
+      parameter_t("domain", "x_min", unit="m", need=need_rectangle, absent="a disc", &
+                  meaning="Left side"), &
+      parameter_t("domain", "x_max", unit="m", need=need_rectangle, absent="a disc", &
                   meaning="Right side, above x_min"), &
-      parameter_t("domain", "y_min", unit="m", need=need_always, meaning="Bottom side"), &
-      parameter_t("domain", "y_max", unit="m", need=need_always, meaning="Top side, above y_min"), &
+      parameter_t("domain", "y_min", unit="m", need=need_rectangle, absent="a disc", &
+                  meaning="Bottom side"), &
+      parameter_t("domain", "y_max", unit="m", need=need_rectangle, absent="a disc", &
+                  meaning="Top side, above y_min"), &
+      parameter_t("domain", "x_centre", unit="m", need=need_disc, absent="a rectangle", &
+                  meaning="x of the disc's centre"), &
+      parameter_t("domain", "y_centre", unit="m", need=need_disc, absent="a rectangle", &
+                  meaning="y of the disc's centre"), &
+      parameter_t("domain", "radius", unit="m", need=need_disc, range=positive, &
+                  absent="a rectangle", meaning="Radius of the disc"), &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
                   meaning="Young's modulus E"), &
       parameter_t("material", "poisson", need=need_always, range=poisson_range, &

@@ -4,7 +4,8 @@ module scene_parse
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
    use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
-                               need_friction, need_growth, need_tips, parameters
+                               need_disc, need_friction, need_growth, &
+                               need_rectangle, need_tips, parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
                           refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
@@ -295,7 +296,7 @@ contains
       integer, intent(in) :: record
       logical, intent(in) :: has_growth, has_tips
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: law
+      type(value_t) :: law, body_shape
       logical :: needed
       integer :: item
 
@@ -314,6 +315,9 @@ contains
                needed = has_tips
             case (need_growth)
                needed = has_growth
+            case (need_rectangle, need_disc)
+               body_shape = sheet%records(record)%value("shape")
+               needed = (body_shape%text == "disc") .eqv. (parameters(item)%need == need_disc)
             case (need_friction)
                law = sheet%records(record)%value("law")
                needed = law%text == "friction"
@@ -349,6 +353,10 @@ contains
          words = words//", which growth and stress intensity factors need"
       case (need_growth)
          words = words//", which growth needs"
+      case (need_rectangle)
+         words = words//", which a rectangle needs"
+      case (need_disc)
+         words = words//", which a disc needs"
       case (need_friction)
          words = words//", which the law 'friction' needs"
       case default

@@ -11,10 +11,12 @@ module scene_types
 
    integer, parameter :: name_length = 64
 
-   !> Rectangular body.
+   !> The body: a rectangle or a disc, whose square bounds it then.
    type :: domain_t
+      character(len=name_length) :: shape = "rectangle"  !< or "disc"
       real(rk) :: x_min = 0.0_rk, x_max = 0.0_rk  !< [m]
       real(rk) :: y_min = 0.0_rk, y_max = 0.0_rk  !< [m]
+      real(rk) :: x_centre = 0.0_rk, y_centre = 0.0_rk, radius = 0.0_rk  !< of a disc [m]
    end type domain_t
 
    !> Rock.

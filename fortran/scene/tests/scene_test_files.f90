@@ -64,6 +64,9 @@ contains
       if (a%name /= b%name .or. a%title /= b%title) return
       if (.not. same([a%domain%x_min, a%domain%x_max, a%domain%y_min, a%domain%y_max], &
                      [b%domain%x_min, b%domain%x_max, b%domain%y_min, b%domain%y_max])) return
+      if (a%domain%shape /= b%domain%shape) return
+      if (.not. same([a%domain%x_centre, a%domain%y_centre, a%domain%radius], &
+                     [b%domain%x_centre, b%domain%y_centre, b%domain%radius])) return
       if (.not. same([a%material%young, a%material%poisson, a%material%biot, a%material%porosity, &
                       a%material%permeability_xx, a%material%permeability_yy, &
                       a%material%permeability_xy, a%material%toughness], &

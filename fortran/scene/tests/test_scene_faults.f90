@@ -119,8 +119,8 @@ contains
 
    subroutine check_missing()
       call refuse(4, "", ":3: &material: poisson, which is always needed, is missing"//doc)
-      call refuse(2, "", ": group &domain is missing, and with it x_min [m], which is "// &
-                  "always needed"//doc)
+      call refuse(2, "", ": group &domain is missing, and with it x_min [m], which a "// &
+                  "rectangle needs"//doc)
       call refuse(7, "/", ":3: &material: toughness [Pa m^1/2], which growth needs, is missing"// &
                   doc)
       call refuse(5, "  biot=0.8", ":3: &material: porosity, which a scene with &fluid needs, "// &

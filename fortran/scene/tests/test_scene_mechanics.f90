@@ -49,6 +49,18 @@ program test_scene_mechanics
                "where fractures grow")
    call refuse(9, "&fe size_fracture=0.1 size_boundary=1.2 /", ":9: &fe: size_boundary is 1.2")
    call refuse(2, "&material young=1e9 poisson=0.2 /", "toughness [Pa m^1/2], which growth needs")
+   call refuse(6, "", "", accepted=.true., and_1="&domain shape='disc' x_centre=1 y_centre=0.5 "// &
+               "radius=2 /")
+   call refuse(6, "", "radius [m], which a disc needs", and_1="&domain shape='disc' "// &
+               "x_centre=1 y_centre=0.5 /")
+   call refuse(6, "", "x_min is given for a disc", and_1="&domain shape='disc' x_min=0 "// &
+               "x_centre=1 y_centre=0.5 radius=2 /")
+   call refuse(6, "", "radius is given for a rectangle", and_1=trim(good(1) (:len_trim(good(1)) &
+                                                                             - 1))//" radius=2 /")
+   call refuse(6, trim(good(6)), "a disc has no sides", and_1="&domain shape='disc' x_centre=1 "// &
+               "y_centre=0.5 radius=2 /")
+   call refuse(6, "", "x and y are (2.0, 0.0) but must lie within", and_1="&domain "// &
+               "shape='disc' x_centre=0.5 y_centre=0.5 radius=1.2 /")
    call delete_file(path)
    call checks%finish()
 
@@ -62,17 +74,18 @@ contains
    end subroutine accept
 
    !> One line of the good scene is another one; then it is refused with these words.
-   subroutine refuse(line, text, words, accepted, and_4)
+   subroutine refuse(line, text, words, accepted, and_1, and_4)
       integer, intent(in) :: line
       character(len=*), intent(in) :: text, words
       logical, intent(in), optional :: accepted  !< the scene is good
-      character(len=*), intent(in), optional :: and_4  !< another line 4
+      character(len=*), intent(in), optional :: and_1, and_4  !< other lines too
       character(len=160) :: lines(size(good))
       type(scene_t) :: scene
       type(error_t), allocatable :: error
 
       lines = good
       lines(line) = text
+      if (present(and_1)) lines(1) = and_1
       if (present(and_4)) lines(4) = and_4
       call put_lines(path, lines)
       call read_scene(path, scene, error)

@@ -84,6 +84,11 @@ contains
                             "&load from=0.1 to=2.1 steps=3 /", &
                             "&fe size_fracture=0.1 size_boundary=0.2 rosette_radius=0.03 /"])
       call round_trip(path)
+      call put_lines(path, [character(len=100) :: "&domain shape='disc' x_centre=0.1 "// &
+                            "y_centre=-3 radius=0.3 /", "&material young=1e9 poisson=0.2 /", &
+                            "&restraint x=0 y=-3 x_displacement=0 y_displacement=0 /", &
+                            "&restraint x=0.2 y=-3 y_displacement=0 /", "&fe size_boundary=0.2 /"])
+      call round_trip(path)
    end subroutine check_odd_numbers
 
    !> Degrees in the file, radians in the scene: no angle is lost on the way.
