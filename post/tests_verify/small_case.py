@@ -207,7 +207,9 @@ class SmallCase:
         """Run and judge everything."""
         (self.case / "check.toml").write_text(self.toml)
         suite = read_suite(self.root / "verification", names, quick)
-        runner = Runner(Programs(self.root / "build"), self.root / "cache", 2)
+        runner = Runner(
+            Programs(self.root / "build", self.case.parent / "programs"), self.root / "cache", 2
+        )
         return judge_suite(suite, runner.run_all(suite.jobs, lambda _job, _outcome: None))
 
     def forget(self) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
@@ -14,7 +13,7 @@ from fpdf import FPDF, FontFace, TextStyle
 from wingcrack_verify.figures import Drawing
 from wingcrack_verify.illustrate import Illustrations
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
-from wingcrack_verify.page import number_text, readme_html
+from wingcrack_verify.page import number_text, readme_html, shortened
 from wingcrack_verify.suite import JudgedSuite
 
 _FONTS = {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}
@@ -86,7 +85,7 @@ def _summary(book: _Book, record: dict[str, Any]) -> None:
     rows = [
         (
             row["case"],
-            "\n".join([row["quantity"], *row["reasons"]]),
+            "\n".join([row["quantity"], *shortened(row["reasons"])]),
             row["error"],
             row["tolerance"],
             row["verdict"],
@@ -125,9 +124,7 @@ def _head(book: _Book, item: dict[str, Any], folder: Path) -> None:
     _words(book, f"{item['name']}. {item['source']}. All runs: {item['cpu_s']:.3g} CPU s.")
     if item["broken"]:
         _words(book, item["broken"])
-    # A list whose items are paragraphs would stand apart from its bullets.
-    html = re.sub(r"<li>\s*<p>", "<li>", readme_html(folder, None))
-    html = re.sub(r"</p>\s*</li>", "</li>", html)
+    html = readme_html(folder, None)
     if html:
         book.set_font("body", "", 8)
         styles: dict[str, Any] = {

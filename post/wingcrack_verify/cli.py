@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except CaseError as reason:
         print(f"wingcrack verify: {reason}", file=sys.stderr)
         return 2
-    runner = Runner(Programs(given.build), given.cache, given.jobs)
+    runner = Runner(Programs(given.build, given.cases / "programs"), given.cache, given.jobs)
     try:
         return _verify(suite, runner, given)
     except EnvironmentLacksError as reason:

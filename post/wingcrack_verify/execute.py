@@ -62,10 +62,11 @@ class Job:
 
 
 class Programs:
-    """Where the compiled programs are."""
+    """Where the compiled programs are, and the sources of those that cases bring."""
 
-    def __init__(self, build: Path) -> None:
+    def __init__(self, build: Path, sources: Path) -> None:
         self._build = build
+        self._sources = sources
 
     def path(self, run: Run) -> Path:
         """Executable of a run."""
@@ -74,9 +75,9 @@ class Programs:
         else:
             path = self._build / "verification" / run.program
         if not path.is_file():
-            if run.program is not None:
-                raise CaseError(f"there is no program verification/programs/{run.program}.f90")
-            raise EnvironmentLacksError(f"the solver is not built: {path} is missing")
+            if run.program and not (self._sources / f"{run.program}.f90").is_file():
+                raise CaseError(f"there is no program programs/{run.program}.f90")
+            raise EnvironmentLacksError(f"not built: {path} is missing")
         return path
 
 

@@ -6,6 +6,7 @@ import base64
 import mimetypes
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from wingcrack_verify.figures import Drawing
 from wingcrack_verify.illustrate import Illustrations
 from wingcrack_verify.suite import JudgedSuite
 
+_MOST_REASONS = 2  # in the summary
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
@@ -34,6 +36,7 @@ def page_text(
     )
     templates.filters["number"] = number_text
     templates.filters["slug"] = slug
+    templates.filters["shortened"] = shortened
     return templates.get_template("report.html.j2").render(
         record=record,
         texts={name: readme_html(path, folder) for name, path in judged.folders.items()},
@@ -48,6 +51,12 @@ def page_text(
 def number_text(value: float | None, form: str = ".3g") -> str:
     """Number for a table; a dash where there is none."""
     return "-" if value is None else format(value, form)
+
+
+def shortened(reasons: Sequence[str]) -> list[str]:
+    """First few reasons; the section of the case has all of them."""
+    more = len(reasons) - _MOST_REASONS
+    return [*reasons[:_MOST_REASONS], *([f"and {more} more, see the case"] if more > 0 else [])]
 
 
 def slug(text: str) -> str:
@@ -76,6 +85,8 @@ def readme_html(case: Path, folder: Path | None) -> str:
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = parser.parse(file.read_text(encoding="utf-8"))
     for token in tokens:
+        if folder is None and token.type.startswith("paragraph") and token.level > 0:
+            token.hidden = True  # in a list: the PDF would set its bullets apart from the words
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{min(int(token.tag[1]) + 2, 6)}"
         for child in token.children or []:

@@ -13,7 +13,7 @@ from wingcrack_verify import environment
 from wingcrack_verify.booklet import write_booklet
 from wingcrack_verify.illustrate import Illustrations, illustrate
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
-from wingcrack_verify.page import page_text
+from wingcrack_verify.page import page_text, shortened
 from wingcrack_verify.record import Context, Row, record_of, rows_of
 from wingcrack_verify.suite import JudgedSuite
 
@@ -55,7 +55,7 @@ class Report:
             f"{row.verdict.upper()}  {row.case}: {row.quantity}: {reason}"
             for row in self.rows
             if row.verdict != PASSED
-            for reason in row.reasons or ("",)
+            for reason in shortened(row.reasons) or [""]
         ]
         counts = ", ".join(f"{number} {verdict}" for verdict, number in self.counts.items())
         return [*lines, f"{counts}; {self.runs} runs, {self.reused} of them as before"]
