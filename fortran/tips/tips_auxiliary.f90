@@ -3,6 +3,7 @@
 !! With Phi(z) = Omega(z) = (K_I - i K_II)/(2 sqrt(2 pi z)), z = x + i y and ' = d/dz,
 !!    s22 - i s12 = Phi(z) + Omega(conj z) + (z - conj z) conj(Phi'(z)),   s11 + s22 = 4 Re Phi(z),
 !!    2 mu d(u1 + i u2)/dx1 = kappa Phi(z) - Omega(conj z) - (z - conj z) conj(Phi'(z)).
+!! Derivatives along the crack have Phi', Omega' and Phi'' in the place of Phi, Omega and Phi'.
 module tips_auxiliary
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -16,7 +17,7 @@ module tips_auxiliary
    type :: auxiliary_field_t
       real(rk) :: stress(2, 2)  !< [Pa per Pa m^1/2]
       real(rk) :: slope(2)  !< du/dx1 [1 per Pa m^1/2]
-      real(rk) :: dilation_slope  !< d(in-plane strain trace)/dx1 [1/m per Pa m^1/2]
+      real(rk) :: strain_slope(2, 2)  !< d(in-plane strain)/dx1 [1/m per Pa m^1/2]
    end type auxiliary_field_t
 
 contains
@@ -29,13 +30,16 @@ contains
       real(rk), intent(in) :: kolosov  !< [-]
       real(rk), intent(in) :: shear_modulus  !< [Pa]
       type(auxiliary_field_t) :: field
-      complex(rk) :: factor, phi, phi_slope, omega, bent, traction, slope
+      complex(rk) :: factor, phi, phi_slope, omega, omega_slope, bent, bent_slope, traction, slope
+      real(rk) :: stress_slope(2, 2), mean
 
       factor = merge((1.0_rk, 0.0_rk), (0.0_rk, -1.0_rk), mode == 1)/(2.0_rk*sqrt(2.0_rk*pi))
       phi = factor/root_z
       phi_slope = -0.5_rk*phi/root_z**2
       omega = factor/conjg(root_z)
+      omega_slope = -0.5_rk*omega/conjg(root_z**2)
       bent = cmplx(0.0_rk, 2.0_rk*aimag(root_z**2), rk)*conjg(phi_slope)
+      bent_slope = -1.5_rk*bent/conjg(root_z**2)
       traction = phi + omega + bent
       slope = (kolosov*phi - omega - bent)/(2.0_rk*shear_modulus)
       field%stress(2, 2) = real(traction, rk)
@@ -43,7 +47,17 @@ contains
       field%stress(2, 1) = field%stress(1, 2)
       field%stress(1, 1) = 4.0_rk*real(phi, rk) - field%stress(2, 2)
       field%slope = [real(slope, rk), aimag(slope)]
-      field%dilation_slope = (kolosov - 1.0_rk)/shear_modulus*real(phi_slope, rk)
+      traction = phi_slope + omega_slope + bent_slope
+      stress_slope(2, 2) = real(traction, rk)
+      stress_slope(1, 2) = -aimag(traction)
+      stress_slope(2, 1) = stress_slope(1, 2)
+      stress_slope(1, 1) = 4.0_rk*real(phi_slope, rk) - stress_slope(2, 2)
+      ! 2 mu strain = stress - lambda/(2 (lambda + mu)) trace, and that factor is (3 - kappa)/4.
+      mean = 0.25_rk*(3.0_rk - kolosov)*(stress_slope(1, 1) + stress_slope(2, 2))
+      field%strain_slope = stress_slope
+      field%strain_slope(1, 1) = stress_slope(1, 1) - mean
+      field%strain_slope(2, 2) = stress_slope(2, 2) - mean
+      field%strain_slope = field%strain_slope/(2.0_rk*shear_modulus)
    end function auxiliary_field
 
 end module tips_auxiliary

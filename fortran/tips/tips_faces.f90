@@ -1,7 +1,7 @@
 !> The traction that the fracture faces carry, as the interaction integral needs it.
 module tips_faces
    use base_kinds, only: ik, rk
-   use fine_faces, only: face_jump, face_loaded
+   use fine_faces, only: face_contact, face_jump, face_loaded
    use fine_loads, only: face_shares, fine_loads_t, volume_forces
    use fine_model, only: fine_model_t
    use tips_types, only: tip_frame_t
@@ -46,7 +46,7 @@ contains
 
    !> The cell whose traction stands for that of a cell near the tip.
    !!
-   !! Where the jump is given, the stress concentration that it makes leaves an error of some per
+   !! Where the slip is given, the stress concentration that it makes leaves an error of some per
    !! cent of itself in the forces on the first two cells, on any mesh; the traction itself is
    !! smooth there. So these take the value of the third, as far as it is a cell of the same kind
    !! on the same line.
@@ -59,18 +59,30 @@ contains
       integer(ik) :: inward, candidate
 
       traction_source = cell
-      if (model%conditions%condition(cell) /= face_jump) return
+      if (.not. has_given_slip(cell)) return
       inward = -nint(frame%upper)  ! cells are stored along the fracture
       do
          if (abs(traction_source - frame%face) >= n_disturbed) exit
          candidate = traction_source + inward
          if (candidate < 1 .or. candidate > model%mesh%fracture%n_cells) exit
          if (model%mesh%fracture%cell_fracture(candidate) /= frame%fracture) exit
-         if (model%conditions%condition(candidate) /= face_jump) exit
+         if (.not. has_given_slip(candidate)) exit
          if (norm2(model%mesh%face_tangent(:, candidate) &
                    - model%mesh%face_tangent(:, cell)) > straight) exit
          traction_source = candidate
       end do
+
+   contains
+
+      !> Whether the slip of a cell is given, with the opening or without.
+      pure logical function has_given_slip(given)
+         integer(ik), intent(in) :: given
+
+         has_given_slip = model%conditions%condition(given) == face_jump &
+                          .or. (model%conditions%condition(given) == face_contact &
+                                .and. model%conditions%law(given)%slip_given)
+      end function has_given_slip
+
    end function traction_source
 
 end module tips_faces

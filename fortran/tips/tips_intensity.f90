@@ -1,11 +1,14 @@
-!> Stress intensity factors of a free tip, by both methods.
+!> Stress intensity factors of a free tip by three methods, and how far they agree.
 module tips_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
    use tips_displacement, only: displacement_correlation
-   use tips_interaction, only: interaction_integral, largest_radius, rosette_size
+   use tips_domain, only: largest_radius, rosette_size
+   use tips_energy, only: release_rate
+   use tips_interaction, only: interaction_integral
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
    private
@@ -19,7 +22,11 @@ module tips_intensity
 
 contains
 
-   !> Displacement correlation, and the interaction integral on two domains.
+   !> Displacement correlation, the interaction integral on two domains, and the energy release
+   !! rate.
+   !!
+   !! The estimated error of an intensity is the difference between the domains, plus that between
+   !! the magnitude of both intensities and the one that the energy release rate gives.
    subroutine tip_intensity(model, loads, displacement, tip, intensity, error)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads  !< those of the solution
@@ -28,7 +35,7 @@ contains
       type(intensity_t), intent(out) :: intensity
       type(error_t), allocatable, intent(out) :: error
       type(tip_frame_t) :: frame
-      real(rk) :: size_of_all
+      real(rk) :: mismatch, of_energy, size_of_all
       character(len=16) :: number
 
       if (tip < 1 .or. tip > model%mesh%fracture%n_tips) then
@@ -47,12 +54,55 @@ contains
                                    result%k1, result%k2)
          call interaction_integral(model, loads, displacement, frame, result%radius_inner, &
                                    plateau, result%k1_inner, result%k2_inner)
+         result%g_domain = release_rate(model, loads, displacement, frame, result%radius, plateau)
+         of_energy = sqrt(model%elasticity%crack_modulus()*max(result%g_domain, 0.0_rk))
+         mismatch = abs(hypot(result%k1, result%k2) - of_energy)
+         result%k1_error = abs(result%k1 - result%k1_inner) + mismatch
+         result%k2_error = abs(result%k2 - result%k2_inner) + mismatch
          size_of_all = sum(abs([result%k1, result%k2, result%k1_inner, result%k2_inner, &
-                                result%k1_dc, result%k2_dc]))
+                                result%k1_dc, result%k2_dc, result%g_domain]))
       end associate
+      call respect_contact(model, displacement, frame, intensity)
       if (.not. size_of_all <= huge(1.0_rk)) then
          call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if
    end subroutine tip_intensity
+
+   !> Where the law of contact closes the faces next to the tip, their jump says more than any
+   !! integral: [u]_n = tan(psi) |[u]_tau| leaves K_I = tan(psi) |K_II|, and no jump leaves neither.
+   pure subroutine respect_contact(model, displacement, frame, intensity)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(tip_frame_t), intent(in) :: frame
+      type(intensity_t), intent(inout) :: intensity
+      real(rk), parameter :: round_off = 1.0e-9_rk  ! of the jumps at the tip
+      real(rk), parameter :: none = 1.0e-12_rk  ! of the displacements
+      real(rk) :: jump(2, 3), opening(3), slip(3), largest
+      integer(ik) :: k
+
+      if (model%conditions%condition(frame%face) /= face_contact) return
+      associate (plus => model%mesh%face_nodes(:, 1, frame%face), &
+                 minus => model%mesh%face_nodes(:, 2, frame%face), &
+                 law => model%conditions%law(frame%face)%contact)
+         jump = frame%upper*matmul(frame%axes, displacement(:, minus) - displacement(:, plus))
+         do k = 1, 3
+            opening(k) = jump(2, k)
+            slip(k) = abs(jump(1, k))
+         end do
+         largest = maxval(abs(jump))
+         if (largest <= none*maxval(abs(displacement))) then
+            intensity%k1 = 0.0_rk
+            intensity%k2 = 0.0_rk
+            intensity%k1_inner = 0.0_rk
+            intensity%k2_inner = 0.0_rk
+         else if (maxval(abs(opening - law%dilation*slip)) <= round_off*largest) then
+            intensity%k1 = law%dilation*abs(intensity%k2)
+            intensity%k1_inner = law%dilation*abs(intensity%k2_inner)
+         else
+            return
+         end if
+         intensity%closed = .true.
+      end associate
+   end subroutine respect_contact
 
 end module tips_intensity

@@ -1,35 +1,36 @@
 !> Stress intensity factors by the interaction integral in domain form (Stern, Becker and Dunham
-!! 1976; Yau, Wang and Corten 1980; Shih and Asaro 1988), with loaded faces and the pore pressure
-!! as initial stress.
+!! 1976; Yau, Wang and Corten 1980; Shih and Asaro 1988), with loaded faces, body force, in-situ
+!! stress, and the pore pressure as initial stress.
 !!
 !! In the tip's axes, with the auxiliary field (hat) of unit intensity, total stress s,
 !! displacement u, strain e, outward normal m, and a weight q that is 1 at the tip and 0 at the
 !! domain's edge:
 !!    P_j = s_ij hat u_i,1 + hat s_ij u_i,1 - hat s_kl e_kl delta_1j
 !!    M = int P_j q,j dA + int P_j,j q dA - int_faces P_j m_j q ds = 2 K/E'.
-!! Since div s = div hat s = 0 and s = C e - biot p I, P_j,j = -biot p (tr hat e),1. On straight
-!! faces through the tip m_1 = 0 and hat s m = 0, so that P_j m_j leaves the actual traction
-!! t = s m of both sides:
-!!    M = int P_j q,j dA - int biot p (tr hat e),1 q dA - int_faces t_i hat u_i,1 q ds.
-!! The domain ends before anything for which this does not hold: a kink, another fracture, the far
-!! end of the straight piece, the outer boundary.
+!! Since div s = -b, div hat s = 0 and s = C e + s0 with the initial stress s0 (that in situ less
+!! biot p I), P_j,j = s0_kl hat e_kl,1 - b_i hat u_i,1. On straight faces through the tip m_1 = 0
+!! and hat s m = 0, so that P_j m_j leaves the actual traction t = s m of both sides:
+!!    M = int P_j q,j dA + int (s0_kl hat e_kl,1 - b_i hat u_i,1) q dA
+!!        - int_faces t_i hat u_i,1 q ds.
+!! A uniform stress adds nothing to these three together; so the in-situ stress at the tip is taken
+!! off s, s0 and t, which would otherwise lose digits where it is large.
 module tips_interaction
    use base_kinds, only: ik, rk
    use fine_element, only: evaluate_element
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, gauss_rule, triangle_rule_7
+   use fine_quadrature, only: gauss_rule
    use tips_auxiliary, only: auxiliary_field, auxiliary_field_t
+   use tips_domain, only: domain_weight, element_rule, on_line, rule_size, tip_stress
    use tips_faces, only: face_traction, traction_source
    use tips_types, only: tip_frame_t
    implicit none(type, external)
    private
 
-   public :: interaction_integral, largest_radius, rosette_size
+   public :: initial_stress, interaction_integral
 
    real(rk), parameter :: pi = acos(-1.0_rk)
-   real(rk), parameter :: on_line = 1.0e-9_rk  !< distance from the line over that from the tip
 
 contains
 
@@ -42,61 +43,70 @@ contains
       real(rk), intent(in) :: radius  !< where q has fallen to 0, at most largest_radius [m]
       real(rk), intent(in) :: plateau  !< share of the radius within which q = 1 [-]
       real(rk), intent(out) :: k1, k2  !< [Pa m^1/2]
-      real(rk), allocatable :: q(:)
-      real(rk) :: distance, integral(2)
-      integer(ik) :: cell, node
+      real(rk) :: q(model%mesh%n_nodes), reference_stress(2, 2), integral(2)
+      integer(ik) :: cell
 
-      allocate (q(model%mesh%n_nodes))
-      do node = 1, model%mesh%n_nodes
-         distance = norm2(model%mesh%xy(:, node) - frame%origin)/radius
-         q(node) = max(0.0_rk, min(1.0_rk, (1.0_rk - distance)/(1.0_rk - plateau)))
-         if (distance > 1.0_rk - on_line) q(node) = 0.0_rk
-      end do
-
+      q = domain_weight(model%mesh, frame, radius, plateau)
+      reference_stress = tip_stress(loads, frame)
       integral = 0.0_rk
       do cell = 1, model%mesh%n_cells
          if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then
-            call add_cell(model, loads, displacement, frame, cell, q, integral)
+            call add_cell(model, loads, displacement, frame, reference_stress, cell, q, integral)
          end if
       end do
       do cell = 1, model%mesh%fracture%n_cells
          if (any(q(model%mesh%face_nodes(:, 1, cell)) > 0.0_rk)) then
-            call add_face(model, loads, displacement, frame, cell, q, integral)
+            call add_face(model, loads, displacement, frame, reference_stress, cell, q, integral)
          end if
       end do
       k1 = 0.5_rk*model%elasticity%crack_modulus()*integral(1)
       k2 = 0.5_rk*model%elasticity%crack_modulus()*integral(2)
    end subroutine interaction_integral
 
+   !> In-situ stress less biot*p at a point of an element, in the tip's axes [Pa].
+   pure function initial_stress(loads, biot, frame, corners, area_coordinates) result(stress)
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: biot  !< [-]
+      type(tip_frame_t), intent(in) :: frame
+      integer(ik), intent(in) :: corners(3)
+      real(rk), intent(in) :: area_coordinates(3)
+      real(rk) :: stress(2, 2)
+      real(rk) :: given(3), pressure
+      integer(ik) :: i
+
+      given = matmul(loads%initial_stress(:, corners), area_coordinates)
+      stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
+      stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
+      pressure = dot_product(area_coordinates, loads%pore_pressure(corners))
+      do i = 1, 2
+         stress(i, i) = stress(i, i) - biot*pressure
+      end do
+   end function initial_stress
+
    !> One element's share.
-   pure subroutine add_cell(model, loads, displacement, frame, cell, q, integral)
+   pure subroutine add_cell(model, loads, displacement, frame, reference_stress, cell, q, integral)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: displacement(:, :)
       type(tip_frame_t), intent(in) :: frame
+      real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: q(:)  !< (n_nodes)
       real(rk), intent(inout) :: integral(2)
-      integer(ik), parameter :: n_t = 4, n_w = 5
-      real(rk) :: points(3, n_t*n_w), weights(n_t*n_w)
+      real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
-      real(rk) :: place(2), gradient(2, 2), stress(2, 2), q_slope(2), p(2)
-      real(rk) :: pressure, initial, weight, angle, reference, kolosov, shear_modulus
+      real(rk) :: place(2), gradient(2, 2), stress(2, 2), initial(2, 2), q_slope(2), p(2), body(2)
+      real(rk) :: q_here, weight, angle, reference, kolosov, shear_modulus
       complex(rk) :: root_z
       type(auxiliary_field_t) :: field
       integer(ik) :: point, n_points, mode, nodes(6)
 
       nodes = model%mesh%cell_nodes(:, cell)
-      if (any(nodes(1:3) == frame%node)) then
-         n_points = n_t*n_w
-         call collapsed_rule(model%mesh%tip_corner(cell), n_t, n_w, points, weights)
-      else
-         n_points = 7
-         call triangle_rule_7(points(:, 1:7), weights(1:7))
-      end if
+      call element_rule(model%mesh, frame, cell, n_points, points, weights)
       reference = reference_angle(model%mesh, frame, cell, q)
       kolosov = model%elasticity%kolosov()
       shear_modulus = model%elasticity%shear_modulus()
+      body = matmul(frame%axes, loads%body_force)
 
       do point = 1, n_points
          call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
@@ -107,9 +117,10 @@ contains
          gradients = matmul(frame%axes, gradients)
          gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))
          q_slope = matmul(gradients, q(nodes))
-         pressure = dot_product(area_coordinates, loads%pore_pressure(nodes(1:3)))
-         stress = model%elasticity%total_stress(gradient, pressure)
-         initial = model%elasticity%biot*pressure*dot_product(values, q(nodes))
+         initial = initial_stress(loads, model%elasticity%biot, frame, nodes(1:3), &
+                                  area_coordinates) - reference_stress
+         stress = model%elasticity%total_stress(gradient, 0.0_rk) + initial
+         q_here = dot_product(values, q(nodes))
          angle = atan2(place(2), place(1))
          angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
          root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
@@ -118,7 +129,9 @@ contains
             p = matmul(stress, field%slope) + matmul(field%stress, gradient(:, 1))
             p(1) = p(1) - sum(field%stress*gradient)
             integral(mode) = integral(mode) &
-                             + weight*(dot_product(p, q_slope) - initial*field%dilation_slope)
+                             + weight*(dot_product(p, q_slope) &
+                                       + q_here*(sum(initial*field%strain_slope) &
+                                                 - dot_product(body, field%slope)))
          end do
       end do
    end subroutine add_cell
@@ -149,11 +162,12 @@ contains
    end function reference_angle
 
    !> One fracture cell's share: its traction on the difference of hat u,1 between the faces.
-   pure subroutine add_face(model, loads, displacement, frame, cell, q, integral)
+   pure subroutine add_face(model, loads, displacement, frame, reference_stress, cell, q, integral)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: displacement(:, :)
       type(tip_frame_t), intent(in) :: frame
+      real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: q(:)  !< (n_nodes)
       real(rk), intent(inout) :: integral(2)
@@ -165,7 +179,8 @@ contains
 
       call gauss_rule(n_points, s, weights)
       source = traction_source(model, frame, cell)
-      traction = matmul(frame%axes, face_traction(model, loads, displacement, source))
+      traction = matmul(frame%axes, face_traction(model, loads, displacement, source)) &
+                 - frame%upper*reference_stress(:, 2)
       kolosov = model%elasticity%kolosov()
       shear_modulus = model%elasticity%shear_modulus()
       associate (nodes => model%mesh%face_nodes(:, 1, cell), &
@@ -194,71 +209,5 @@ contains
          end do
       end associate
    end subroutine add_face
-
-   !> How far a domain may reach [m].
-   pure real(rk) function largest_radius(fine, frame)
-      type(fine_mesh_t), intent(in) :: fine
-      type(tip_frame_t), intent(in) :: frame
-      real(rk) :: place(2, 2), straight_length
-      integer(ik) :: cell, face
-
-      largest_radius = huge(1.0_rk)
-      straight_length = 0.0_rk
-      do cell = 1, fine%fracture%n_cells
-         place = in_tip_axes(fine%face_nodes(1:2, 1, cell))
-         if (fine%fracture%cell_fracture(cell) == frame%fracture &
-             .and. all(abs(place(2, :)) <= on_line*maxval(abs(place)))) then
-            straight_length = max(straight_length, maxval(abs(place(1, :))))
-         else
-            largest_radius = min(largest_radius, distance_to_segment(place))
-         end if
-      end do
-      largest_radius = min(largest_radius, straight_length)
-      do face = 1, size(fine%boundary_faces, 2)
-         place = in_tip_axes(fine%boundary_faces(:, face))
-         largest_radius = min(largest_radius, distance_to_segment(place))
-      end do
-
-   contains
-
-      !> Places of two nodes.
-      pure function in_tip_axes(nodes) result(place)
-         integer(ik), intent(in) :: nodes(2)
-         real(rk) :: place(2, 2)
-         integer(ik) :: k
-
-         do k = 1, 2
-            place(:, k) = matmul(frame%axes, fine%xy(:, nodes(k)) - frame%origin)
-         end do
-      end function in_tip_axes
-
-   end function largest_radius
-
-   !> Distance of the origin from a segment.
-   pure real(rk) function distance_to_segment(ends)
-      real(rk), intent(in) :: ends(2, 2)
-      real(rk) :: along(2), share
-
-      along = ends(:, 2) - ends(:, 1)
-      share = min(1.0_rk, max(0.0_rk, -dot_product(ends(:, 1), along)/dot_product(along, along)))
-      distance_to_segment = norm2(ends(:, 1) + share*along)
-   end function distance_to_segment
-
-   !> Largest distance of the corners of the elements around a tip from it [m].
-   pure real(rk) function rosette_size(fine, frame)
-      type(fine_mesh_t), intent(in) :: fine
-      type(tip_frame_t), intent(in) :: frame
-      real(rk) :: corner(2)
-      integer(ik) :: cell, k
-
-      rosette_size = 0.0_rk
-      do cell = 1, fine%n_cells
-         if (.not. any(fine%cell_nodes(1:3, cell) == frame%node)) cycle
-         do k = 1, 3
-            corner = fine%xy(:, fine%cell_nodes(k, cell))
-            rosette_size = max(rosette_size, norm2(corner - frame%origin))
-         end do
-      end do
-   end function rosette_size
 
 end module tips_interaction

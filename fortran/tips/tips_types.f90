@@ -14,6 +14,9 @@ module tips_types
       real(rk) :: k1_inner = 0.0_rk, k2_inner = 0.0_rk  !< interaction integral, smaller domain
       real(rk) :: k1_dc = 0.0_rk, k2_dc = 0.0_rk  !< displacement correlation
       real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
+      real(rk) :: g_domain = 0.0_rk  !< energy release rate by the J-integral [J/m2]
+      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimates for k1 and k2
+      logical :: closed = .false.  !< the faces touch at the tip: k1 follows from the slip
    end type intensity_t
 
    !> A free tip with its own axes.

@@ -117,12 +117,17 @@ contains
                               name//": K_I, displacements")
          call checks%is_close(intensity%k2_dc/scale, k2/scale, tolerance_dc, &
                               name//": K_II, displacements")
-         print "(a,t24,i5,a,i2,3(a,2f8.3))", name, model%mesh%n_cells, " cells, tip", tip, &
-            ", errors in %:", &
-            100.0_rk*(intensity%k1 - k1)/scale, 100.0_rk*(intensity%k2 - k2)/scale, "  inner", &
-            100.0_rk*(intensity%k1_inner - k1)/scale, 100.0_rk*(intensity%k2_inner - k2)/scale, &
-            "  displacement", &
-            100.0_rk*(intensity%k1_dc - k1)/scale, 100.0_rk*(intensity%k2_dc - k2)/scale
+         associate (g => intensity%g_domain*model%elasticity%crack_modulus()/scale**2)
+            call checks%is_close(g, 1.0_rk, 2.0_rk*tolerance, name//": energy release rate")
+            print "(a,t24,i5,a,i2,5(a,2f8.3))", name, model%mesh%n_cells, " cells, tip", tip, &
+               ", errors in %:", &
+               100.0_rk*(intensity%k1 - k1)/scale, 100.0_rk*(intensity%k2 - k2)/scale, "  inner", &
+               100.0_rk*(intensity%k1_inner - k1)/scale, &
+               100.0_rk*(intensity%k2_inner - k2)/scale, "  displacement", &
+               100.0_rk*(intensity%k1_dc - k1)/scale, 100.0_rk*(intensity%k2_dc - k2)/scale, &
+               "  estimated", 100.0_rk*intensity%k1_error/scale, &
+               100.0_rk*intensity%k2_error/scale, "  G", 100.0_rk*(g - 1.0_rk)
+         end associate
       end do
    end subroutine compare
 
@@ -145,7 +150,29 @@ contains
       call set_boundary(model, angle, remote, normal, shear, loads)
       call compare(name, model, loaded_everywhere(model%mesh), loads, normal*sqrt(pi*half_length), &
                    shear*sqrt(pi*half_length), 1.0e-3_rk, 0.016_rk)
+      call estimates(name, model, loads, normal*sqrt(pi*half_length), shear*sqrt(pi*half_length))
    end subroutine free_crack
+
+   !> The estimated errors bound the true ones, and are below 0.1 % themselves.
+   subroutine estimates(name, model, loads, k1, k2)
+      character(len=*), intent(in) :: name
+      type(fine_model_t), intent(inout) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
+      type(intensity_t) :: intensity
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :)
+      integer(ik) :: tip
+
+      call model%solve(loads, displacement, error)
+      do tip = 1, 2
+         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call checks%is_true(abs(intensity%k1 - k1) <= intensity%k1_error .and. &
+                             abs(intensity%k2 - k2) <= intensity%k2_error, name//": estimates")
+        call checks%is_true(max(intensity%k1_error, intensity%k2_error) < 1.0e-3_rk*hypot(k1, k2), &
+                             name//": estimates are small")
+      end do
+   end subroutine estimates
 
    !> Normal and shear stress on a line at an angle.
    pure subroutine line_stress(angle, stress, normal, shear)

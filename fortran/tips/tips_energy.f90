@@ -1,0 +1,158 @@
+!> Energy release rate of a tip by the J-integral in domain form (Rice 1968; Li, Shih and Needleman
+!! 1985), with loaded faces, body force, in-situ stress and pore pressure.
+!!
+!! With total stress s = C e + s0, the energy density W = e C e/2 + s0 e, and the weight q of the
+!! domain,
+!!    J = int (s_ij u_i,1 - W delta_1j) q,j dA - int (b_i u_i,1 + s0_ij,1 e_ij) q dA
+!!        - int_faces t_i u_i,1 q ds,
+!! as the divergence of s_ij u_i,1 - W delta_1j is -b_i u_i,1 - s0_ij,1 e_ij. The faces move by
+!! their jump against each other: the last integral is that of the traction on side + times [u],1.
+!! For straight extension J = G = (K_I**2 + K_II**2)/E'.
+module tips_energy
+   use base_kinds, only: ik, rk
+   use fine_element, only: evaluate_element
+   use fine_loads, only: fine_loads_t
+   use fine_mesh, only: fine_mesh_t
+   use fine_model, only: fine_model_t
+   use fine_quadrature, only: gauss_rule
+   use tips_domain, only: domain_weight, element_rule, rule_size, tip_stress
+   use tips_faces, only: face_traction, traction_source
+   use tips_interaction, only: initial_stress
+   use tips_types, only: tip_frame_t
+   implicit none(type, external)
+   private
+
+   public :: release_rate
+
+contains
+
+   !> G of straight extension [J/m2].
+   pure function release_rate(model, loads, displacement, frame, radius, plateau) result(g)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(tip_frame_t), intent(in) :: frame
+      real(rk), intent(in) :: radius  !< of the domain [m]
+      real(rk), intent(in) :: plateau  !< share of the radius within which q = 1 [-]
+      real(rk) :: g
+      real(rk) :: q(model%mesh%n_nodes), reference_stress(2, 2)
+      integer(ik) :: cell
+
+      q = domain_weight(model%mesh, frame, radius, plateau)
+      reference_stress = tip_stress(loads, frame)
+      g = 0.0_rk
+      do cell = 1, model%mesh%n_cells
+         if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then
+            g = g + cell_share(model, loads, displacement, frame, reference_stress, cell, q)
+         end if
+      end do
+      do cell = 1, model%mesh%fracture%n_cells
+         if (any(q(model%mesh%face_nodes(:, 1, cell)) > 0.0_rk)) then
+            g = g + face_share(model, loads, displacement, frame, reference_stress, cell, q)
+         end if
+      end do
+   end function release_rate
+
+   !> The integrals over one element.
+   pure real(rk) function cell_share(model, loads, displacement, frame, reference_stress, cell, q)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)
+      type(tip_frame_t), intent(in) :: frame
+      real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: q(:)  !< (n_nodes)
+      real(rk) :: points(3, rule_size), weights(rule_size)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
+      real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
+      real(rk) :: body(2), density
+      integer(ik) :: nodes(6), n_points, point
+
+      nodes = model%mesh%cell_nodes(:, cell)
+      call element_rule(model%mesh, frame, cell, n_points, points, weights)
+      slope = initial_slope(model, loads, frame, nodes(1:3))
+      body = matmul(frame%axes, loads%body_force)
+      cell_share = 0.0_rk
+      do point = 1, n_points
+         call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
+                               points(:, point), values, gradients, area_coordinates, determinant)
+         ! All in the tip's axes.
+         gradients = matmul(frame%axes, gradients)
+         gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))
+         q_slope = matmul(gradients, q(nodes))
+         elastic = model%elasticity%total_stress(gradient, 0.0_rk)
+         initial = initial_stress(loads, model%elasticity%biot, frame, nodes(1:3), &
+                                  area_coordinates) - reference_stress
+         density = sum((0.5_rk*elastic + initial)*gradient)
+         p = matmul(elastic + initial, gradient(:, 1)) - [density, 0.0_rk]
+         cell_share = cell_share + weights(point)*determinant &
+                      *(dot_product(p, q_slope) - dot_product(values, q(nodes)) &
+                        *(dot_product(body, gradient(:, 1)) + sum(slope*gradient)))
+      end do
+   end function cell_share
+
+   !> Derivative of in-situ stress less biot*p along the crack, uniform in an element [Pa/m].
+   pure function initial_slope(model, loads, frame, corners) result(slope)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      type(tip_frame_t), intent(in) :: frame
+      integer(ik), intent(in) :: corners(3)
+      real(rk) :: slope(2, 2)
+      real(rk) :: place(2, 3), by_corner(3), unit(3)
+      integer(ik) :: k, next, last
+
+      place = matmul(frame%axes, model%mesh%xy(:, corners))
+      slope = 0.0_rk
+      do k = 1, 3
+         next = mod(k, 3) + 1
+         last = mod(next, 3) + 1
+         by_corner(k) = place(2, next) - place(2, last)
+      end do
+      by_corner = by_corner/((place(1, 2) - place(1, 1))*(place(2, 3) - place(2, 1)) &
+                             - (place(1, 3) - place(1, 1))*(place(2, 2) - place(2, 1)))
+      do k = 1, 3
+         unit = 0.0_rk
+         unit(k) = 1.0_rk
+         slope = slope + by_corner(k)*initial_stress(loads, model%elasticity%biot, frame, corners, &
+                                                     unit)
+      end do
+   end function initial_slope
+
+   !> The traction of one fracture cell on the slope of its jump. In the parameter x of its shape
+   !! functions the slope times ds is d[u]/dx dx, whether or not its middle node is at the quarter
+   !! point.
+   pure real(rk) function face_share(model, loads, displacement, frame, reference_stress, cell, q)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)
+      type(tip_frame_t), intent(in) :: frame
+      real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: q(:)  !< (n_nodes)
+      integer(ik), parameter :: n_points = 3  ! exact: q and the slope have degrees 2 and 1
+      real(rk) :: x(n_points), weights(n_points), traction(2), jump(2, 3), q_here, slope(2), along
+      integer(ik) :: point
+
+      call gauss_rule(n_points, x, weights)
+      traction = matmul(frame%axes, face_traction(model, loads, displacement, &
+                                                  traction_source(model, frame, cell))) &
+                 - frame%upper*reference_stress(:, 2)
+      face_share = 0.0_rk
+      associate (plus => model%mesh%face_nodes(:, 1, cell), &
+                 minus => model%mesh%face_nodes(:, 2, cell))
+         jump = matmul(frame%axes, displacement(:, minus) - displacement(:, plus))
+         along = sign(1.0_rk, dot_product(frame%axes(1, :), model%mesh%face_tangent(:, cell)))
+         do point = 1, n_points
+            associate (s => x(point))
+               q_here = (1.0_rk - s)*(1.0_rk - 2.0_rk*s)*q(plus(1)) &
+                        + s*(2.0_rk*s - 1.0_rk)*q(plus(2)) + 4.0_rk*s*(1.0_rk - s)*q(plus(3))
+               slope = (4.0_rk*s - 3.0_rk)*jump(:, 1) + (4.0_rk*s - 1.0_rk)*jump(:, 2) &
+                       + (4.0_rk - 8.0_rk*s)*jump(:, 3)
+            end associate
+            ! The slope is along the cell, which may run against the first axis.
+            face_share = face_share + weights(point)*q_here*dot_product(traction, slope)*along
+         end do
+      end associate
+   end function face_share
+
+end module tips_energy
