@@ -1,7 +1,7 @@
 """Write the scene and the reference of this case.
 
-The well must hold the pressure at x = 0 constant, but a scene gives rates: so the rate of each time step is
-the volume that the exact solution takes up in it, V(t) = 2 a c_p dp sqrt(4 alpha t/pi).
+The well must hold the pressure at x = 0 constant, but a scene gives rates: so the rate of each time
+step is the volume that the exact solution takes up in it, V(t) = 2 a c_p dp sqrt(4 alpha t/pi).
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ def write_scene() -> None:
     """Write fluid_driven_slip.nml from the head below and one injection per time step."""
     diffusivity = REACH**2 / (4.0 * END)
     viscosity = APERTURE**2 / (12.0 * diffusivity * COMPRESSIBILITY)
-    head = f"""! Slip driven by fluid that enters a long fracture at constant pressure (Viesca 2021, T = 0.5). Written
-! by make_files.py: one injection per time step, with the volume that the exact solution takes up.
+    head = f"""! Slip driven by fluid at constant pressure (Viesca 2021, T = 0.5). By make_files.py:
+! one injection per time step, with the volume that the exact solution takes up.
 &scene
   name = 'fluid_driven_slip'
   title = 'Self-similar slip driven by fluid'
@@ -58,10 +58,13 @@ def write_scene() -> None:
 &output vtu = .false. /
 """
     times = np.linspace(0.0, END, STEPS + 1)
-    volumes = 2.0 * APERTURE * COMPRESSIBILITY * OVERPRESSURE * np.sqrt(4.0 * diffusivity * times / np.pi)
+    volumes = (
+        2.0 * APERTURE * COMPRESSIBILITY * OVERPRESSURE * np.sqrt(4.0 * diffusivity * times / np.pi)
+    )
     rates = np.diff(volumes) / np.diff(times)
     wells = "".join(
-        f"&injection fracture = 'f', rate = {rate:.9e}, x = 0.0, y = 0.0, start = {start:.6g}, end = {end:.6g} /\n"
+        f"&injection fracture = 'f', rate = {rate:.9e}, x = 0.0, y = 0.0, "
+        f"start = {start:.6g}, end = {end:.6g} /\n"
         for rate, start, end in zip(rates, times[:-1], times[1:], strict=True)
     )
     (HERE / "fluid_driven_slip.nml").write_text(head + wells)
@@ -71,7 +74,8 @@ def slip(x: np.ndarray) -> np.ndarray:
     """Slip of a crack of half-length b under the shear stress drop of the exact pressure [m].
 
     delta(x) = 4/(pi E') int_-b^b drop(s) ln|(b^2 - x s + sqrt((b^2-x^2)(b^2-s^2)))/(b (x - s))| ds
-    (Muskhelishvili; Tada, Paris and Irwin), by Gauss and Legendre in s = x +- v^3, which removes the logarithm.
+    (Muskhelishvili; Tada, Paris and Irwin), by Gauss and Legendre in s = x +- v^3, which removes
+    the logarithm.
     """
     b = LAMBDA * REACH
     nodes, weights = leggauss(200)
@@ -84,7 +88,9 @@ def slip(x: np.ndarray) -> np.ndarray:
             length = b - side * here
             s = here + side * length * nodes**3
             measure = 3.0 * length * nodes**2 * weights
-            drop = SHEAR - FRICTION * (NORMAL - OVERPRESSURE * complementary_error(np.abs(s) / REACH))
+            drop = SHEAR - FRICTION * (
+                NORMAL - OVERPRESSURE * complementary_error(np.abs(s) / REACH)
+            )
             root = np.sqrt(np.maximum(0.0, (b**2 - here**2) * (b**2 - s**2)))
             kernel = np.log(np.abs((b**2 - here * s + root) / (b * (here - s))))
             result[i] += np.sum(measure * drop * kernel)
@@ -96,7 +102,14 @@ def main() -> None:
     write_scene()
     x = np.linspace(-1.0, 1.0, 401)
     table = np.column_stack([x, slip(x), OVERPRESSURE * complementary_error(np.abs(x) / REACH)])
-    np.savetxt(HERE / "reference.csv", table, delimiter=",", header="x_m,slip_m,pressure_pa", comments="", fmt="%.9e")
+    np.savetxt(
+        HERE / "reference.csv",
+        table,
+        delimiter=",",
+        header="x_m,slip_m,pressure_pa",
+        comments="",
+        fmt="%.9e",
+    )
 
 
 if __name__ == "__main__":

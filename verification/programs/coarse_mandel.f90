@@ -1,10 +1,10 @@
 !> Mandel's problem: a slab between rigid frictionless plates (verification/mandel).
 !!
 !! Arguments: mesh size [m], time step as dT = c dt/a**2, storage (1: thesis, 2: textbook). One
-!! quarter of the slab, 0 < x < a, 0 < y < b. The plate moves as a rigid body under the force F on this
-!! quarter. Its displacement follows in every step by superposition: the equations without fractures
-!! are linear, so one step with the plate at rest and one with the plate moved by 1 m tell how far it has
-!! to move.
+!! quarter of the slab, 0 < x < a, 0 < y < b. The plate moves as a rigid body under the force F on
+!! this quarter. Its displacement follows in every step by superposition: the equations without
+!! fractures are linear, so one step with the plate at rest and one with the plate moved by 1 m
+!! tell how far it has to move.
 program coarse_mandel
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -112,13 +112,14 @@ contains
             if (mesh%face_side(f) /= 4) cycle
             plate_force = plate_force + 0.5_rk*norm2(mesh%xy(:, mesh%face_nodes(2, f)) &
                                                      - mesh%xy(:, mesh%face_nodes(1, f))) &
-               *of_state%tractions(traction_position(regions, r) + 2*(j - regions%face_first(r)) + 1)
+              *of_state%tractions(traction_position(regions, r) + 2*(j - regions%face_first(r)) + 1)
          end do
       end do
    end function plate_force
 
    !> Pressure at the places, by the least-squares line through the cells within one and a half mesh
-   !! sizes of x (the solution does not depend on y), the plate's displacement, the error of the force.
+   !! sizes of x (the solution does not depend on y), the plate's displacement, the error of the
+   !! force.
    subroutine write_row(time)
       real(rk), intent(in) :: time  !< T = c t/a**2
       real(rk) :: p(size(places)), weight(5), x, reach

@@ -34,8 +34,8 @@ program fine_crack
    kind = text_argument(1)
    angle = real_argument(2)*degree
    h = a/real_argument(3)
-   call mesh_window(network_of([2_ik], a*reshape([-cos(angle), -sin(angle), cos(angle), sin(angle)], &
-                                                 [2, 2])), 2.0_rk*a, h, 4.0_rk*h, integer_argument(4), &
+ call mesh_window(network_of([2_ik], a*reshape([-cos(angle), -sin(angle), cos(angle), sin(angle)], &
+                                             [2, 2])), 2.0_rk*a, h, 4.0_rk*h, integer_argument(4), &
                     model)
    loads = no_loads(model%mesh)
    conditions = loaded_everywhere(model%mesh)
@@ -66,8 +66,8 @@ program fine_crack
 
 contains
 
-   !> Exact displacements. The window's edge does not touch the crack, so it does not matter which side is
-   !! meant on it.
+   !> Exact displacements. The window's edge does not touch the crack, so it does not matter which
+   !! side is meant on it.
    subroutine set_edge()
       real(rk) :: rotation(2, 2)
       integer(ik) :: node
@@ -76,8 +76,8 @@ contains
       do node = 1, model%mesh%n_nodes
          associate (xy => model%mesh%xy(:, node))
             loads%boundary_displacement(:, node) = uniform_field(rock, remote, xy) &
-               + matmul(rotation, centre_crack(rock, a, normal, shear, matmul(transpose(rotation), xy), &
-                                               .true.))
+          + matmul(rotation, centre_crack(rock, a, normal, shear, matmul(transpose(rotation), xy), &
+                                                                                   .true.))
          end associate
       end do
    end subroutine set_edge

@@ -5,8 +5,9 @@
 !!   collinear B             two cracks of length 1 m with a gap of 2 B, s_yy = s_xy = 1 MPa
 !!   kink DEGREES B tension  main crack of half-length 1 m with a branch of length B at its right
 !!   kink DEGREES B shear    tip; s_yy or s_xy = 1 MPa
-!!   wing DEGREES L          closed frictionless crack of half-length 1 m at 45 degrees under s_xx = -1 MPa,
-!!                           free wings of length L turned clockwise from its line by DEGREES
+!!   wing DEGREES L          closed frictionless crack of half-length 1 m at 45 degrees under
+!!                           s_xx = -1 MPa, free wings of length L turned clockwise from its line
+!!                           by DEGREES
 !! Intensities are in units of 1 MPa sqrt(pi 1 m), of 1 MPa sqrt(pi 0.5 m) for collinear cracks.
 program fine_network
    use base_kinds, only: ik, rk
@@ -50,7 +51,7 @@ program fine_network
       if (text_argument(5) == "shear") remote = [0.0_rk, 0.0_rk, megapascal]
    case ("wing")
       first_wing = real_argument(4)
-      associate (at => [cos(0.25_rk*pi), sin(0.25_rk*pi)], to => 0.25_rk*pi - real_argument(3)*degree)
+    associate (at => [cos(0.25_rk*pi), sin(0.25_rk*pi)], to => 0.25_rk*pi - real_argument(3)*degree)
          turned = at + first_wing*[cos(to), sin(to)]
          network = network_of([4_ik], reshape([-turned, -at, at, turned], [2, 4]))
       end associate
@@ -65,7 +66,7 @@ program fine_network
    conditions = loaded_everywhere(model%mesh)
    if (kind == "wing") then
       middle = model%mesh%face_s(3, :)
-      where (middle > first_wing .and. middle < first_wing + 2.0_rk) conditions%condition = face_slip
+     where (middle > first_wing .and. middle < first_wing + 2.0_rk) conditions%condition = face_slip
    end if
    call write_tips(model, conditions, loads, scale, displacement)
    call write_faces(model, displacement)

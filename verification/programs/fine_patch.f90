@@ -72,7 +72,7 @@ contains
       do c = 1, model%mesh%n_cells
          found = rock%total_stress(model%displacement_gradient(displacement, c, &
                                                                [0.2_rk, 0.3_rk, 0.5_rk]), 0.0_rk)
-         stress_error = max(stress_error, abs(found(1, 1) - stress(1)), abs(found(2, 2) - stress(2)), &
+      stress_error = max(stress_error, abs(found(1, 1) - stress(1)), abs(found(2, 2) - stress(2)), &
                             abs(found(1, 2) - stress(3)))
       end do
       stress_error = stress_error/maxval(abs(stress))

@@ -1,5 +1,5 @@
-!> Kink angles, equivalent intensities, energy release and increments (verification/kink_angles), for the
-!! rows of the catalogue's tables 2.1, 2.3 and 2.4.
+!> Kink angles, equivalent intensities, energy release and increments (verification/kink_angles),
+!! for the rows of the catalogue's tables 2.1, 2.3 and 2.4.
 program growth_laws
    use base_kinds, only: ik, rk
    use tips_growth, only: advances, energy_release_rate, equivalent_intensity, kink_angle
@@ -7,10 +7,10 @@ program growth_laws
    implicit none(type, external)
 
    real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
-   real(rk), parameter :: k1(14) = [1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 0.5_rk, 0.2_rk, 0.0_rk, &
-                                    0.0_rk, 1.0_rk, -0.2_rk, -1.0_rk, -2.0_rk]
-   real(rk), parameter :: k2(14) = [0.0_rk, 1.0e-9_rk, 0.1_rk, 0.25_rk, 0.5_rk, 1.0_rk, 1.0_rk, 1.0_rk, &
-                                    1.0_rk, -1.0_rk, -0.5_rk, 1.0_rk, 1.0_rk, 1.0_rk]
+   real(rk), parameter :: k1(14) = [1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 0.5_rk, &
+                                    0.2_rk, 0.0_rk, 0.0_rk, 1.0_rk, -0.2_rk, -1.0_rk, -2.0_rk]
+   real(rk), parameter :: k2(14) = [0.0_rk, 1.0e-9_rk, 0.1_rk, 0.25_rk, 0.5_rk, 1.0_rk, 1.0_rk, &
+                                    1.0_rk, 1.0_rk, -1.0_rk, -0.5_rk, 1.0_rk, 1.0_rk, 1.0_rk]
    real(rk), parameter :: crack_modulus = 4.0e10_rk/(1.0_rk - 0.2_rk**2)  ! E' of table 2.3 [Pa]
    type(table_t) :: table
    real(rk) :: angle, length(3)
@@ -19,7 +19,7 @@ program growth_laws
    call table%open("angles.csv", "row,k1,k2,angle_deg,k_equivalent")
    do i = 1, size(k1, kind=ik)
       angle = kink_angle(k1(i), k2(i))
-      call table%row([real(i, rk), k1(i), k2(i), angle/degree, equivalent_intensity(k1(i), k2(i), angle)])
+call table%row([real(i, rk), k1(i), k2(i), angle/degree, equivalent_intensity(k1(i), k2(i), angle)])
    end do
    call table%close()
    length = advances([10.0_rk, 5.0_rk, 1.0_rk], spread(.true., 1, 3), 0.01_rk, 0.35_rk)

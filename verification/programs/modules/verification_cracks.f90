@@ -33,7 +33,7 @@ contains
       type(error_t), allocatable :: error
 
       call build_mesh(mesh_spec_t(-half_width, half_width, -half_width, half_width, size, &
-                                  size_boundary, .true., sectors, size), network, mesher, mesh, error)
+                                size_boundary, .true., sectors, size), network, mesher, mesh, error)
       call stop_on(error)
       call model%set_mesh(mesh, rock, error)
       call stop_on(error)
@@ -79,7 +79,7 @@ contains
       call stop_on(error)
       call model%solve(loads, displacement, error)
       call stop_on(error)
-      call table%open("tips.csv", "tip,fracture,end,x_m,y_m,k1,k2,k1_dc,k2_dc,k1_inner,k2_inner,cells")
+   call table%open("tips.csv", "tip,fracture,end,x_m,y_m,k1,k2,k1_dc,k2_dc,k1_inner,k2_inner,cells")
       do tip = 1, model%mesh%fracture%n_tips
          call tip_intensity(model, loads, displacement, tip, intensity, error)
          call stop_on(error)
@@ -88,7 +88,7 @@ contains
                             real(fracture%tip_end(tip), rk), &
                             model%mesh%xy(:, fracture%tip_node(tip)), &
                             [intensity%k1, intensity%k2, intensity%k1_dc, intensity%k2_dc, &
-                             intensity%k1_inner, intensity%k2_inner]/scale, real(model%mesh%n_cells, rk)])
+                       intensity%k1_inner, intensity%k2_inner]/scale, real(model%mesh%n_cells, rk)])
          end associate
       end do
       call table%close()

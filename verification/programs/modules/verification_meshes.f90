@@ -62,7 +62,7 @@ contains
       end do
       draw = [0.3_rk, 0.7_rk]
       do node = 1, mesh%n_nodes
-         ! Additive sequence of golden-ratio type (Roberts 2018): evenly spread, no generator needed.
+         ! Additive sequence of golden-ratio type (Roberts 2018): evenly spread, no generator.
          draw = modulo(draw + [0.7548776662466927_rk, 0.5698402909980532_rk], 1.0_rk)
          if (is_outer(node)) cycle
          mesh%xy(:, node) = mesh%xy(:, node) + share*shortest*(2.0_rk*draw - 1.0_rk)
