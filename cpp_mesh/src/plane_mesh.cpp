@@ -10,6 +10,20 @@ void sort_fracture_cells(std::vector<FractureCell>& cells) {
     });
 }
 
+Quality quality_of(const PlaneMesh& mesh) {
+    Quality quality;
+    for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec2 p = mesh.xy[mesh.cells[c][k]], q = mesh.xy[mesh.cells[c][(k + 1) % 3]],
+                       r = mesh.xy[mesh.cells[c][(k + 2) % 3]];
+            const double angle = angle_between(q - p, r - p);
+            if (quality.worst_cell < 0 || angle < quality.smallest_angle)
+                quality = {angle, c};
+        }
+    }
+    return quality;
+}
+
 EdgeTable::EdgeTable(const std::vector<Triangle>& cells, int n_nodes)
     : cells_(cells), first_(n_nodes + 1, 0), around_(3 * cells.size()) {
     for (const Triangle& cell : cells)

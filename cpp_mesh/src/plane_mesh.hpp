@@ -32,6 +32,14 @@ struct PlaneMesh {
     std::vector<Rosette> rosettes;
 };
 
+// The smallest angle [rad] and the cell that has it.
+struct Quality {
+    double smallest_angle = 0.0;
+    int worst_cell = -1;
+};
+
+Quality quality_of(const PlaneMesh& mesh);
+
 // By fracture, then by arc length.
 void sort_fracture_cells(std::vector<FractureCell>& cells);
 

@@ -1,0 +1,121 @@
+// Hard cases: tips close to each other, flat angles, sharp kinks. Each is meshed, or refused with
+// the fractures named.
+#include "api_mesh.hpp"
+#include "checks.hpp"
+
+namespace {
+
+constexpr double radius = 0.02;
+
+cm_spec spec_with_rosettes() {
+    cm_spec spec = rectangle_spec(1.0, 1.0, 0.02, 0.1);
+    spec.rosette_sectors = 12;
+    spec.rosette_radius = radius;
+    return spec;
+}
+
+void check_quality(Checks& checks, const ApiMesh& mesh, double least_degrees,
+                   const std::string& name) {
+    double angle = 0.0;
+    int32_t cell = -1;
+    checks.is_true(cm_quality(mesh.handle, &angle, &cell) == 0, name + ": quality");
+    checks.is_close(angle * 180.0 / pi, mesh.smallest_angle(), 1e-9, name + ": smallest angle");
+    checks.is_true(angle * 180.0 / pi > least_degrees,
+                   name + ": shape, " + std::to_string(angle * 180.0 / pi));
+    checks.is_true(cell >= 0 && cell < mesh.counts.n_cells, name + ": worst cell");
+}
+
+bool check_meshed(Checks& checks, ApiMesh& mesh, const std::vector<Polyline>& fractures, int euler,
+                  const std::string& name) {
+    if (!mesh.create(spec_with_rosettes(), TestNetwork(fractures))) {
+        checks.is_true(false, name + ": " + mesh.error);
+        return false;
+    }
+    checks.is_true(mesh.all_positive(), name + ": areas");
+    checks.is_close(mesh.total_area(), 1.0, 1e-12, name + ": area");
+    checks.is_equal(mesh.euler(), euler, name + ": Euler characteristic");
+    checks.is_equal(mesh.side_faults(), 0, name + ": sides");
+    return true;
+}
+
+// Rings shrink to a third of the distance of two tips.
+void close_tips(Checks& checks) {
+    for (const double share : {1.0, 0.2, 0.05, 0.01}) {
+        const double gap = share * radius;
+        ApiMesh mesh;
+        const std::string name = "tips apart by " + std::to_string(share) + " radii";
+        if (!check_meshed(checks, mesh, {{{0.2, 0.5}, {0.5, 0.5}}, {{0.5 + gap, 0.5}, {0.8, 0.55}}},
+                          -1, name))
+            continue;
+        check_quality(checks, mesh, 15.0, name);
+        int n_small = 0;
+        for (int t = 0; t < mesh.counts.n_tips; ++t)
+            n_small += std::abs(mesh.tip_radius[t] - gap / 3.0) <= 1e-12;
+        checks.is_equal(n_small, share < 2.0 ? 2 : 0, name + ": rings");
+
+        ApiMesh stacked;
+        if (check_meshed(checks, stacked,
+                         {{{0.2, 0.5}, {0.5, 0.5}}, {{0.5, 0.5 + gap}, {0.8, 0.6}}}, -1,
+                         name + ", stacked"))
+            check_quality(checks, stacked, 10.0, name + ", stacked");
+    }
+    ApiMesh mesh;
+    checks.is_true(
+        !mesh.create(spec_with_rosettes(),
+                     TestNetwork({{{0.2, 0.5}, {0.5, 0.5}}, {{0.5 + 1e-5, 0.5}, {0.8, 0.5}}})),
+        "tips nearly at one place: refused");
+    checks.says(mesh.error, "fractures 1 and 2", "tips nearly at one place: names");
+}
+
+// A crack ending on the boundary at a flat angle is refused, one that only comes near is meshed.
+void flat_angles(Checks& checks) {
+    const double slope = std::tan(pi / 180.0);
+    ApiMesh mesh;
+    checks.is_true(
+        !mesh.create(spec_with_rosettes(), TestNetwork({{{0.1, 0.0}, {0.6, 0.5 * slope}}})),
+        "1 degree on the boundary: refused");
+    checks.says(mesh.error, "fracture 1 meets the boundary at too small an angle",
+                "1 degree on the boundary: reason");
+    for (const double gap : {0.02, 0.005, 0.001}) {
+        ApiMesh near;
+        const std::string name = "1 degree, " + std::to_string(gap) + " from the boundary";
+        if (check_meshed(checks, near, {{{0.2, gap}, {0.7, gap + 0.5 * slope}}}, 0, name))
+            check_quality(checks, near, 1.0, name);
+    }
+    ApiMesh crossing;
+    checks.is_true(
+        !crossing.create(spec_with_rosettes(),
+                         TestNetwork({{{0.2, 0.5}, {0.8, 0.5}},
+                                      {{0.3, 0.5 - 0.2 * slope}, {0.7, 0.5 + 0.2 * slope}}})),
+        "crossing at 1 degree: refused");
+    checks.says(crossing.error, "fractures 1 and 2 meet at too small an angle",
+                "crossing at 1 degree: reason");
+}
+
+void sharp_kinks(Checks& checks) {
+    for (const double degrees : {90.0, 120.0, 150.0}) {
+        for (const double wing : {0.3, 1.0, 5.0}) {
+            const double turn = degrees * pi / 180.0, length = wing * radius;
+            const Point tip = {0.6 + length * std::cos(turn), 0.5 + length * std::sin(turn)};
+            ApiMesh mesh;
+            const std::string name = "kink by " + std::to_string(degrees) + ", wing of " +
+                                     std::to_string(wing) + " radii";
+            if (!check_meshed(checks, mesh, {{{0.3, 0.5}, {0.6, 0.5}, tip}}, 0, name))
+                continue;
+            check_quality(checks, mesh, 10.0, name);
+            checks.is_equal(mesh.counts.n_tips, 2, name + ": tips");
+            for (int t = 0; t < 2; ++t)
+                checks.is_true(mesh.tip_radius[t] > 0.0, name + ": rosette");
+        }
+    }
+}
+
+} // namespace
+
+int main() {
+    Checks checks;
+    close_tips(checks);
+    flat_angles(checks);
+    sharp_kinks(checks);
+    return checks.finish();
+}
