@@ -1,0 +1,105 @@
+!> Networks that grow: vertices at both ends, arc lengths, gains, distances.
+program test_tips_network
+   use base_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use mesh_types, only: network_t
+   use scene_types, only: scene_t
+   use tips_network, only: end_gain, extend, network_of_scene, other_distance, same_network, &
+                           total_length
+   implicit none(type, external)
+
+   type(checks_t) :: checks
+
+   call test_scene()
+   call test_extend()
+   call test_distance()
+   call checks%finish()
+
+contains
+
+   !> Two fractures: a right angle with legs of 3 m and 4 m, and a segment of 1 m above it.
+   function sample_scene() result(scene)
+      type(scene_t) :: scene
+
+      allocate (scene%fractures(2))
+      scene%fractures(1)%x = [0.0_rk, 3.0_rk, 3.0_rk]
+      scene%fractures(1)%y = [0.0_rk, 0.0_rk, 4.0_rk]
+      scene%fractures(2)%x = [0.0_rk, 1.0_rk]
+      scene%fractures(2)%y = [2.0_rk, 2.0_rk]
+   end function sample_scene
+
+   subroutine test_scene()
+      type(network_t) :: network
+      type(scene_t) :: empty
+
+      network = network_of_scene(sample_scene())
+      call checks%is_true(all(network%first == [1_ik, 4_ik, 6_ik]), "first vertices")
+      call checks%is_close(maxval(abs(network%xy - reshape([0.0_rk, 0.0_rk, 3.0_rk, 0.0_rk, &
+                                                            3.0_rk, 4.0_rk, 0.0_rk, 2.0_rk, &
+                                                            1.0_rk, 2.0_rk], [2, 5]))), 0.0_rk, &
+                           0.0_rk, "vertices")
+      call checks%is_close(maxval(abs(network%s_start)), 0.0_rk, 0.0_rk, "arc lengths from 0")
+      call checks%is_close(total_length(network), 8.0_rk, 1.0e-15_rk, "length of all")
+      network = network_of_scene(empty)
+      call checks%is_true(size(network%first) == 1 .and. size(network%xy, 2) == 0, "no fractures")
+      call checks%is_close(total_length(network), 0.0_rk, 0.0_rk, "no length")
+   end subroutine test_scene
+
+   !> Growth at both ends of both fractures: order of the vertices, arc lengths, and each end's
+   !! gain.
+   subroutine test_extend()
+      type(network_t) :: network, start
+
+      start = network_of_scene(sample_scene())
+      network = start
+      call checks%is_true(same_network(network, start), "the same")
+      call extend(network, 1_ik, 1_ik, [-0.3_rk, 0.4_rk])
+      call checks%is_true(.not. same_network(network, start), "not the same")
+      call extend(network, 1_ik, 2_ik, [3.0_rk, 4.25_rk])
+      call extend(network, 1_ik, 1_ik, [-0.3_rk, 0.6_rk])
+      call extend(network, 2_ik, 2_ik, [1.6_rk, 2.8_rk])
+      call extend(network, 2_ik, 1_ik, [-0.125_rk, 2.0_rk])
+      call checks%is_true(all(network%first == [1_ik, 7_ik, 11_ik]), "first vertices after growth")
+      call checks%is_close(maxval(abs(network%xy - reshape([-0.3_rk, 0.6_rk, -0.3_rk, 0.4_rk, &
+                                                            0.0_rk, 0.0_rk, 3.0_rk, 0.0_rk, &
+                                                            3.0_rk, 4.0_rk, 3.0_rk, 4.25_rk, &
+                                                            -0.125_rk, 2.0_rk, 0.0_rk, 2.0_rk, &
+                                                            1.0_rk, 2.0_rk, 1.6_rk, 2.8_rk], &
+                                                           [2, 10]))), 0.0_rk, 0.0_rk, &
+                           "vertices after growth")
+      call checks%is_close(network%s_start(1), -0.7_rk, 1.0e-15_rk, "arc length of the new start")
+      call checks%is_close(network%s_start(2), -0.125_rk, 1.0e-15_rk, "the same of the other one")
+      call checks%is_close(total_length(network), 8.0_rk + 0.7_rk + 0.25_rk + 1.0_rk + 0.125_rk, &
+                           1.0e-14_rk, "length after growth")
+      call checks%is_close(end_gain(network, start, 1_ik, 1_ik), 0.7_rk, 1.0e-15_rk, &
+                           "gain 1, start")
+      call checks%is_close(end_gain(network, start, 1_ik, 2_ik), 0.25_rk, 1.0e-14_rk, "gain 1, end")
+      call checks%is_close(end_gain(network, start, 2_ik, 1_ik), 0.125_rk, 1.0e-15_rk, &
+                           "gain 2, start")
+      call checks%is_close(end_gain(network, start, 2_ik, 2_ik), 1.0_rk, 1.0e-15_rk, "gain 2, end")
+   end subroutine test_extend
+
+   !> Distances of a segment of fracture 2 from fracture 1, and the other way round.
+   subroutine test_distance()
+      type(network_t) :: network
+      real(rk) :: distance
+      integer(ik) :: nearest
+
+      network = network_of_scene(sample_scene())
+      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [2.5_rk, 2.0_rk], distance, nearest)
+      call checks%is_close(distance, 0.5_rk, 1.0e-15_rk, "ahead")
+      call checks%is_true(nearest == 1, "fracture ahead")
+      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [3.5_rk, 2.5_rk], distance, nearest)
+      call checks%is_close(distance, 0.0_rk, 0.0_rk, "crossing")
+      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [3.0_rk, 2.0_rk], distance, nearest)
+      call checks%is_close(distance, 0.0_rk, 1.0e-15_rk, "touching")
+      call other_distance(network, 1_ik, [3.0_rk, 4.0_rk], [4.0_rk, 5.0_rk], distance, nearest)
+      call checks%is_close(distance, sqrt(8.0_rk), 1.0e-15_rk, "end to end")
+      call checks%is_true(nearest == 2, "the other fracture")
+      network%first = network%first(:2)
+      network%xy = network%xy(:, :3)
+      call other_distance(network, 1_ik, [3.0_rk, 4.0_rk], [4.0_rk, 5.0_rk], distance, nearest)
+      call checks%is_true(nearest == 0 .and. distance > 1.0e300_rk, "no other fracture")
+   end subroutine test_distance
+
+end program test_tips_network

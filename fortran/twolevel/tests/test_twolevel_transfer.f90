@@ -1,0 +1,200 @@
+!> Transfer of a state without any pattern to a mesh on which a fracture has grown at both ends:
+!! what is kept exactly, what is conserved, and what new fracture cells start with.
+program test_twolevel_transfer
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use coarse_matrix, only: cell_area
+   use coarse_state, only: fracture_cells_t, state_t
+   use contact_law, only: contact_law_t
+   use contact_states, only: state_open, state_slip, state_stick
+   use mesh_builder, only: mesher_t, remesh
+   use mesh_types, only: mesh_map_t, mesh_t, network_t
+   use sample_bodies, only: mesh_square, scattered, straight_network, uniform_cells
+   use tips_network, only: extend
+   use twolevel_transfer, only: transfer_cells, transfer_state
+   implicit none(type, external)
+
+   real(rk), parameter :: new_aperture = 1.0e-5_rk  !< [m]
+   type(checks_t) :: checks
+   type(mesher_t) :: mesher_before, mesher
+   type(mesh_t) :: mesh_before, mesh
+   type(mesh_map_t) :: map
+
+   call grow_mesh()
+   call test_cells()
+   call test_state(.false.)
+   call test_state(.true.)
+   call test_uniform_content()
+   call checks%finish()
+
+contains
+
+   !> Two fractures; the first grows by two cells at its start and one at its end, with kinks.
+   subroutine grow_mesh()
+      type(network_t) :: network
+      type(error_t), allocatable :: error
+      real(rk), parameter :: lines(2, 2, 2) = reshape([0.7_rk, 0.8_rk, 1.2_rk, 1.1_rk, 0.5_rk, &
+                                                       1.5_rk, 1.5_rk, 1.6_rk], [2, 2, 2])
+      real(rk), parameter :: tips(2, 2) = reshape([0.55_rk, 0.9_rk, 1.25_rk, 1.02_rk], [2, 2])
+
+      network = straight_network(lines)
+      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesher_before, mesh_before)
+      call extend(network, 1_ik, 1_ik, tips(:, 1))
+      call extend(network, 1_ik, 2_ik, tips(:, 2))
+      call remesh(mesher_before, network, tips, 0.3_rk, 0.1_rk, mesher, mesh, map, error)
+      call checks%no_error(error, "mesh after growth")
+      call checks%is_true(count(map%fracture_cell_old == 0) >= 3, "new fracture cells")
+      call checks%is_true(any(map%cell_old == 0) .and. any(map%cell_old > 0), "cells old and new")
+   end subroutine grow_mesh
+
+   !> Laws and residual apertures that differ from cell to cell.
+   subroutine various_cells(cells)
+      type(fracture_cells_t), intent(out) :: cells
+      integer(ik) :: i
+
+      cells = uniform_cells(mesh_before, contact_law_t(), 1.0e-3_rk)
+      do i = 1, mesh_before%fracture%n_cells
+         cells%law(i) = contact_law_t(friction=0.1_rk*i, dilation=0.01_rk*i)
+         cells%residual_aperture(i) = 1.0e-4_rk*i
+         cells%injection(i) = 1.0e-9_rk*i
+      end do
+   end subroutine various_cells
+
+   subroutine test_cells()
+      type(fracture_cells_t) :: after, before
+      integer(ik) :: first, i, last, old
+
+      call various_cells(before)
+      call transfer_cells(map, mesh, before, new_aperture, after)
+      associate (here => mesh%fracture%cell_fracture, there => mesh_before%fracture%cell_fracture)
+         first = findloc(there, 1_ik, dim=1)
+         last = findloc(there, 1_ik, dim=1, back=.true.)
+         do i = 1, mesh%fracture%n_cells
+            old = map%fracture_cell_old(i)
+            if (old > 0) then
+               call checks%is_true(here(i) == there(old), "a cell stays in its fracture")
+               call checks%is_close(after%residual_aperture(i), before%residual_aperture(old), &
+                                    0.0_rk, "residual aperture kept")
+               call checks%is_close(after%injection(i), before%injection(old), 0.0_rk, &
+                                    "injection kept")
+            else
+               ! Cells are stored along their fracture: the new ones grew from its first or last.
+               old = merge(first, last, mesh%fracture%cell_s(2, i) <= 1.0e-12_rk)
+               call checks%is_true(here(i) == 1, "only fracture 1 has grown")
+               call checks%is_close(after%residual_aperture(i), new_aperture, 0.0_rk, &
+                                    "new aperture")
+               call checks%is_close(after%injection(i), 0.0_rk, 0.0_rk, &
+                                    "no injection into new cells")
+            end if
+            call checks%is_close(after%law(i)%friction, before%law(old)%friction, 0.0_rk, &
+                                 "friction")
+            call checks%is_close(after%law(i)%dilation, before%law(old)%dilation, 0.0_rk, &
+                                 "dilation")
+         end do
+      end associate
+   end subroutine test_cells
+
+   !> A state without pattern on the old mesh.
+   subroutine various_state(state)
+      type(state_t), intent(out) :: state
+      integer(ik) :: i
+
+      associate (n => mesh_before%fracture%n_cells, n_blocks => mesh_before%n_cells &
+                 + 2*mesh_before%fracture%n_cells)
+         state%time = 1234.5_rk
+         allocate (state%unknowns, source=reshape(scattered(3*n_blocks), [3_ik, n_blocks]))
+         allocate (state%content, source=1.0e-5_rk*scattered(mesh_before%n_cells))
+         allocate (state%jump, source=reshape(1.0e-4_rk*scattered(4*n), [2_ik, 2_ik, n]))
+         allocate (state%traction, source=reshape(-1.0e7_rk*scattered(4*n + 1), [2_ik, 2_ik, n]))
+         allocate (state%contact(2, n), source=state_slip)
+         state%contact(1, :) = state_open
+         allocate (state%pressure, source=[(1.0e6_rk + i, i=1, n)])
+         allocate (state%aperture, source=1.0e-3_rk + 1.0e-4_rk*scattered(n))
+         allocate (state%leakoff, source=1.0e-9_rk*scattered(n))
+      end associate
+   end subroutine various_state
+
+   subroutine test_state(is_prefilled)
+      logical, intent(in) :: is_prefilled
+      type(fracture_cells_t) :: cells, cells_before
+      type(state_t) :: after, before
+      real(rk) :: length, prefilled, volume
+      integer(ik) :: c, i, old, origin
+
+      call various_cells(cells_before)
+      call transfer_cells(map, mesh, cells_before, new_aperture, cells)
+      call various_state(before)
+      call transfer_state(map, mesh_before, mesh, cells, is_prefilled, before, after, prefilled)
+      call checks%is_close(after%time, before%time, 0.0_rk, "time")
+      call checks%is_close(sum(after%content), sum(before%content), &
+                           1.0e-14_rk*sum(abs(before%content)), "the rock's fluid is conserved")
+      do c = 1, mesh%n_cells
+         old = map%cell_old(c)
+         if (old == 0) cycle
+         call checks%is_close(after%content(c), before%content(old), 0.0_rk, "content kept")
+         call checks%is_close(maxval(abs(after%unknowns(:, c) - before%unknowns(:, old))), &
+                              0.0_rk, 0.0_rk, "unknowns kept")
+      end do
+      volume = 0.0_rk
+      do i = 1, mesh%fracture%n_cells
+         old = map%fracture_cell_old(i)
+         if (old > 0) then
+            call checks%is_true(all(after%contact(:, i) == before%contact(:, old)) &
+                                .and. equal([after%jump(:, :, i)], [before%jump(:, :, old)]) &
+                                .and. equal([after%traction(:, :, i)], &
+                                            [before%traction(:, :, old)]) &
+                                .and. equal([after%pressure(i), after%aperture(i), &
+                                             after%leakoff(i)], &
+                                            [before%pressure(old), before%aperture(old), &
+                                             before%leakoff(old)]), &
+                                "an old fracture cell is kept to the last bit")
+            cycle
+         end if
+         length = mesh%fracture%cell_s(2, i) - mesh%fracture%cell_s(1, i)
+         associate (there => mesh_before%fracture%cell_fracture)
+            origin = merge(findloc(there, 1_ik, dim=1), &
+                           findloc(there, 1_ik, dim=1, back=.true.), &
+                           mesh%fracture%cell_s(2, i) <= 1.0e-12_rk)
+         end associate
+         call checks%is_close(after%pressure(i), before%pressure(origin), 0.0_rk, &
+                              "a new cell has the pressure of the one it grew from")
+         call checks%is_close(after%aperture(i), merge(new_aperture, 0.0_rk, is_prefilled), &
+                              0.0_rk, "a new cell is full, or empty")
+         call checks%is_true(all(after%contact(:, i) == state_stick) .and. &
+                             equal([after%jump(:, :, i)], [0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]), &
+                             "a new cell is closed")
+         volume = volume + length*after%aperture(i)
+      end do
+      call checks%is_close(prefilled, volume, 1.0e-15_rk*max(volume, 1.0e-6_rk), "prefilled volume")
+      call checks%is_true((prefilled > 0.0_rk) .eqv. is_prefilled, "prefilled only if wanted")
+   end subroutine test_state
+
+   !> No difference at all.
+   pure function equal(a, b)
+      real(rk), intent(in) :: a(:), b(:)
+      logical :: equal
+
+      equal = .not. any(abs(a - b) > 0.0_rk)
+   end function equal
+
+   !> A uniform content per area stays uniform in the new cells, and so do uniform unknowns.
+   subroutine test_uniform_content()
+      type(fracture_cells_t) :: cells, cells_before
+      type(state_t) :: after, before
+      real(rk) :: prefilled
+      integer(ik) :: c
+
+      call various_cells(cells_before)
+      call transfer_cells(map, mesh, cells_before, new_aperture, cells)
+      call various_state(before)
+      before%content = [(3.0e-4_rk*cell_area(mesh_before, c), c=1, mesh_before%n_cells)]
+      before%unknowns(3, :) = 5.0e6_rk
+      call transfer_state(map, mesh_before, mesh, cells, .false., before, after, prefilled)
+      call checks%is_close(maxval([(abs(after%content(c)/cell_area(mesh, c) - 3.0e-4_rk), &
+                                    c=1, mesh%n_cells)]), 0.0_rk, 3.0e-15_rk, "uniform content")
+      call checks%is_close(maxval(abs(after%unknowns(3, :mesh%n_cells) - 5.0e6_rk)), 0.0_rk, &
+                           1.0e-4_rk, "uniform pressure")
+   end subroutine test_uniform_content
+
+end program test_twolevel_transfer
