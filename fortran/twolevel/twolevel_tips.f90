@@ -17,6 +17,8 @@ module twolevel_tips
 
    public :: find_tips, tip_t, tips_t
 
+   real(rk), parameter :: intensity_error = 0.01_rk  !< relative; the two methods differ by about as much
+
    !> A free tip; its place is that on the fine level.
    type, extends(path_t) :: tip_t
       integer(ik) :: fracture = 0  !< in the network
@@ -123,6 +125,12 @@ contains
             .not. self%tip(i)%arrested
       end do
       if (.not. any(grows)) return
+      ! Where one tip grows, those that the error of their intensities does not tell from it grow too: wings
+      ! of equal rank would otherwise drift apart by chance.
+      do i = 1, size(self%tip)
+         grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - intensity_error) &
+            *scene%material%toughness .and. .not. self%tip(i)%arrested
+      end do
       wanted = advances(self%tip%drive%energy, grows, increment, scene%growth%exponent)
       do i = 1, size(self%tip)
          if (.not. grows(i)) cycle
