@@ -181,13 +181,15 @@ int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh) {
 }
 
 int cm_create_sized(const cm_spec* spec, const cm_network* network, const cm_mesh* old_mesh,
-                    const double* cell_size, cm_mesh** mesh) {
+                    int32_t n_sizes, const double* cell_size, cm_mesh** mesh) {
     return guarded([&] {
         require(mesh != nullptr, "no place was given for the mesh");
         *mesh = nullptr;
         require(old_mesh != nullptr && cell_size != nullptr, "no old mesh or no sizes were given");
         const Network fractures = network_from(network);
-        const std::vector<double> sizes(cell_size, cell_size + old_mesh->mesh.plane.cells.size());
+        require(n_sizes == static_cast<int32_t>(old_mesh->mesh.plane.cells.size()),
+                "the old mesh has another number of cells than sizes are given");
+        const std::vector<double> sizes(cell_size, cell_size + n_sizes);
         *mesh = new cm_mesh{create_mesh_sized(specification_from(spec, fractures.size()), fractures,
                                               old_mesh->mesh, sizes)};
     });

@@ -66,7 +66,9 @@ public:
                       const std::vector<double>& cell_size) {
         cm_destroy(&handle);
         const cm_network view = network.view();
-        return read(cm_create_sized(&spec, &view, old_mesh.handle, cell_size.data(), &handle));
+        return read(cm_create_sized(&spec, &view, old_mesh.handle,
+                                    static_cast<int32_t>(cell_size.size()), cell_size.data(),
+                                    &handle));
     }
 
     bool remesh(const ApiMesh& old_mesh, TestNetwork network, const std::vector<Point>& centres,

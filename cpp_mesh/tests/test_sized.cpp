@@ -198,12 +198,15 @@ void refusals(Checks& checks) {
         refuse(rectangle_spec(1.0, 1.0, 0.1, 0.2), "cell 5 is not a positive number");
     }
     const cm_spec spec = rectangle_spec(1.0, 1.0, 0.1, 0.2);
+    sizes.pop_back();
+    refuse(rectangle_spec(1.0, 1.0, 0.1, 0.2), "another number of cells");
     TestNetwork empty({});
     const cm_network none = empty.view();
     cm_mesh* made = nullptr;
-    checks.is_true(cm_create_sized(&spec, &none, nullptr, sizes.data(), &made) != 0 &&
-                       made == nullptr,
-                   "no old mesh: refused");
+    checks.is_true(
+        cm_create_sized(&spec, &none, nullptr, old_mesh.counts.n_cells, sizes.data(), &made) != 0 &&
+            made == nullptr,
+        "no old mesh: refused");
 }
 
 } // namespace

@@ -1,13 +1,14 @@
-!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only mesh_builder uses
-!! this.
+!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only this room
+!! uses it.
 module mesh_c_binding
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_null_ptr, c_ptr, c_size_t
    implicit none(type, external)
    private
 
-   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t
-   public :: cm_copy, cm_create, cm_destroy, cm_last_error, cm_locate, cm_map_copy, cm_map_sizes
-   public :: cm_remesh, cm_sizes, c_string_length
+   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t, cm_target_t
+   public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_last_error, cm_locate
+   public :: cm_map_copy, cm_map_sizes, cm_nearest_target, cm_quality, cm_remesh, cm_sizes
+   public :: c_string_length
 
    !> Fracture polylines.
    type, bind(C) :: cm_network_t
@@ -63,6 +64,15 @@ module mesh_c_binding
       type(c_ptr) :: tip_radius = c_null_ptr
    end type cm_arrays_t
 
+   !> Where a growing end may join.
+   type, bind(C) :: cm_target_t
+      real(c_double) :: x, y
+      real(c_double) :: distance
+      real(c_double) :: s
+      integer(c_int32_t) :: fracture
+      integer(c_int32_t) :: side
+   end type cm_target_t
+
    interface
       !> Why the last call of this thread failed, ended by a null character.
       function cm_last_error() result(text) bind(C, name="cm_last_error")
@@ -79,6 +89,41 @@ module mesh_c_binding
          type(c_ptr), intent(out) :: mesh
          integer(c_int) :: status
       end function cm_create
+
+      function cm_create_sized(spec, network, old_mesh, n_sizes, cell_size, mesh) &
+         result(status) bind(C, name="cm_create_sized")
+         import :: c_double, c_int, c_int32_t, c_ptr, cm_network_t, cm_spec_t
+         implicit none(type, external)
+         type(cm_spec_t), intent(in) :: spec
+         type(cm_network_t), intent(in) :: network
+         type(c_ptr), value :: old_mesh
+         integer(c_int32_t), value :: n_sizes
+         real(c_double), intent(in) :: cell_size(n_sizes)
+         type(c_ptr), intent(out) :: mesh
+         integer(c_int) :: status
+      end function cm_create_sized
+
+      function cm_quality(mesh, smallest_angle, worst_cell) result(status) &
+         bind(C, name="cm_quality")
+         import :: c_double, c_int, c_int32_t, c_ptr
+         implicit none(type, external)
+         type(c_ptr), value :: mesh
+         real(c_double), intent(out) :: smallest_angle
+         integer(c_int32_t), intent(out) :: worst_cell
+         integer(c_int) :: status
+      end function cm_quality
+
+      function cm_nearest_target(spec, network, x, y, fracture, end, target) result(status) &
+         bind(C, name="cm_nearest_target")
+         import :: c_double, c_int, c_int32_t, cm_network_t, cm_spec_t, cm_target_t
+         implicit none(type, external)
+         type(cm_spec_t), intent(in) :: spec
+         type(cm_network_t), intent(in) :: network
+         real(c_double), value :: x, y
+         integer(c_int32_t), value :: fracture, end
+         type(cm_target_t), intent(out) :: target
+         integer(c_int) :: status
+      end function cm_nearest_target
 
       function cm_remesh(old_mesh, network, n_centres, centres, radius, size, new_mesh) &
          result(status) bind(C, name="cm_remesh")

@@ -89,7 +89,7 @@ int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh);
    about 1.3 and stay below size_boundary; size_fracture gives tolerances only. Fractures may have
    grown; their cells follow the sizes too. Rosettes are made as the specification says. */
 int cm_create_sized(const cm_spec* spec, const cm_network* network, const cm_mesh* old_mesh,
-                    const double* cell_size /* [old n_cells] */, cm_mesh** mesh);
+                    int32_t n_sizes, const double* cell_size /* [n_sizes] */, cm_mesh** mesh);
 
 /* A new mesh that differs from `old_mesh` only within `radius` of the given centres; `network` is
    the old one with vertices added at the ends of fractures. Existing fracture cells stay as they
