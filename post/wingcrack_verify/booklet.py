@@ -110,7 +110,7 @@ def _settings(book: _Book, record: dict[str, Any]) -> None:
             if setting is None:
                 cells.append("-")
             else:
-                cells.append(f"{setting['cpu_s']:.3g} s: {setting['method']}, {setting['run']}")
+                cells.append(f"{setting['cpu_s']:.3g} s: {setting['label']}")
         rows.append(tuple(cells))
     names = ("quantity", *(f"{target:g} %" for target in targets))
     _table(book, names, rows, (60, 40, 40, 40))

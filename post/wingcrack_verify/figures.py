@@ -266,6 +266,7 @@ def _finish(figure: Figure, title: str, caption: str) -> Drawing:
     svg, png = BytesIO(), BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": title}):
         figure.savefig(svg, format="svg", metadata={"Date": None})
+    figure.set_layout_engine("none")  # the layout stands; finding it again would take as long
     figure.savefig(png, format="png", dpi=PNG_DPI, metadata={"Software": None})
     return Drawing(title, caption, svg.getvalue(), png.getvalue())
 

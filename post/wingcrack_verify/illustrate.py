@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 from wingcrack_verify.figures import Drawing, check_drawings, map_drawing, requested_drawing
+from wingcrack_verify.judge import CaseReport
+from wingcrack_verify.stability import StabilityReport
 from wingcrack_verify.suite import JudgedSuite
 
 
@@ -16,16 +19,18 @@ class Illustrations:
     by_case: dict[str, Sequence[Drawing]]
 
 
-def illustrate(judged: JudgedSuite) -> Illustrations:
-    """Draw the figures of all cases."""
-    by_case: dict[str, Sequence[Drawing]] = {}
-    for case in judged.cases:
-        requested = [requested_drawing(figure) for figure in case.figures]
-        of_checks = [drawing for check in case.checks for drawing in check_drawings(check)]
-        by_case[case.name] = [
-            *(drawing for drawing in requested if drawing is not None),
-            *of_checks,
-        ]
-    for item in judged.stability:
-        by_case[item.name] = [map_drawing(chart) for chart in item.maps]
-    return Illustrations(by_case)
+def illustrate(judged: JudgedSuite, jobs: int) -> Illustrations:
+    """Draw the figures of all cases, several cases at a time."""
+    items: list[CaseReport | StabilityReport] = [*judged.stability, *judged.cases]
+    names = [item.name for item in items]
+    with ProcessPoolExecutor(jobs) as pool:
+        drawn = pool.map(_drawings, items)
+        return Illustrations(dict(zip(names, drawn, strict=True)))
+
+
+def _drawings(item: CaseReport | StabilityReport) -> Sequence[Drawing]:
+    if isinstance(item, StabilityReport):
+        return [map_drawing(chart) for chart in item.maps]
+    requested = [requested_drawing(figure) for figure in item.figures]
+    of_checks = [drawing for check in item.checks for drawing in check_drawings(check)]
+    return [*(drawing for drawing in requested if drawing is not None), *of_checks]

@@ -17,6 +17,7 @@ from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
 from wingcrack_verify.selection import Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
+VERDICTS = (PASSED, GAP, FAILED, ERROR)  # from good to bad
 RED = (FAILED, ERROR)
 
 
@@ -112,7 +113,7 @@ class CaseReport:
 
 def worst_of(verdicts: list[str]) -> str:
     """Worst verdict of a list; an empty list proves nothing and is an error."""
-    for verdict in (ERROR, FAILED, GAP, PASSED):
+    for verdict in reversed(VERDICTS):
         if verdict in verdicts:
             return verdict
     return ERROR

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from wingcrack_verify.judge import ERROR, PASSED, CaseReport, CheckReport, Measured
+from wingcrack_verify.judge import (
+    ERROR,
+    PASSED,
+    VERDICTS,
+    CaseReport,
+    CheckReport,
+    Measured,
+    worst_of,
+)
+from wingcrack_verify.orders import Point
 from wingcrack_verify.stability import StabilityReport, TrialReport
 from wingcrack_verify.suite import JudgedSuite
 
@@ -53,13 +63,12 @@ def rows_of(judged: JudgedSuite) -> Iterator[Row]:
             yield Row(item.name, "stability.toml", "", "", ERROR, None, (item.broken,))
         yield from _trial_rows(item)
         for chart in item.maps:
-            done = sum(cell.newton_mean is not None for cell in chart.cells)
-            count = len(chart.cells)
+            bad = sum(cell.verdict != PASSED for cell in chart.cells)
             yield Row(
                 item.name,
                 f"map: {chart.chart.title}",
-                f"{count - done} of {count} not converged",
-                "0",
+                f"{bad} of {len(chart.cells)} runs",
+                "0 runs",
                 chart.verdict,
                 sum(cell.cpu_s for cell in chart.cells),
                 _texts(chart.chart.known_gap, chart.reason),
@@ -138,6 +147,7 @@ def record_of(
         "counts": dict(counts),
         **asdict(context),
         "cpu_s": sum(item["cpu_s"] for item in (*cases, *stability)),
+        "overview": _overview(rows),
         "summary": [asdict(row) for row in rows],
         "settings": _settings(judged),
         "cases": cases,
@@ -146,6 +156,21 @@ def record_of(
     cleaned = _finite(record)
     assert isinstance(cleaned, dict)
     return cleaned
+
+
+def _overview(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Number of rows of each case by verdict."""
+    found: dict[str, Counter[str]] = {}
+    for row in rows:
+        found.setdefault(row.case, Counter())[row.verdict] += 1
+    return [
+        {
+            "case": case,
+            "verdict": worst_of(list(counts)),
+            "counts": ", ".join(f"{counts[word]} {word}" for word in VERDICTS if counts[word]),
+        }
+        for case, counts in found.items()
+    ]
 
 
 def _case_record(case: CaseReport) -> dict[str, Any]:
@@ -222,17 +247,24 @@ def _settings(judged: JudgedSuite) -> list[dict[str, Any]]:
                 {
                     "case": case.name,
                     "quantity": report.check.quantity,
-                    "default": asdict(default) if default else None,
+                    "default": _point_record(default),
                     "targets": [
                         {
                             "target": advice.target,
-                            "setting": asdict(advice.point) if advice.point else None,
+                            "setting": _point_record(advice.point),
                         }
                         for advice in report.advice
                     ],
                 }
             )
     return found
+
+
+def _point_record(point: Point | None) -> dict[str, Any] | None:
+    if point is None:
+        return None
+    told = point.method in point.run
+    return asdict(point) | {"label": point.run if told else f"{point.method}: {point.run}"}
 
 
 def _stability_record(item: StabilityReport) -> dict[str, Any]:

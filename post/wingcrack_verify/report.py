@@ -12,7 +12,7 @@ from pathlib import Path
 from wingcrack_verify import environment
 from wingcrack_verify.booklet import write_booklet
 from wingcrack_verify.illustrate import Illustrations, illustrate
-from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
+from wingcrack_verify.judge import PASSED, VERDICTS
 from wingcrack_verify.page import page_text, shortened
 from wingcrack_verify.record import Context, Row, record_of, rows_of
 from wingcrack_verify.suite import JudgedSuite
@@ -47,7 +47,7 @@ class Report:
     def counts(self) -> dict[str, int]:
         """Number of rows by verdict."""
         found = Counter(row.verdict for row in self.rows)
-        return {verdict: found[verdict] for verdict in (PASSED, GAP, FAILED, ERROR)}
+        return {verdict: found[verdict] for verdict in VERDICTS}
 
     def summary_lines(self) -> list[str]:
         """What the terminal is told in the end: what is not in order, then the counts."""
@@ -78,7 +78,7 @@ def make_report(report: Report, folder: Path) -> Path:
         },
     )
     record = record_of(report.judged, report.rows, report.counts, context)
-    pictures: Illustrations = illustrate(report.judged)
+    pictures: Illustrations = illustrate(report.judged, report.jobs)
     _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
     _write(page, page_text(report.judged, record, pictures, folder).encode())

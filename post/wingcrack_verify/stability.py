@@ -264,8 +264,10 @@ def _complaint(
         ("contact_residual", found.contact_residual_limit),
     ):
         value = numbers[name]
-        if value is None or not value <= limit:
-            return f"{name} {value} exceeds {limit:g}"
+        if value is None:
+            return f"{name} is missing"
+        if not value <= limit:
+            return f"{name} {value:.2g} exceeds {limit:g}"
     return ""
 
 
