@@ -21,7 +21,7 @@ module tips_interaction
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
-   use tips_auxiliary, only: auxiliary_field, auxiliary_field_t
+   use fine_tip_field, only: auxiliary_field, auxiliary_field_t
    use tips_domain, only: domain_weight, element_rule, on_line, rule_size, tip_stress
    use tips_faces, only: face_traction, traction_source
    use tips_types, only: tip_frame_t

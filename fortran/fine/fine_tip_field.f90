@@ -4,12 +4,12 @@
 !!    s22 - i s12 = Phi(z) + Omega(conj z) + (z - conj z) conj(Phi'(z)),   s11 + s22 = 4 Re Phi(z),
 !!    2 mu d(u1 + i u2)/dx1 = kappa Phi(z) - Omega(conj z) - (z - conj z) conj(Phi'(z)).
 !! Derivatives along the crack have Phi', Omega' and Phi'' in the place of Phi, Omega and Phi'.
-module tips_auxiliary
+module fine_tip_field
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: auxiliary_field, auxiliary_field_t
+   public :: auxiliary_field, auxiliary_field_t, tip_field_t, tip_stress
 
    real(rk), parameter :: pi = acos(-1.0_rk)
 
@@ -20,7 +20,44 @@ module tips_auxiliary
       real(rk) :: strain_slope(2, 2)  !< d(in-plane strain)/dx1 [1/m per Pa m^1/2]
    end type auxiliary_field_t
 
+   !> The field of a tip in space.
+   type :: tip_field_t
+      real(rk) :: origin(2) = 0.0_rk  !< [m]
+      real(rk) :: ahead(2) = 0.0_rk  !< unit vector
+      real(rk) :: intensity(2) = 0.0_rk  !< K_I, K_II [Pa m^1/2]
+      real(rk) :: kolosov = 0.0_rk  !< [-]
+      real(rk) :: shear_modulus = 0.0_rk  !< [Pa]
+   end type tip_field_t
+
 contains
+
+   !> Stress (xx yy xy) of a tip's field at a point [Pa]. The polar angle is continued from that of
+   !! `beside`, a point on the same side of the crack.
+   pure function tip_stress(field, xy, beside) result(stress)
+      type(tip_field_t), intent(in) :: field
+      real(rk), intent(in) :: xy(2), beside(2)  !< [m]
+      real(rk) :: stress(3)
+      real(rk) :: axes(2, 2), place(2), near(2), angle, reference, tensor(2, 2)
+      type(auxiliary_field_t) :: unit
+      complex(rk) :: root_z
+      integer(ik) :: mode
+
+      axes(1, :) = field%ahead
+      axes(2, :) = [-field%ahead(2), field%ahead(1)]
+      place = matmul(axes, xy - field%origin)
+      near = matmul(axes, beside - field%origin)
+      reference = atan2(near(2), near(1))
+      angle = atan2(place(2), place(1))
+      angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
+      root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
+      tensor = 0.0_rk
+      do mode = 1, 2
+         unit = auxiliary_field(mode, root_z, field%kolosov, field%shear_modulus)
+         tensor = tensor + field%intensity(mode)*unit%stress
+      end do
+      tensor = matmul(transpose(axes), matmul(tensor, axes))
+      stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)]
+   end function tip_stress
 
    !> The field of mode 1 or 2 at z = root_z**2. The branch of the root decides on which side of the
    !! crack a point lies: the upper face has root_z = i*sqrt(r), the lower one -i*sqrt(r).
@@ -60,4 +97,4 @@ contains
       field%strain_slope = field%strain_slope/(2.0_rk*shear_modulus)
    end function auxiliary_field
 
-end module tips_auxiliary
+end module fine_tip_field

@@ -1,9 +1,9 @@
 !> The field of unit intensity against the polar formulas of Williams (1957) and against
 !! differences.
-program test_tips_auxiliary
+program test_fine_tip_field
    use base_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use tips_auxiliary, only: auxiliary_field, auxiliary_field_t
+   use fine_tip_field, only: auxiliary_field, auxiliary_field_t
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk), parameter :: pi = acos(-1.0_rk), mu = 0.8_rk, kappa = 1.9_rk
@@ -95,4 +95,4 @@ contains
                            "unit intensity ahead")
    end subroutine faces
 
-end program test_tips_auxiliary
+end program test_fine_tip_field

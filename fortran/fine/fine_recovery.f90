@@ -1,0 +1,245 @@
+!> Stresses that are smoother, and closer to the truth, than those of the elements.
+!!
+!! Superconvergent patch recovery (Zienkiewicz and Zhu 1992): around every corner node a full
+!! quadratic is fitted to stresses in the elements of its patch. Patches are made of elements that
+!! share nodes, so they never reach across a fracture. Around a free tip the singular part, which no
+!! polynomial can follow, is fitted first and kept apart (Rodenas and others 2008): the polynomials
+!! hold what remains.
+!!
+!! Area averaging (Zienkiewicz and Zhu 1987), for comparison, takes the mean stress of the elements
+!! around a node, weighted with their areas, instead of the fit.
+module fine_recovery
+   use base_kinds, only: ik, rk
+   use base_lapack, only: dpotrf, dpotrs
+   use fine_mesh, only: fine_mesh_t
+   use fine_model, only: fine_model_t
+   use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, &
+                           samples_t, take_samples
+   use fine_tip_field, only: tip_field_t, tip_stress
+   implicit none(type, external)
+   private
+
+   public :: recover_by_averages, recover_by_patches, recovered_stress, recovery_t
+
+   !> An elastic stress field on the mesh: a quadratic in every element, plus the singular field of
+   !! the tip in the elements around it.
+   type :: recovery_t
+      type(tip_field_t), allocatable :: tips(:)  !< (n_tips)
+      integer(ik), allocatable :: tip_of_cell(:)  !< (n_cells) whose field is apart, else 0
+      integer(ik), allocatable :: tip_of_vertex(:)  !< (n_vertices) whose field the fit leaves out
+      real(rk), allocatable :: beside(:, :)  !< (2, n_vertices) a point on its side of the crack [m]
+      real(rk), allocatable :: coefficients(:, :, :)  !< (n_terms, xx yy xy, n_vertices) fits [Pa]
+      real(rk), allocatable :: scale(:)  !< (n_vertices) their unit of length [m]
+   end type recovery_t
+
+contains
+
+   !> Recovery by patches.
+   subroutine recover_by_patches(model, displacement, recovery)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(recovery_t), intent(out) :: recovery
+      type(samples_t) :: samples
+      integer(ik), allocatable :: patch(:)
+      real(rk), allocatable :: xy(:, :), values(:, :)
+      integer(ik) :: i, k, vertex
+
+      call take_samples(model, displacement, samples)
+      call find_tips(model, samples, recovery)
+      do vertex = 1, model%mesh%n_vertices
+         patch = patch_of_vertex(samples, vertex)
+         if (allocated(xy)) deallocate (xy, values)
+         allocate (xy(2, n_samples*size(patch)), values(3, n_samples*size(patch)))
+         recovery%scale(vertex) = sqrt(sum(samples%area(patch)))
+         do i = 1, size(patch)
+            do k = 1, n_samples
+               associate (at => n_samples*(i - 1) + k)
+                  xy(:, at) = (samples%xy(:, k, patch(i)) - model%mesh%xy(:, vertex)) &
+                              /recovery%scale(vertex)
+                  values(:, at) = smooth_part(samples, recovery, vertex, k, patch(i))
+               end associate
+            end do
+         end do
+         call fit_quadratic(xy, values, recovery%coefficients(:, :, vertex))
+      end do
+   end subroutine recover_by_patches
+
+   !> Recovery by averages.
+   subroutine recover_by_averages(model, displacement, recovery)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(recovery_t), intent(out) :: recovery
+      type(samples_t) :: samples
+      real(rk) :: area
+      integer(ik) :: i, k, vertex
+
+      call take_samples(model, displacement, samples)
+      call find_tips(model, samples, recovery)
+      recovery%scale = 1.0_rk
+      do vertex = 1, model%mesh%n_vertices
+         associate (mean => recovery%coefficients(1, :, vertex), &
+                    cells => samples%cells(samples%first(vertex):samples%first(vertex + 1) - 1))
+            area = sum(samples%area(cells))
+            do i = 1, size(cells)
+               do k = 1, n_samples
+                  mean = mean + samples%area(cells(i))/(n_samples*area) &
+                         *smooth_part(samples, recovery, vertex, k, cells(i))
+               end do
+            end do
+         end associate
+      end do
+   end subroutine recover_by_averages
+
+   !> The recovered stress (xx yy xy) at a point of an element [Pa]. In an element it is the
+   !! quadratic through the values of the fits at the corners and the means of two fits at the
+   !! middles of the edges.
+   pure function recovered_stress(fine, recovery, cell, area_coordinates) result(stress)
+      type(fine_mesh_t), intent(in) :: fine
+      type(recovery_t), intent(in) :: recovery
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: area_coordinates(3)  !< barycentric coordinates in space
+      real(rk) :: stress(3)
+      real(rk) :: corner(2, 3), here(2), middle(2), centre(2)
+      integer(ik) :: k, next
+
+      associate (nodes => fine%cell_nodes(1:3, cell), l => area_coordinates)
+         corner = fine%xy(:, nodes)
+         centre = sum(corner, dim=2)/3.0_rk
+         stress = 0.0_rk
+         do k = 1, 3
+            next = mod(k, 3) + 1
+            middle = 0.5_rk*(corner(:, k) + corner(:, next))
+            stress = stress + l(k)*(2.0_rk*l(k) - 1.0_rk)*value_at(nodes(k), corner(:, k)) &
+                     + 2.0_rk*l(k)*l(next)*(value_at(nodes(k), middle) &
+                                            + value_at(nodes(next), middle))
+         end do
+         if (recovery%tip_of_cell(cell) > 0) then
+            here = matmul(corner, l)
+            stress = stress + tip_stress(recovery%tips(recovery%tip_of_cell(cell)), here, centre)
+         end if
+      end associate
+
+   contains
+
+      !> A vertex' fit at a point: with the singular field of its tip, unless the element adds that.
+      pure function value_at(vertex, xy) result(value)
+         integer(ik), intent(in) :: vertex
+         real(rk), intent(in) :: xy(2)
+         real(rk) :: value(3)
+
+         value = matmul(quadratic_terms((xy - fine%xy(:, vertex))/recovery%scale(vertex)), &
+                        recovery%coefficients(:, :, vertex))
+         if (recovery%tip_of_vertex(vertex) > 0 .and. recovery%tip_of_cell(cell) == 0) then
+            value = value + tip_stress(recovery%tips(recovery%tip_of_vertex(vertex)), xy, &
+                                       recovery%beside(:, vertex))
+         end if
+      end function value_at
+
+   end function recovered_stress
+
+   !> A sample without the singular field that the vertex' fit leaves out. Around the tip itself
+   !! every element is on a side of its own.
+   pure function smooth_part(samples, recovery, vertex, k, cell) result(stress)
+      type(samples_t), intent(in) :: samples
+      type(recovery_t), intent(in) :: recovery
+      integer(ik), intent(in) :: vertex, k, cell
+      real(rk) :: stress(3)
+
+      stress = samples%stress(:, k, cell)
+      associate (tip => recovery%tip_of_vertex(vertex))
+         if (tip == 0) return
+         if (recovery%tip_of_cell(cell) == tip) then
+            stress = stress - tip_stress(recovery%tips(tip), samples%xy(:, k, cell), &
+                                         samples%centre(:, cell))
+         else
+            stress = stress - tip_stress(recovery%tips(tip), samples%xy(:, k, cell), &
+                                         recovery%beside(:, vertex))
+         end if
+      end associate
+   end function smooth_part
+
+   !> The tips, and where their fields are kept apart: at the vertices of the elements around a tip,
+   !! and in these elements.
+   subroutine find_tips(model, samples, recovery)
+      type(fine_model_t), intent(in) :: model
+      type(samples_t), intent(in) :: samples
+      type(recovery_t), intent(inout) :: recovery
+      integer(ik), allocatable :: n_beside(:)
+      integer(ik) :: cell, i, k, tip, vertex
+
+      associate (fine => model%mesh, fracture => model%mesh%fracture)
+         allocate (recovery%tips(fracture%n_tips), recovery%scale(fine%n_vertices))
+         allocate (recovery%coefficients(n_terms, 3, fine%n_vertices), source=0.0_rk)
+         allocate (recovery%beside(2, fine%n_vertices), source=0.0_rk)
+         allocate (recovery%tip_of_cell(fine%n_cells), recovery%tip_of_vertex(fine%n_vertices), &
+                   source=0_ik)
+         allocate (n_beside(fine%n_vertices), source=0_ik)
+         do tip = 1, fracture%n_tips
+            do i = samples%first(fracture%tip_node(tip)), &
+               samples%first(fracture%tip_node(tip) + 1) - 1
+               cell = samples%cells(i)
+               recovery%tip_of_cell(cell) = tip
+               do k = 1, 3
+                  vertex = fine%cell_nodes(k, cell)
+                  recovery%tip_of_vertex(vertex) = tip
+                  n_beside(vertex) = n_beside(vertex) + 1
+                  recovery%beside(:, vertex) = recovery%beside(:, vertex) + samples%centre(:, cell)
+               end do
+            end do
+            call fit_tip(model, samples, tip, recovery%tips(tip))
+         end do
+         do vertex = 1, fine%n_vertices
+            if (n_beside(vertex) == 0) cycle
+            recovery%beside(:, vertex) = recovery%beside(:, vertex)/n_beside(vertex)
+         end do
+      end associate
+   end subroutine find_tips
+
+   !> The singular field that, with a uniform stress, comes closest to the samples around a tip. The
+   !! weight r makes up for the growth of the stress towards the tip.
+   subroutine fit_tip(model, samples, tip, field)
+      type(fine_model_t), intent(in) :: model
+      type(samples_t), intent(in) :: samples
+      integer(ik), intent(in) :: tip
+      type(tip_field_t), intent(out) :: field
+      integer(ik), parameter :: n_unknowns = 5
+      real(rk) :: normal(n_unknowns, n_unknowns), right(n_unknowns, 1), columns(3, n_unknowns)
+      real(rk) :: weight, unit
+      integer(ik) :: cell, i, info, k, mode, node
+
+      node = model%mesh%fracture%tip_node(tip)
+      field%origin = model%mesh%xy(:, node)
+      field%ahead = model%mesh%fracture%tip_direction(:, tip)
+      field%kolosov = model%elasticity%kolosov()
+      field%shear_modulus = model%elasticity%shear_modulus()
+      ! The unit of the intensities that makes all columns of one size.
+      associate (around => samples%cells(samples%first(node):samples%first(node + 1) - 1))
+         unit = sum(samples%area(around))**0.25_rk
+      end associate
+      normal = 0.0_rk
+      right = 0.0_rk
+      do i = samples%first(node), samples%first(node + 1) - 1
+         cell = samples%cells(i)
+         do k = 1, n_samples
+            columns = 0.0_rk
+            do mode = 1, 2
+               field%intensity = 0.0_rk
+               field%intensity(mode) = unit
+               columns(:, mode) = tip_stress(field, samples%xy(:, k, cell), samples%centre(:, cell))
+            end do
+            columns(1, 3) = 1.0_rk
+            columns(2, 4) = 1.0_rk
+            columns(3, 5) = 1.0_rk
+            weight = samples%area(cell)*norm2(samples%xy(:, k, cell) - field%origin)/unit**6
+            normal = normal + weight*matmul(transpose(columns), columns)
+            right(:, 1) = right(:, 1) + weight*matmul(samples%stress(:, k, cell), columns)
+         end do
+      end do
+      field%intensity = 0.0_rk
+      call dpotrf("U", n_unknowns, normal, n_unknowns, info)
+      if (info /= 0) return
+      call dpotrs("U", n_unknowns, 1_ik, normal, n_unknowns, right, n_unknowns, info)
+      field%intensity = unit*right(1:2, 1)
+   end subroutine fit_tip
+
+end module fine_recovery

@@ -1,0 +1,252 @@
+!> Recovered stresses and estimated errors against exact fields.
+program test_fine_error
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use exact_cracks, only: centre_crack
+   use fine_elasticity, only: elasticity_t
+   use fine_element, only: evaluate_element
+   use fine_error, only: energy_error_t, estimate_error, wanted_sizes
+   use fine_faces, only: loaded_everywhere
+   use fine_loads, only: fine_loads_t, no_loads
+   use fine_model, only: fine_model_t
+   use fine_quadrature, only: collapsed_rule, triangle_rule_7
+   use fine_recovery, only: recover_by_averages, recover_by_patches, recovery_t
+   use mesh_types, only: mesh_t
+   use sample_meshes, only: cracked_rectangle, rotate_mesh
+   implicit none(type, external)
+   type(checks_t) :: checks
+   type(elasticity_t), parameter :: rock = elasticity_t(1.0_rk, 0.3_rk, 0.0_rk, .false.)
+   real(rk), parameter :: angle = 0.3_rk  ! of the crack [rad]
+
+   call exact_in_the_elements()
+   call smooth_field()
+   call crack()
+   call sizes()
+   call checks%finish()
+
+contains
+
+   !> Exact field: a smooth one (Muskhelishvili's functions phi = psi = exp(z)), or a crack |x| < 1
+   !! at an angle under tension across it.
+   pure function exact_displacement(cracked, xy) result(displacement)
+      logical, intent(in) :: cracked
+      real(rk), intent(in) :: xy(2)
+      real(rk) :: displacement(2)
+      real(rk) :: rotation(2, 2)
+      complex(rk) :: z, value
+
+      if (cracked) then
+         rotation = turn()
+         displacement = matmul(rotation, centre_crack(rock, 1.0_rk, 1.0_rk, 0.0_rk, &
+                                                      matmul(transpose(rotation), xy), .true.))
+      else
+         z = cmplx(xy(1), xy(2), rk)
+         value = (rock%kolosov()*exp(z) - z*conjg(exp(z)) - conjg(exp(z))) &
+                 /(2.0_rk*rock%shear_modulus())
+         displacement = [real(value, rk), aimag(value)]
+      end if
+   end function exact_displacement
+
+   pure function turn() result(rotation)
+      real(rk) :: rotation(2, 2)
+
+      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+   end function turn
+
+   !> Stress tensor of the same fields.
+   pure function exact_stress(cracked, xy) result(stress)
+      logical, intent(in) :: cracked
+      real(rk), intent(in) :: xy(2)
+      real(rk) :: stress(2, 2)
+      real(rk) :: place(2)
+      complex(rk) :: z, root, phi, phi_slope, traction
+
+      if (cracked) then
+         place = matmul(transpose(turn()), xy)
+         z = cmplx(place(1), place(2), rk)
+         root = sqrt(z - 1.0_rk)*sqrt(z + 1.0_rk)
+         phi = 0.5_rk*(z/root - 1.0_rk)
+         phi_slope = -0.5_rk/root**3
+         traction = phi + conjg(phi) + (z - conjg(z))*conjg(phi_slope)
+         stress(2, 2) = real(traction, rk)
+         stress(1, 2) = -aimag(traction)
+         stress(1, 1) = 4.0_rk*real(phi, rk) - stress(2, 2)
+         stress(2, 1) = stress(1, 2)
+         stress = matmul(turn(), matmul(stress, transpose(turn())))
+      else
+         z = cmplx(xy(1), xy(2), rk)
+         traction = 2.0_rk*(conjg(z)*exp(z) + exp(z))  ! s_yy - s_xx + 2 i s_xy
+         stress(1, 1) = 2.0_rk*real(exp(z), rk) - 0.5_rk*real(traction, rk)
+         stress(2, 2) = 2.0_rk*real(exp(z), rk) + 0.5_rk*real(traction, rk)
+         stress(1, 2) = 0.5_rk*aimag(traction)
+         stress(2, 1) = stress(1, 2)
+      end if
+   end function exact_stress
+
+   !> Solve with the exact displacement on the edges.
+   subroutine solve(mesh, cracked, model, displacement)
+      type(mesh_t), intent(in) :: mesh
+      logical, intent(in) :: cracked
+      type(fine_model_t), intent(inout) :: model
+      real(rk), allocatable, intent(out) :: displacement(:, :)
+      type(fine_loads_t) :: loads
+      type(error_t), allocatable :: error
+      integer(ik) :: node
+
+      call model%set_mesh(mesh, rock, error)
+      call model%prepare(loaded_everywhere(model%mesh), error)
+      loads = no_loads(model%mesh)
+      do node = 1, model%mesh%n_nodes
+         loads%boundary_displacement(:, node) = exact_displacement(cracked, model%mesh%xy(:, node))
+      end do
+      if (cracked) loads%fluid_pressure = 1.0_rk
+      call model%solve(loads, displacement, error)
+      call checks%no_error(error, "body is solved")
+   end subroutine solve
+
+   !> True errors in the energy norm.
+   function true_error(model, displacement, cracked) result(element)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: displacement(:, :)
+      logical, intent(in) :: cracked
+      real(rk) :: element(model%mesh%n_cells)
+      integer(ik), parameter :: n_t = 6, n_w = 8
+      real(rk) :: points(3, n_t*n_w), weights(n_t*n_w), values(6), gradients(2, 6)
+      real(rk) :: area_coordinates(3), determinant, difference(2, 2), share
+      integer(ik) :: cell, n_points, point
+
+      share = rock%lame_lambda()/(2.0_rk*(rock%lame_lambda() + rock%shear_modulus()))
+      do cell = 1, model%mesh%n_cells
+         n_points = 7
+         call triangle_rule_7(points(:, 1:7), weights(1:7))
+         if (model%mesh%tip_corner(cell) > 0) then
+            n_points = n_t*n_w
+            call collapsed_rule(model%mesh%tip_corner(cell), n_t, n_w, points, weights)
+         end if
+         element(cell) = 0.0_rk
+         associate (nodes => model%mesh%cell_nodes(:, cell))
+            do point = 1, n_points
+               call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
+                                     points(:, point), values, gradients, area_coordinates, &
+                                     determinant)
+               difference = model%elasticity%total_stress(matmul(displacement(:, nodes), &
+                                                                 transpose(gradients)), 0.0_rk) &
+                            - exact_stress(cracked, matmul(model%mesh%xy(:, nodes), values))
+               element(cell) = element(cell) + weights(point)*determinant &
+                               *(sum(difference**2) - share*(difference(1, 1) &
+                                                             + difference(2, 2))**2) &
+                               /(2.0_rk*rock%shear_modulus())
+            end do
+         end associate
+      end do
+      element = sqrt(element)
+   end function true_error
+
+   !> A displacement that the elements hold has no error, and none is estimated.
+   subroutine exact_in_the_elements()
+      type(mesh_t) :: mesh
+      type(fine_model_t) :: model
+      type(fine_loads_t) :: loads
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :)
+
+      mesh = cracked_rectangle([0.0_rk, 2.0_rk], [0.0_rk, 1.0_rk], [5_ik, 3_ik], 1_ik, 1_ik, 0_ik)
+      call model%set_mesh(mesh, rock, error)
+      call model%prepare(loaded_everywhere(model%mesh), error)
+      loads = no_loads(model%mesh)
+      ! Pure bending, s_xx = E' y.
+      loads%boundary_displacement(1, :) = model%mesh%xy(1, :)*model%mesh%xy(2, :)
+      loads%boundary_displacement(2, :) = -0.5_rk*(model%mesh%xy(1, :)**2 &
+                                                   + rock%poisson/(1.0_rk - rock%poisson) &
+                                                   *model%mesh%xy(2, :)**2)
+      call model%solve(loads, displacement, error)
+      call recover_by_patches(model, displacement, recovery)
+      call estimate_error(model, displacement, recovery, estimate)
+      call checks%is_close(estimate%relative, 0.0_rk, 1.0e-11_rk, "bending has no error")
+   end subroutine exact_in_the_elements
+
+   !> The effectivity index, estimated over true error, tends to one.
+   subroutine smooth_field()
+      type(mesh_t) :: mesh
+      type(fine_model_t) :: model
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate, averaged
+      real(rk), allocatable :: displacement(:, :)
+      real(rk) :: effectivity, before, total
+      integer(ik) :: level
+
+      before = 1.0_rk
+      do level = 2, 4
+         mesh = cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [1_ik, 1_ik]*2_ik**level, &
+                                  1_ik, 1_ik, 0_ik)
+         call solve(mesh, .false., model, displacement)
+         total = norm2(true_error(model, displacement, .false.))
+         call recover_by_averages(model, displacement, recovery)
+         call estimate_error(model, displacement, recovery, averaged)
+         call recover_by_patches(model, displacement, recovery)
+         call estimate_error(model, displacement, recovery, estimate)
+         effectivity = estimate%total/total
+         print "(a,es10.2,2(a,f8.4))", "smooth: true error", total/estimate%solution, &
+            ", effectivity of patches", effectivity, ", of averages", averaged%total/total
+         call checks%is_true(effectivity > 0.8_rk .and. effectivity < 1.25_rk, &
+                             "smooth field: effectivity")
+         call checks%is_true(abs(effectivity - 1.0_rk) < before, "smooth field: it gets better")
+         before = abs(effectivity - 1.0_rk)
+      end do
+      call checks%is_close(effectivity, 1.0_rk, 0.05_rk, "smooth field: finest mesh")
+   end subroutine smooth_field
+
+   !> A crack with quarter-point elements at both tips.
+   subroutine crack()
+      type(mesh_t) :: mesh
+      type(fine_model_t) :: model
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate, averaged
+      real(rk), allocatable :: displacement(:, :), true(:)
+      real(rk) :: effectivity, local
+      logical, allocatable :: at_tip(:)
+      integer(ik) :: level, b
+
+      do level = 0, 2
+         b = 3_ik*2_ik**level
+         mesh = cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [4*b, 4*b], 2*b, b + 1, 3*b)
+         call rotate_mesh(mesh, angle, .false.)
+         call solve(mesh, .true., model, displacement)
+         true = true_error(model, displacement, .true.)
+         at_tip = model%mesh%tip_corner > 0
+         call recover_by_averages(model, displacement, recovery)
+         call estimate_error(model, displacement, recovery, averaged)
+         call recover_by_patches(model, displacement, recovery)
+         call estimate_error(model, displacement, recovery, estimate)
+         effectivity = estimate%total/norm2(true)
+         local = norm2(pack(estimate%element, at_tip))/norm2(pack(true, at_tip))
+         print "(a,es10.2,4(a,f8.4))", "crack: true error", norm2(true)/estimate%solution, &
+            ", at the tips", norm2(pack(true, at_tip))/norm2(true), ", effectivity of patches", &
+            effectivity, ", at the tips", local, ", of averages", averaged%total/norm2(true)
+         call checks%is_true(effectivity > 0.8_rk .and. effectivity < 1.25_rk, &
+                             "crack: effectivity")
+      end do
+   end subroutine crack
+
+   !> Sizes for a quarter of the error are half as large where the error is spread evenly.
+   subroutine sizes()
+      type(fine_model_t) :: model
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate
+      real(rk), allocatable :: displacement(:, :), wanted(:)
+      real(rk) :: now
+
+      call solve(cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [8_ik, 8_ik], 1_ik, 1_ik, &
+                                   0_ik), .false., model, displacement)
+      call recover_by_patches(model, displacement, recovery)
+      call estimate_error(model, displacement, recovery, estimate)
+      estimate%element = estimate%total/sqrt(real(size(estimate%element), rk))
+      wanted = wanted_sizes(model%mesh, estimate, 0.25_rk*estimate%relative)
+      now = sqrt(4.0_rk/256.0_rk/sqrt(3.0_rk))  ! 256 elements of equal area
+      call checks%is_close(maxval(abs(wanted/now - 0.5_rk)), 0.0_rk, 1.0e-3_rk, "wanted sizes")
+   end subroutine sizes
+
+end program test_fine_error
