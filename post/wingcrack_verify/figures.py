@@ -243,10 +243,12 @@ def _new() -> tuple[Figure, Axes]:
 
 
 def _plain_logs(axes: Axes) -> None:
-    """Ticks at 1, 2, 5 in plain numbers, as few decades are shown; powers of ten if many."""
+    """Ticks in plain numbers, the closer the fewer decades there are; powers of ten if many."""
     for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         if limits[1] < 1.0e3 * limits[0]:
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            close = limits[1] < 10.0 * limits[0]
+            subs = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0) if close else (1.0, 2.0, 5.0)
+            axis.set_major_locator(LogLocator(subs=subs))
             axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
 
