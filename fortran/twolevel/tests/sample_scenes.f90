@@ -1,0 +1,46 @@
+!> Small scenes with both levels.
+module sample_scenes
+   use base_kinds, only: rk
+   use sample_bodies, only: porous_body
+   use scene_types, only: fracture_t, scene_t
+   implicit none(type, external)
+   private
+
+   public :: add_fracture, squeezed_body
+
+contains
+
+   !> 2 m x 2 m of the rock of Paper C, left and lower side on rollers, pressed from the right and
+   !! from above.
+   pure function squeezed_body(from_right, from_above) result(scene)
+      real(rk), intent(in) :: from_right, from_above  !< total stress, compression positive [Pa]
+      type(scene_t) :: scene
+
+      scene = porous_body()
+      scene%domain%x_max = 2.0_rk
+      scene%domain%y_max = 2.0_rk
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      scene%sides(2)%traction(1) = -from_right
+      scene%sides(4)%traction(2) = -from_above
+      scene%time%end = 3600.0_rk
+      scene%time%step = 60.0_rk
+      scene%discretization%size_fracture = 0.05_rk
+      scene%discretization%size_boundary = 0.4_rk
+      scene%discretization%window = 0.3_rk
+      scene%growth%intensities = .true.
+   end function squeezed_body
+
+   !> A fracture of 1 mm residual aperture through the given points.
+   pure subroutine add_fracture(scene, name, x, y, friction, dilation)
+      type(scene_t), intent(inout) :: scene
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: x(:), y(:)  !< [m]
+      real(rk), intent(in) :: friction  !< [-]
+      real(rk), intent(in) :: dilation  !< [rad]
+
+      scene%fractures = [scene%fractures, fracture_t(name=name, x=x, y=y, friction=friction, &
+                                                     dilation=dilation, aperture=1.0e-3_rk)]
+   end subroutine add_fracture
+
+end module sample_scenes

@@ -1,0 +1,296 @@
+!> Windows: where they lie in the coarse mesh, uniform stress without intensities, what holds on
+!! their faces, and jumps that outlive a new mesh.
+program test_twolevel_window
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: step_report_t
+   use contact_states, only: state_open, state_slip, state_stick
+   use fine_faces, only: face_jump, face_loaded, face_slip
+   use sample_bodies, only: cell_centre
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: scene_t
+   use tips_types, only: intensity_t
+   use twolevel_simulation, only: simulation_t
+   use twolevel_window, only: window_t
+   implicit none(type, external)
+
+   real(rk), parameter :: degree = 0.017453292519943295_rk  !< [rad]
+   !> A fracture with a kink: from the lower left over the middle to the right.
+   real(rk), parameter :: kinked_x(3) = [0.7_rk, 1.0_rk, 1.25_rk]
+   real(rk), parameter :: kinked_y(3) = [0.8_rk, 1.0_rk, 1.05_rk]
+   type(checks_t) :: checks
+   type(timers_t) :: timers
+
+   call test_undrained_constants(.false.)
+   call test_undrained_constants(.true.)
+   call test_projection()
+   call test_uniform_stress()
+   call test_conditions()
+   call test_kept_jumps()
+   call checks%finish()
+
+contains
+
+   !> A kinked fracture in its initial state, its windows evaluated.
+   subroutine start(scene, friction, dilation, simulation)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in) :: friction, dilation
+      type(simulation_t), intent(inout) :: simulation
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+
+      call add_fracture(scene, "kinked", kinked_x, kinked_y, friction, dilation)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "begin")
+      call simulation%equilibrate(timers, report, error)
+      call checks%no_error(error, "initial state")
+      call checks%is_true(report%converged, "the initial state converges")
+      call simulation%evaluate_tips(timers, error)
+      call checks%no_error(error, "tips")
+      call checks%is_true(size(simulation%tips%tip) == 2, "two tips")
+   end subroutine start
+
+   !> The bulk modulus without flow is that of the drained rock plus alpha^2/S; shear does not
+   !! change.
+   subroutine test_undrained_constants(plane_stress)
+      logical, intent(in) :: plane_stress
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(window_t) :: window
+      type(error_t), allocatable :: error
+      real(rk) :: drained, lame, shear, storage
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%material%plane_stress = plane_stress
+      call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call window%build(scene, simulation%network, 1_ik, 2_ik, error)
+      call checks%no_error(error, "window")
+      associate (e => scene%material%young, nu => scene%material%poisson)
+         shear = e/(2.0_rk*(1.0_rk + nu))
+         lame = merge(e*nu/(1.0_rk - nu**2), e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu)), &
+                      plane_stress)
+         drained = e/(3.0_rk*(1.0_rk - 2.0_rk*nu))
+      end associate
+      storage = scene%material%porosity*scene%fluid%compressibility &
+                + (scene%material%biot - scene%material%porosity)/drained
+      call window%set_rock(scene, .false., error)
+      call checks%is_close(window%model%elasticity%lame_lambda(), lame, 1.0e-12_rk*lame, "drained")
+      call checks%is_true(.not. window%undrained, "drained on record")
+      call window%set_rock(scene, .true., error)
+      call checks%is_close(window%model%elasticity%shear_modulus(), shear, 1.0e-12_rk*shear, &
+                           "undrained: shear")
+      lame = lame + scene%material%biot**2/storage
+      call checks%is_close(window%model%elasticity%lame_lambda(), lame, 1.0e-12_rk*lame, &
+                           "undrained")
+      call checks%is_true(window%undrained, "undrained on record")
+   end subroutine test_undrained_constants
+
+   !> Nodes on a fracture face lie in a coarse cell of their own side; the weights give their
+   !! place back; a face knows the coarse cell that it lies in.
+   subroutine test_projection()
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      integer(ik) :: i, k, n_wrong, side, v, w
+      real(rk) :: across, worst
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call start(scene, 5.0_rk, 0.0_rk, simulation)
+      do w = 1, 2
+         associate (window => simulation%tips%window(w), coarse => simulation%mesh)
+            worst = 0.0_rk
+            do v = 1, window%model%mesh%n_nodes
+               worst = max(worst, maxval(abs(matmul(coarse%xy(:, &
+                                                              coarse%cell_nodes(:, &
+                       window%coarse_cell(v))), window%weight(:, v)) - window%model%mesh%xy(:, v))))
+            end do
+            call checks%is_close(worst, 0.0_rk, 1.0e-14_rk, "weights give the place back")
+            ! Inside: no weight is noticeably negative.
+            call checks%is_true(minval(window%weight) > -0.05_rk, "nodes lie in their cells")
+            n_wrong = 0
+            do i = 1, window%mesh%fracture%n_cells
+               associate (s => 0.5_rk*sum(window%mesh%fracture%cell_s(:, i)), &
+                          ends => coarse%fracture%cell_s(:, window%coarse_face(i)))
+                  if (.not. (ends(1) <= s .and. s <= ends(2))) n_wrong = n_wrong + 1
+                  if (window%coarse_end(i) /= merge(1, 2, &
+                                                    s < 0.5_rk*sum(ends))) n_wrong = n_wrong + 1
+               end associate
+               if (window%model%mesh%face_tip(i) > 0) cycle
+               do side = 1, 2
+                  do k = 1, 3
+                     v = window%model%mesh%face_nodes(k, side, i)
+                     associate (tau => window%model%mesh%face_tangent(:, i), &
+                                centre => cell_centre(coarse, window%coarse_cell(v)), &
+                                xy => window%model%mesh%xy(:, v))
+                        across = tau(1)*(centre(2) - xy(2)) - tau(2)*(centre(1) - xy(1))
+                        ! At the kink the neighbouring cell decides, which may look the other way.
+                        if (norm2(xy - [kinked_x(2), kinked_y(2)]) < 0.02_rk) cycle
+                        if ((across > 0.0_rk) .neqv. side == 2) n_wrong = n_wrong + 1
+                     end associate
+                  end do
+               end do
+            end do
+            call checks%is_true(n_wrong == 0, "sides and cells of fracture faces")
+         end associate
+      end do
+   end subroutine test_projection
+
+   !> A sticking fracture in uniform stress, drained and undrained, under each condition on the
+   !! faces: the window finds the coarse level's linear displacement and no intensity. Given
+   !! tractions agree with the displacement on the edge only if the constants are right.
+   subroutine test_uniform_stress()
+      character(len=8), parameter :: conditions(3) = ["contact ", "jump    ", "traction"]
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      integer :: k, w, undrained
+      real(rk) :: slopes(2)
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call start(scene, 5.0_rk, 0.0_rk, simulation)
+      call checks%is_true(all(simulation%state%contact == state_stick), "all stick")
+      slopes = undrained_strain(scene)
+      do undrained = 0, 1
+         simulation%undrained = undrained == 1
+         do k = 1, size(conditions)
+            simulation%scene%discretization%face_condition = conditions(k)
+            call simulation%evaluate_tips(timers, error)
+            call checks%no_error(error, "uniform stress")
+            do w = 1, 2
+               associate (window => simulation%tips%window(w), &
+                          found => simulation%tips%tip(w)%intensity)
+                  call checks%is_true(window%undrained .eqv. simulation%undrained, "rock as wanted")
+                  call checks%is_close(maxval(abs(window%displacement &
+                                                  - spread(slopes, 2, &
+                                                           window%model%mesh%n_nodes) *window%model%mesh%xy)), 0.0_rk, 1.0e-13_rk, "uniform strain in the window: "//trim(conditions(k)))
+                  ! A millionth of 10 MPa*sqrt(pi*0.3 m) = 1e7 Pa m^1/2.
+                  call checks%is_close(max(abs(found%k1), abs(found%k2), abs(found%k1_dc), &
+                                           abs(found%k2_dc)), 0.0_rk, 10.0_rk, &
+                                       "no intensity: "//trim(conditions(k)))
+               end associate
+            end do
+         end do
+      end do
+   end subroutine test_uniform_stress
+
+   !> eps_xx, eps_yy of the undrained body under its load: sigma = 2 G eps + (lambda + alpha^2/S)
+   !! tr eps.
+   pure function undrained_strain(scene) result(strain)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: strain(2)
+      real(rk) :: lame, shear, storage
+
+      associate (e => scene%material%young, nu => scene%material%poisson, &
+                 stress => [scene%sides(2)%traction(1), scene%sides(4)%traction(2)])
+         shear = e/(2.0_rk*(1.0_rk + nu))
+         storage = scene%material%porosity*scene%fluid%compressibility &
+                   + (scene%material%biot - scene%material%porosity)*3.0_rk*(1.0_rk - 2.0_rk*nu)/e
+         lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu)) + scene%material%biot**2/storage
+         strain = (stress - lame/(2.0_rk*(lame + shear))*sum(stress))/(2.0_rk*shear)
+      end associate
+   end function undrained_strain
+
+   !> The coarse level's states become conditions: stick a given jump, slip tied opening, open
+   !! loads.
+   subroutine test_conditions()
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      real(rk) :: tilt
+      integer(ik) :: i, j, n_wrong
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call start(scene, 5.0_rk, degree, simulation)
+      ! The states alternate from end to end of the coarse cells; slip goes either way.
+      do i = 1, size(simulation%state%contact, 2)
+         simulation%state%contact(:, i) = mod([2*i, 2*i + 1], 3_ik)
+         simulation%state%jump(2, :, i) = merge(1.0e-6_rk, -1.0e-6_rk, mod(i, 2_ik) == 0)
+         simulation%state%pressure(i) = 1.0e6_rk*i
+      end do
+      call simulation%evaluate_tips(timers, error)
+      call checks%no_error(error, "various states")
+      associate (window => simulation%tips%window(2))
+         n_wrong = 0
+         do i = 1, window%mesh%fracture%n_cells
+            j = window%coarse_face(i)
+            associate (condition => window%model%conditions%condition(i))
+               tilt = window%model%conditions%dilation(i)
+               select case (simulation%state%contact(window%coarse_end(i), j))
+               case (state_stick)
+                  if (condition /= face_jump) n_wrong = n_wrong + 1
+               case (state_slip)
+                  if (condition /= face_slip) n_wrong = n_wrong + 1
+                  if (.not. abs(tilt - sign(tan(degree), &
+                                            simulation%state%jump(2, 1, &
+                                                           j))) <= 1.0e-15_rk) n_wrong = n_wrong + 1
+               case (state_open)
+                  if (condition /= face_loaded) n_wrong = n_wrong + 1
+               end select
+            end associate
+            if (.not. abs(window%loads%fluid_pressure(i) &
+                          - 1.0e6_rk*j) <= 0.0_rk) n_wrong = n_wrong + 1
+            associate (given => simulation%state%traction(:, window%coarse_end(i), j))
+               if (.not. all(abs(window%loads%traction(:, i) - given([2, 1])) <= 0.0_rk)) then
+                 n_wrong = n_wrong + 1
+               end if
+            end associate
+         end do
+         call checks%is_true(n_wrong == 0, "conditions and loads as the states say")
+         call checks%is_true(any(window%model%conditions%condition == face_jump) &
+                             .and. any(window%model%conditions%condition == face_slip) &
+                             .and. any(window%model%conditions%condition == face_loaded), &
+                             "all three occur")
+      end associate
+   end subroutine test_conditions
+
+   !> Faces that slipped and then stick keep the window's jump, also on a new mesh and round the
+   !! kink: the displacement stays as it is, and with it the intensities by its correlation. Those
+   !! by the interaction integral take the tractions that hold the faces instead of those that
+   !! were given.
+   subroutine test_kept_jumps()
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      type(intensity_t) :: before(2)
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call start(scene, 0.1_rk, degree, simulation)
+      ! The kink opens a little, all else slips.
+      call checks%is_true(count(simulation%state%contact == state_slip) >= 20 .and. &
+                          all(simulation%state%contact /= state_stick), "nothing sticks")
+      before = simulation%tips%tip%intensity
+      call checks%is_true(minval(abs(before%k2)) > 1.0e5_rk, "there is an intensity")
+      simulation%state%contact = state_stick
+      call simulation%evaluate_tips(timers, error)
+      call checks%no_error(error, "sticking")
+      call compare(simulation, before, "the same mesh")
+      simulation%tips%built = .false.
+      call simulation%evaluate_tips(timers, error)
+      call checks%no_error(error, "a new mesh")
+      call compare(simulation, before, "a new mesh")
+   end subroutine test_kept_jumps
+
+   !> All faces have given jumps, and both tips their earlier intensities.
+   subroutine compare(simulation, before, name)
+      type(simulation_t), intent(in) :: simulation
+      type(intensity_t), intent(in) :: before(2)
+      character(len=*), intent(in) :: name
+      integer :: w
+
+      do w = 1, 2
+         associate (window => simulation%tips%window(w), now => simulation%tips%tip(w)%intensity)
+            call checks%is_true(all(window%model%conditions%condition == face_jump), &
+                                name//": jumps are given")
+            associate (scale => abs(before(w)%k2))
+               call checks%is_close(now%k1_dc, before(w)%k1_dc, 1.0e-9_rk*scale, name//": K_I")
+               call checks%is_close(now%k2_dc, before(w)%k2_dc, 1.0e-9_rk*scale, name//": K_II")
+               call checks%is_close(now%k1, before(w)%k1, 1.0e-2_rk*scale, name//": integral, K_I")
+               call checks%is_close(now%k2, before(w)%k2, 1.0e-2_rk*scale, name//": integral, K_II")
+            end associate
+         end associate
+      end do
+   end subroutine compare
+
+end program test_twolevel_window
