@@ -106,11 +106,113 @@ def test_load_factor_scales_everything(tmp_path: Path) -> None:
         assert energy / energies[0] == pytest.approx((factor / 1.5) ** 2, rel=1e-9)
 
 
+def test_wings_of_a_disc(tmp_path: Path) -> None:
+    """Closed faces: K_I = 0, a kink of 70.5 degrees at K_eq = K_IC; mirrored wings to the loads."""
+    out = run_input(tmp_path, "paper_b/disc_path_45.nml")
+    tips = rows(out / "tips.csv")
+    first = tips[:2]
+    for tip in first:
+        assert abs(float(tip["k1_pa_sqrtm"])) < 1e-8 * abs(float(tip["k2_pa_sqrtm"]))
+        assert abs(float(tip["angle_deg"])) == pytest.approx(70.528779, abs=1e-5)
+    assert max(float(tip["keq_pa_sqrtm"]) for tip in first) == pytest.approx(2.0e6, rel=1e-8)
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors == sorted(factors)
+    (fracture,) = json.loads((out / "network.json").read_text())["fractures"]
+    vertices = list(zip(fracture["x_m"], fracture["y_m"], strict=True))
+    length = 2 * 0.026 + 0.01
+    for (x, y), (u, v) in zip(vertices, reversed(vertices), strict=True):
+        assert math.hypot(x + u, y + v) < 5e-3 * length
+    assert abs(vertices[0][0]) < 1e-3 and vertices[0][1] < -0.025
+    record_of_run = record(out)
+    assert record_of_run["contact_residual"] < 1e-9
+
+
+# A crack 0.2 m long at 45 degrees in a body 40 times as wide, under pressure along y.
+CLOSED = """\
+&domain x_min = -4.0, x_max = 4.0, y_min = -4.0, y_max = 4.0 /
+&material young = 40.0e9, poisson = 0.2 /
+&fracture
+  name = 'crack'
+  x = -0.07071067811865475, 0.07071067811865475
+  y = -0.07071067811865475, 0.07071067811865475
+  friction = 0.3
+/
+&side name = 'top', y_traction = -10.0e6 /
+&side name = 'bottom', y_traction = 10.0e6 /
+&restraint x = -4.0, y = -4.0, x_displacement = 0.0, y_displacement = 0.0 /
+&restraint x = 4.0, y = -4.0, y_displacement = 0.0 /
+&fe size_fracture = 0.005, size_boundary = 1.0 /
+&growth intensities = .true. /
+"""
+
+
+def run_text(place: Path, text: str) -> Path:
+    """Run a scene."""
+    (place / "scene.nml").write_text(text)
+    done = call(place, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    return place / "out"
+
+
+def test_closed_frictional_crack(tmp_path: Path) -> None:
+    """K_I = 0 and K_II = (tau - mu sigma_n) sqrt(pi a); slip is an ellipse (closed form)."""
+    out = run_text(tmp_path, CLOSED)
+    shear = 5.0e6 - 0.3 * 5.0e6
+    exact = shear * math.sqrt(math.pi * 0.1)
+    for tip in rows(out / "tips.csv"):
+        assert abs(float(tip["k1_pa_sqrtm"])) < 1e-9 * exact
+        assert abs(float(tip["k2_pa_sqrtm"])) == pytest.approx(exact, rel=5e-3)
+    cells = rows(out / "fractures.csv")
+    assert {cell["state"] for cell in cells} == {"slip"}
+    modulus = 40.0e9 / (1 - 0.2**2)
+    errors, sizes = 0.0, 0.0
+    for cell in cells:
+        half = math.hypot(float(cell["x_m"]), float(cell["y_m"]))
+        slip = 4 * shear / modulus * math.sqrt(0.1**2 - half**2)
+        errors += (abs(float(cell["jump_t_m"])) - slip) ** 2
+        sizes += slip**2
+    assert math.sqrt(errors / sizes) < 1e-2
+
+
+def test_crack_below_its_friction_sticks(tmp_path: Path) -> None:
+    """With mu above tan(45 degrees) nothing moves, to round-off."""
+    out = run_text(tmp_path, CLOSED.replace("friction = 0.3", "friction = 1.01"))
+    assert {cell["state"] for cell in rows(out / "fractures.csv")} == {"stick"}
+    assert numbers(out / "history.csv", "max_slip_m")[0] < 1e-18
+    for tip in rows(out / "tips.csv"):
+        assert abs(float(tip["k2_pa_sqrtm"])) < 1e-6 * 5.0e6
+
+
+def test_stress_in_situ_is_in_equilibrium(tmp_path: Path) -> None:
+    """Closed faces carry the stress in situ, and nothing moves without a load."""
+    text = CLOSED.replace("friction = 0.3", "law = 'frictionless'")
+    text = text.replace("y_traction = -10.0e6", "y_traction = 0.0")
+    text = text.replace("y_traction = 10.0e6", "y_traction = 0.0")
+    text += "&in_situ sxx = -7.0e6, syy = -7.0e6 /\n&probe name = 'p', x = 2.0, y = 1.0 /\n"
+    out = run_text(tmp_path, text)
+    assert numbers(out / "history.csv", "strain_energy_j")[0] < 1e-12
+    for traction in numbers(out / "fractures.csv", "traction_n_pa"):
+        assert traction == pytest.approx(-7.0e6, rel=1e-9)
+    (probe,) = rows(out / "probes.csv")
+    assert float(probe["p_sxx_pa"]) == pytest.approx(-7.0e6, rel=1e-9)
+    assert float(probe["p_sxy_pa"]) == pytest.approx(0.0, abs=1.0)
+
+
+def test_given_slip(tmp_path: Path) -> None:
+    """An elliptical slip d is that of a uniform stress drop: K_II = E' d sqrt(pi a)/(4 a)."""
+    text = CLOSED.replace("friction = 0.3", "law = 'slip', slip = 1.0e-5")
+    out = run_text(tmp_path, text)
+    exact = 40.0e9 / (1 - 0.2**2) * 1.0e-5 * math.sqrt(math.pi * 0.1) / 0.4
+    for tip in rows(out / "tips.csv"):
+        assert abs(float(tip["k2_pa_sqrtm"])) == pytest.approx(exact, rel=5e-3)
+    assert numbers(out / "history.csv", "max_slip_m")[0] == pytest.approx(1.0e-5, rel=1e-2)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
         ("&fe", "&coarse size_boundary = 1.0 /\n&fe", "&coarse: needs a fluid"),
-        ("law = 'open'", "friction = 0.5", "law is 'friction' but must be 'open'"),
+        ("law = 'open'", "law = 'open', friction = 0.5", "which has neither"),
         ("x_displacement = 0.0 /\n\n&fe", "y_displacement = 0.0 /\n\n&fe", "can rotate"),
     ],
 )

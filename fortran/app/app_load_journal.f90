@@ -7,7 +7,7 @@ module app_load_journal
                                point_state
    use mechanics_simulation, only: simulation_t
    use mesh_builder, only: locate
-   use contact_states, only: state_open
+   use contact_states, only: state_open, state_slip, state_stick
    use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
                             matrix_fields_t, tip_row_t
    use output_progress, only: progress_t, progress_values_t
@@ -70,16 +70,25 @@ contains
          row%load_factor = simulation%factor
          row%strain_energy = body%model%strain_energy(body%displacement)
          row%fracture_length = total_length(simulation%network)
+         row%seismic_moment = simulation%seismic_moment
          row%n_tips = body%mesh%fracture%n_tips
          if (body%mesh%fracture%n_cells > 0) then
             jump = fracture_jump(body)
             row%max_opening = maxval(jump(1, :))
             row%max_slip = maxval(abs(jump(2, :)))
             row%fracture_volume = sum(jump(1, :)*body%model%mesh%face_length)
-            row%n_open = body%mesh%fracture%n_cells
+            associate (state => body%contact%state(3, :))
+               row%n_stick = count(state == state_stick)
+               row%n_slip = count(state == state_slip)
+               row%n_open = count(state == state_open)
+            end associate
+            row%newton_iterations = body%contact%iterations
          end if
          call self%files%history_row(row)
          self%record%steps = self%record%steps + 1
+         self%record%contact_residual = max(self%record%contact_residual, body%contact%residual)
+         self%record%newton_total = self%record%newton_total + body%contact%iterations
+         self%record%newton_max = max(self%record%newton_max, body%contact%iterations)
          self%record%cells = body%mesh%n_cells
          self%record%fracture_cells = body%mesh%fracture%n_cells
          call self%record%count_dofs("displacement", body%model%constraints%n_dofs)
@@ -137,7 +146,7 @@ contains
          pairs = fracture_traction(body)
          fracture%traction_n = pairs(1, :)
          fracture%traction_t = pairs(2, :)
-         allocate (fracture%state(body%mesh%fracture%n_cells), source=state_open)
+         fracture%state = body%contact%state(3, :)
          call self%files%write_fields(simulation%time(), body%mesh, matrix, fracture, none, error)
       end associate
       self%fields_time = simulation%time()

@@ -2,14 +2,16 @@
 module mechanics_body
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_assemble, phase_factorize, phase_solve, phase_tips, timers_t
+   use base_timers, only: phase_assemble, phase_factorize, phase_solve, phase_tips, &
+                          phase_transfer, timers_t
    use fine_boundary, only: add_point_force, add_side_traction, fine_boundary_t, free_boundary, &
                             hold_side, nearest_node
+   use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
-   use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
+   use mechanics_faces, only: face_conditions, given_slip, transfer_contact
    use mechanics_outline, only: outline_of_scene, outline_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
@@ -28,6 +30,9 @@ module mechanics_body
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads  !< at the present load factor
       real(rk), allocatable :: displacement(:, :)  !< (2, nodes) [m]
+      type(contact_t) :: contact  !< on the fracture faces, with what they have slipped before
+      !> (tau n, start end mid, fracture cell) jump that the scene gives at load factor 1 [m]
+      real(rk), allocatable :: given_jump(:, :, :)
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
    contains
       procedure :: build
@@ -36,19 +41,28 @@ module mechanics_body
 
 contains
 
-   !> Mesh the body with its fractures, assemble and factorize.
-   subroutine build(self, scene, network, mesh_phase, timers, error)
+   !> Mesh the body with its fractures, assemble and factorize. Contact is carried over from the
+   !! mesh before, if there was one.
+   subroutine build(self, scene, start, network, mesh_phase, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
+      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
       integer, intent(in) :: mesh_phase  !< of the timers: the first mesh or a later one
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(elasticity_t) :: elasticity
+      type(fine_mesh_t) :: fine_before
+      type(contact_t) :: contact_before
+      logical :: has_before
 
-      if (allocated(self%displacement)) deallocate (self%displacement)
+      has_before = allocated(self%displacement)
+      if (has_before) then
+         deallocate (self%displacement)
+         fine_before = self%model%mesh
+         contact_before = self%contact
+      end if
       call timers%start(mesh_phase)
-      call build_mesh(body_spec(scene), network, self%mesher, self%mesh, error)
+      call build_mesh(body_spec(scene, network), network, self%mesher, self%mesh, error)
       call timers%stop(mesh_phase)
       if (allocated(error)) return
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
@@ -57,17 +71,30 @@ contains
       call self%model%set_mesh(self%mesh, elasticity, error)
       call timers%stop(phase_assemble)
       if (allocated(error)) return
-      call timers%start(phase_factorize)
-      call self%model%prepare(loaded_everywhere(self%model%mesh), error, &
-                              held_boundary(scene, self%model%mesh))
-      call timers%stop(phase_factorize)
+      associate (fine => self%model%mesh)
+         if (has_before) then
+            call timers%start(phase_transfer)
+            call transfer_contact(fine_before, contact_before, fine, self%contact)
+            call timers%stop(phase_transfer)
+         else
+            self%contact = new_contact(fine)
+         end if
+         self%given_jump = 0.0_rk*self%contact%jump
+         call given_slip(scene, start, network, fine, self%given_jump)
+         call timers%start(phase_factorize)
+         call self%model%prepare(face_conditions(scene, start, fine), error, &
+                                 held_boundary(scene, fine))
+         call timers%stop(phase_factorize)
+      end associate
    end subroutine build
 
    !> What to mesh.
-   pure function body_spec(scene) result(spec)
+   pure function body_spec(scene, network) result(spec)
       type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
       type(mesh_spec_t) :: spec
       type(outline_t) :: outline
+      integer :: f
 
       outline = outline_of_scene(scene)
       spec%corners = outline%corners
@@ -79,6 +106,16 @@ contains
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       if (.not. spec%rosette_radius > 0.0_rk) spec%rosette_radius = spec%size_fracture
+      ! Two elements fit on the last straight piece, for the domain of the interaction integral
+      ! ends at a kink.
+      allocate (spec%end_radius(2, size(network%first) - 1))
+      do f = 1, size(network%first) - 1
+         associate (first => network%first(f), last => network%first(f + 1) - 1)
+            spec%end_radius(1, f) = norm2(network%xy(:, first + 1) - network%xy(:, first))
+            spec%end_radius(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
+         end associate
+      end do
+      spec%end_radius = min(spec%rosette_radius, 0.5_rk*spec%end_radius)
    end function body_spec
 
    !> Which displacements are given.
@@ -122,6 +159,7 @@ contains
             loads%boundary_displacement(axis, nodes) = factor*scene%sides(side)%displacement(axis)
          end do
       end do
+      call add_in_situ(scene%in_situ, fine, loads)
       do side = 1, size(scene%sides, kind=ik)
          if (.not. any(abs(scene%sides(side)%traction) > 0.0_rk)) cycle
          call add_side_traction(fine, side, factor*scene%sides(side)%traction, loads%force)
@@ -141,6 +179,29 @@ contains
       end do
    end function body_loads
 
+   !> The stress in situ, and the tractions on the outer boundary that hold it in equilibrium.
+   pure subroutine add_in_situ(in_situ, fine, loads)
+      real(rk), intent(in) :: in_situ(3)  !< xx, yy, xy [Pa]
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_loads_t), intent(inout) :: loads
+      real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! ends, middle
+      real(rk) :: chord(2), resultant(2)
+      integer(ik) :: face, k, nodes(3)
+
+      if (.not. any(abs(in_situ) > 0.0_rk)) return
+      loads%initial_stress = spread(in_situ, 2, fine%n_vertices)
+      do face = 1, size(fine%boundary_sides, kind=ik)
+         nodes = [fine%boundary_faces(:, face), fine%boundary_middles(face)]
+         ! The body is on the left: the outward normal times the length is the chord turned right.
+         chord = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
+         resultant = [in_situ(1)*chord(2) - in_situ(3)*chord(1), &
+                      in_situ(3)*chord(2) - in_situ(2)*chord(1)]
+         do k = 1, 3
+            loads%force(:, nodes(k)) = loads%force(:, nodes(k)) + share(k)*resultant
+         end do
+      end do
+   end subroutine add_in_situ
+
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.
    subroutine respond(self, scene, factor, timers, error)
       class(body_t), intent(inout) :: self
@@ -152,7 +213,8 @@ contains
 
       call timers%start(phase_solve)
       self%loads = body_loads(scene, self%model%mesh, factor)
-      call self%model%solve(self%loads, self%displacement, error)
+      self%loads%jump = factor*self%given_jump
+      call self%model%solve(self%loads, self%displacement, error, self%contact)
       call timers%stop(phase_solve)
       if (allocated(error) .or. .not. scene%growth%intensities) return
       call timers%start(phase_tips)

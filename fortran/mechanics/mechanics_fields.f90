@@ -2,6 +2,7 @@
 module mechanics_fields
    use base_kinds, only: ik, rk
    use fine_element, only: shape_values
+   use fine_faces, only: face_contact
    use mechanics_body, only: body_t
    use tips_faces, only: face_traction
    implicit none(type, external)
@@ -36,23 +37,38 @@ contains
       end do
    end function cell_stress
 
-   !> Jump at the node within each fracture cell: opening and slip along tau [m].
+   !> Jump in the middle of each fracture cell: opening and slip along tau [m].
    pure function fracture_jump(body) result(jump)
       type(body_t), intent(in) :: body
       real(rk) :: jump(2, body%mesh%fracture%n_cells)
-      real(rk) :: vector(2), tau(2)
+      real(rk) :: vector(2), tau(2), share(3)
       integer(ik) :: cell
 
       do cell = 1, body%mesh%fracture%n_cells
-         associate (nodes => body%model%mesh%face_nodes(3, :, cell))
-            vector = body%displacement(:, nodes(2)) - body%displacement(:, nodes(1))
+         associate (nodes => body%model%mesh%face_nodes(:, :, cell))
+            share = middle_shares(body%model%mesh%face_tip(cell))
+            vector = matmul(body%displacement(:, nodes(:, 2)), share) &
+                     - matmul(body%displacement(:, nodes(:, 1)), share)
          end associate
          tau = body%model%mesh%face_tangent(:, cell)
          jump(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]
       end do
    end function fracture_jump
 
-   !> Traction on each fracture cell: normal, and along tau [Pa].
+   !> Shares of start, end and node within in the value in the middle of a face; at a tip, that
+   !! node is at the quarter point.
+   pure function middle_shares(tip_end) result(share)
+      integer(ik), intent(in) :: tip_end  !< tip at the start (1) or end (2), else 0
+      real(rk) :: share(3)
+      real(rk) :: x
+
+      x = 0.5_rk
+      if (tip_end == 1) x = sqrt(0.5_rk)
+      if (tip_end == 2) x = 1.0_rk - sqrt(0.5_rk)
+      share = [(1.0_rk - x)*(1.0_rk - 2.0_rk*x), x*(2.0_rk*x - 1.0_rk), 4.0_rk*x*(1.0_rk - x)]
+   end function middle_shares
+
+   !> Traction at the node within each fracture cell: normal, and along tau [Pa].
    pure function fracture_traction(body) result(traction)
       type(body_t), intent(in) :: body
       real(rk) :: traction(2, body%mesh%fracture%n_cells)
@@ -60,6 +76,10 @@ contains
       integer(ik) :: cell
 
       do cell = 1, body%mesh%fracture%n_cells
+         if (body%model%conditions%condition(cell) == face_contact) then
+            traction(:, cell) = body%contact%traction([2, 1], 3, cell)
+            cycle
+         end if
          vector = face_traction(body%model, body%loads, body%displacement, cell)
          tau = body%model%mesh%face_tangent(:, cell)
          traction(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]

@@ -16,8 +16,11 @@ module mechanics_simulation
 
    public :: simulation_t, tip_t
 
-   !> Share of the toughness within which a tip is at its onset.
+   !> Share of the toughness within which the first tip is at its onset.
    real(rk), parameter :: at_onset = 1.0e-9_rk
+   !> Share of the toughness that tips may lack to grow together with the first: about the error of
+   !! the intensities, so that equal tips stay equal.
+   real(rk), parameter :: together = 2.0e-3_rk
 
    !> A free tip.
    type, extends(path_t) :: tip_t
@@ -40,6 +43,7 @@ module mechanics_simulation
       type(body_t) :: body
       type(tip_t), allocatable :: tip(:)
       real(rk) :: factor = 0.0_rk  !< of the load [-]
+      real(rk) :: seismic_moment = 0.0_rk  !< of slip in contact, per metre of thickness [N m]
    contains
       procedure :: begin
       procedure :: respond
@@ -62,7 +66,7 @@ contains
       self%factor = scene%load%from
       self%start = network_of_scene(scene)
       self%network = self%start
-      call self%body%build(scene, self%network, phase_mesh, timers, error)
+      call self%body%build(scene, self%start, self%network, phase_mesh, timers, error)
       if (allocated(error)) return
       associate (fracture => self%body%mesh%fracture)
          allocate (self%tip(fracture%n_tips))
@@ -133,6 +137,7 @@ contains
          call self%respond(low, timers, error)
          if (allocated(error)) return
       end if
+      call accept(self)
       if (.not. self%scene%growth%enabled) then
          call self%respond(target, timers, error)
          return
@@ -165,6 +170,23 @@ contains
       call raise_error(error, "", "the load at which the next tip grows was not found")
    end subroutine rise
 
+   !> What the faces have slipped so far becomes the history of their next slip.
+   subroutine accept(self)
+      type(simulation_t), intent(inout) :: self
+      real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! start, end, mid
+      integer(ik) :: cell
+
+      associate (body => self%body)
+         do cell = 1, body%mesh%fracture%n_cells
+            self%seismic_moment = self%seismic_moment + body%model%elasticity%shear_modulus() &
+                                  *body%model%mesh%face_length(cell) &
+                                  *dot_product(share, abs(body%contact%jump(1, :, cell) &
+                                                          - body%contact%slip_before(:, cell)))
+         end do
+         call body%contact%accept()
+      end associate
+   end subroutine accept
+
    !> By how much the tip nearest to growth exceeds the toughness, relative to it.
    pure real(rk) function largest_excess(self)
       type(simulation_t), intent(in) :: self
@@ -194,7 +216,7 @@ contains
       do i = 1, size(self%tip)
          self%tip(i)%intensity_before = self%tip(i)%intensity
          self%tip(i)%drive_before = self%tip(i)%drive
-         grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - at_onset) &
+         grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - together) &
                     *self%scene%material%toughness .and. .not. self%tip(i)%arrested
       end do
       if (.not. any(grows)) return
@@ -240,7 +262,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      call self%body%build(self%scene, self%network, phase_remesh, timers, error)
+      call self%body%build(self%scene, self%start, self%network, phase_remesh, timers, error)
       if (.not. allocated(error)) call self%respond(self%factor, timers, error)
    end subroutine rebuild
 

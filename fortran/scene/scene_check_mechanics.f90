@@ -139,14 +139,17 @@ contains
                call refuse(error, sheet, record, "law", "is '"//trim(fracture%law)// &
                            "' but must be 'friction' in a scene with &fluid")
                return
-            else if (fracture%law == "friction" .and. .not. scene%has_fluid()) then
-               call refuse(error, sheet, record, "law", "is 'friction' but must be 'open' in a "// &
-                           "mechanics-only scene")
+            else if (fracture%law /= "friction" .and. &
+                     (sheet%records(record)%is_given("friction") .or. &
+                      sheet%records(record)%is_given("dilation_deg"))) then
+               call refuse(error, sheet, record, "friction", "or dilation_deg is given with "// &
+                           "the law '"//trim(fracture%law)//"', which has neither")
                return
-            else if (sheet%records(record)%is_given("friction") .and. &
-                     fracture%law /= "friction") then
-               call refuse(error, sheet, record, "friction", "is given with the law '"// &
-                           trim(fracture%law)//"', which has none")
+            else if (fracture%law /= "slip" .and. &
+                     (sheet%records(record)%is_given("slip") .or. &
+                      sheet%records(record)%is_given("slip_taper"))) then
+               call refuse(error, sheet, record, "slip", "or slip_taper is given with the law '"// &
+                           trim(fracture%law)//"', which has neither")
                return
             end if
          end associate

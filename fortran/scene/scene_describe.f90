@@ -2,7 +2,7 @@
 module scene_describe
    use scene_intervals, only: in_words
    use scene_parameters, only: group_t, groups, in_fluid, in_mechanics, kind_choice, kind_integer
-   use scene_parameters, only: kind_logical, need_disc, need_friction, need_rectangle
+   use scene_parameters, only: kind_logical, need_disc, need_friction, need_rectangle, need_slip
    use scene_parameters, only: kind_name, kind_real, kind_reals, need_always, need_fluid
    use scene_parameters, only: need_fracture, need_growth, need_tips, parameter_t, parameters
    implicit none(type, external)
@@ -135,6 +135,8 @@ contains
          words = "required with growth or intensities"
       case (need_growth)
          words = "required with growth"
+      case (need_slip)
+         words = "required with the law 'slip'"
       case (need_rectangle)
          words = "required for a rectangle"
       case (need_disc)

@@ -188,6 +188,10 @@ contains
          call exchange(record, "step", scene%time%step, reading)
          call exchange(record, "growth_factor", scene%time%growth_factor, reading)
          call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
+      case ("in_situ")
+         call exchange(record, "sxx", scene%in_situ(1), reading)
+         call exchange(record, "syy", scene%in_situ(2), reading)
+         call exchange(record, "sxy", scene%in_situ(3), reading)
       case ("load")
          call exchange(record, "from", scene%load%from, reading)
          call exchange(record, "to", scene%load%to, reading)
@@ -263,9 +267,15 @@ contains
       if (reading .or. fracture%law == "friction") then
          call exchange(record, "friction", fracture%friction, reading)
       end if
-      dilation_deg = to_degrees(fracture%dilation)
-      call exchange(record, "dilation_deg", dilation_deg, reading)
-      fracture%dilation = dilation_deg*radians
+      if (reading .or. fracture%law == "slip") then
+         call exchange(record, "slip", fracture%slip, reading)
+         call exchange(record, "slip_taper", fracture%slip_taper, reading, nothing=0.0_rk)
+      end if
+      if (reading .or. fracture%law == "friction") then
+         dilation_deg = to_degrees(fracture%dilation)
+         call exchange(record, "dilation_deg", dilation_deg, reading)
+         fracture%dilation = dilation_deg*radians
+      end if
       call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)
    end subroutine exchange_fracture
 

@@ -14,7 +14,7 @@ module scene_parameters
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
    public :: need_always, need_fluid, need_fracture, need_friction, need_growth, need_never
-   public :: need_disc, need_rectangle, need_tips
+   public :: need_disc, need_rectangle, need_slip, need_tips
    public :: applies, in_all, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
@@ -34,6 +34,7 @@ module scene_parameters
    integer, parameter :: need_friction = 6  !< in a fracture with the law 'friction'
    integer, parameter :: need_rectangle = 7  !< where the body is a rectangle
    integer, parameter :: need_disc = 8  !< where the body is a disc
+   integer, parameter :: need_slip = 9  !< in a fracture with the law 'slip'
 
    ! Scenes that may give a group or a parameter.
    integer, parameter :: in_all = 0
@@ -102,6 +103,9 @@ module scene_parameters
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
+      group_t("in_situ", implied=.true., scenes=in_mechanics, &
+              meaning="Stress in the body before the load, in equilibrium with tractions on "// &
+              "its sides, which go on acting. The load factor does not scale it."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
               meaning="How the load rises: tractions, point loads and displacements are those "// &
               "of the scene times a factor. With growth the factor at which the next tip grows "// &
@@ -179,9 +183,17 @@ module scene_parameters
       parameter_t("fracture", "x", kind_reals, "m", need_always, &
                   meaning="x of the vertices, from one end to the other"), &
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
-      parameter_t("fracture", "law", kind_choice, default="'friction'", choices="friction|open", &
-                  meaning="What the faces do: touch with friction, or nothing (open: free of "// &
-                  "traction, and free to overlap; in mechanics-only scenes)"), &
+      parameter_t("fracture", "law", kind_choice, default="'friction'", choices="friction|frictionless|slip|open", &
+                  meaning="What the faces do; all but friction only in mechanics-only scenes. "// &
+                  "Slip: contact with a given slip; open: free of traction, free to overlap"), &
+      parameter_t("fracture", "slip", unit="m", need=need_slip, absent="not given", &
+                  scenes=in_mechanics, &
+                  meaning="Given slip, left against right side in the fracture's direction, "// &
+                  "times the load factor"), &
+      parameter_t("fracture", "slip_taper", unit="m", range=positive, scenes=in_mechanics, &
+                  absent="half the length", &
+                  meaning="The given slip rises from a free end as a quarter of an ellipse of "// &
+                  "this length"), &
       parameter_t("fracture", "friction", need=need_friction, range=at_least_zero, &
                   absent="no friction", &
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
@@ -241,6 +253,9 @@ module scene_parameters
       parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
                   meaning="Share of the regular step below which a cut step ends the run, at "// &
                   "most growth_factor"), &
+      parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx"), &
+      parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy"), &
+      parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &
       parameter_t("load", "from", default="0.0", &
                   meaning="Load factor before the first step; with growth at least 0"), &
       parameter_t("load", "to", default="1.0", meaning="Load factor at the end"), &

@@ -5,7 +5,7 @@ module scene_parse
    use base_number, only: integer_text
    use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
                                need_disc, need_friction, need_growth, &
-                               need_rectangle, need_tips, parameters
+                               need_rectangle, need_slip, need_tips, parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
                           refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
@@ -318,9 +318,10 @@ contains
             case (need_rectangle, need_disc)
                body_shape = sheet%records(record)%value("shape")
                needed = (body_shape%text == "disc") .eqv. (parameters(item)%need == need_disc)
-            case (need_friction)
+            case (need_friction, need_slip)
                law = sheet%records(record)%value("law")
-               needed = law%text == "friction"
+               needed = law%text == merge("friction", "slip    ", &
+                                          parameters(item)%need == need_friction)
             case default
                needed = .false.
             end select
@@ -359,6 +360,8 @@ contains
          words = words//", which a disc needs"
       case (need_friction)
          words = words//", which the law 'friction' needs"
+      case (need_slip)
+         words = words//", which the law 'slip' needs"
       case default
          words = words//", which is always needed"
       end select

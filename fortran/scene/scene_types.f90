@@ -43,7 +43,9 @@ module scene_types
    type :: fracture_t
       character(len=name_length) :: name = ""
       real(rk), allocatable :: x(:), y(:)  !< vertices [m]
-      character(len=name_length) :: law = "friction"  !< or "open"
+      character(len=name_length) :: law = "friction"  !< or "frictionless", "slip", "open"
+      real(rk) :: slip = 0.0_rk  !< of the law "slip", at load factor 1 [m]
+      real(rk) :: slip_taper = 0.0_rk  !< over which it rises from a free end; 0: half its length [m]
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
@@ -150,6 +152,7 @@ module scene_types
       type(restraint_t), allocatable :: restraints(:)
       type(point_load_t), allocatable :: point_loads(:)
       type(load_t) :: load
+      real(rk) :: in_situ(3) = 0.0_rk  !< stress before the load: xx, yy, xy; mechanics only [Pa]
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
       type(time_t) :: time

@@ -6,7 +6,8 @@ module tips_network
    implicit none(type, external)
    private
 
-   public :: end_gain, extend, network_of_scene, other_distance, same_network, total_length
+   public :: end_gain, extend, fracture_length, network_of_scene, other_distance, same_network
+   public :: total_length
 
 contains
 
@@ -87,6 +88,7 @@ contains
       if (end == 2) gain = fracture_length(network, fracture) - fracture_length(start, fracture) - gain
    end function end_gain
 
+   !> Length of one fracture [m].
    pure function fracture_length(network, fracture) result(length)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture

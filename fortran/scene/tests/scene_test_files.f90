@@ -109,6 +109,7 @@ contains
       integer :: i
 
       same_loading = .false.
+      if (.not. same(a%in_situ, b%in_situ)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return
       if (size(a%restraints) /= size(b%restraints)) return
@@ -154,8 +155,10 @@ contains
 
       same_fracture = a%name == b%name .and. a%law == b%law
       same_fracture = same_fracture .and. same(a%x, b%x) .and. same(a%y, b%y)
-      same_fracture = same_fracture .and. same([a%friction, a%dilation, a%aperture], &
-                                               [b%friction, b%dilation, b%aperture])
+      same_fracture = same_fracture .and. same([a%friction, a%dilation, a%aperture, a%slip, &
+                                                a%slip_taper], &
+                                               [b%friction, b%dilation, b%aperture, b%slip, &
+                                                b%slip_taper])
    end function same_fracture
 
    pure logical function same_injection(a, b)

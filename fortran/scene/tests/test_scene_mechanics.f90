@@ -31,10 +31,15 @@ program test_scene_mechanics
                ":4: &restraint: is for mechanics-only scenes, but this one has the group &fluid")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 /", "friction, which the law 'friction' "// &
                "needs, is missing")
-   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=0.5 /", &
-               ":3: &fracture: law is 'friction' but must be 'open' in a mechanics-only scene")
+   call accept("friction", 3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=0.5 /")
+   call accept("no friction", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='frictionless' /")
+   call accept("a slip", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='slip' slip=1e-3 /")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' friction=0.5 /", &
-               ":3: &fracture: friction is given with the law 'open', which has none")
+               ":3: &fracture: friction or dilation_deg is given with the law 'open'")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='slip' /", "slip [m], which the law "// &
+               "'slip' needs, is missing")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=1 slip_taper=0.1 /", &
+               "slip or slip_taper is given with the law 'friction', which has neither")
    call refuse(5, "&restraint x=0 y=1 x_displacement=0 /", "", accepted=.true.)
    call refuse(5, "&restraint x=2 y=0 x_displacement=0 /", "the body can rotate")
    call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "no side has an x_displacement")

@@ -78,6 +78,9 @@ contains
       call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                             "&material young=1e9 poisson=0.2 toughness=1e6 /", &
                             "&fracture name='f' x=0.4 0.6 y=2*0.5 law='open' /", &
+                            "&fracture name='g' x=0.4 0.6 y=2*0.8 law='slip' slip=0.1 /", &
+                            "&fracture name='h' x=0.4 0.6 y=2*0.2 friction=0.1 /", &
+                            "&in_situ sxx=-1.1e7 sxy=2 /", &
                             "&restraint x=0 y=0 x_displacement=0 y_displacement=-0.1 /", &
                             "&restraint x=1 y=0 y_displacement=1e-3 /", &
                             "&point_load x=0 y=1 x_force=2 /", "&growth enabled=.true. /", &
@@ -146,6 +149,7 @@ contains
       close (unit)
       do i = 1, size(parameters)
          group = parameters(i)%group
+         if (parameters(i)%scenes == in_mechanics) cycle
          is_foreign = groups(findloc(groups%name == group, .true., dim=1))%scenes == in_mechanics
          call checks%is_true(seen(i) .neqv. is_foreign, trim(group)//" "// &
                              trim(parameters(i)%name)//" is written if it may be")

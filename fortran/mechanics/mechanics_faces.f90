@@ -1,0 +1,159 @@
+!> What holds on the fracture faces of the body: the law of each cell, the slip that is given, and
+!! what is kept of contact when the mesh changes.
+!!
+!! New faces, which growth has made, have the law of their fracture; but next to a given slip, which
+!! belongs to the fracture as it was at the start, they are free of traction.
+module mechanics_faces
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_law_t
+   use fine_contact, only: contact_t, new_contact
+   use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
+   use fine_mesh, only: fine_mesh_t
+   use mesh_types, only: network_t
+   use scene_types, only: fracture_t, scene_t
+   use tips_network, only: fracture_length
+   implicit none(type, external)
+   private
+
+   public :: face_conditions, given_slip, transfer_contact
+
+   real(rk), parameter :: round_off = 1.0e-9_rk  !< of a fracture's length
+
+contains
+
+   !> The condition of every fracture cell.
+   pure function face_conditions(scene, start, fine) result(conditions)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start  !< the scene's network
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t) :: conditions
+      integer(ik) :: cell
+
+      conditions = loaded_everywhere(fine)
+      do cell = 1, fine%fracture%n_cells
+         associate (f => fine%fracture%cell_fracture(cell), law => conditions%law(cell))
+            select case (scene%fractures(f)%law)
+            case ("open")
+               cycle
+            case ("slip")
+               if (.not. was_there(start, f, fine%fracture%cell_s(:, cell))) cycle
+               law%slip_given = .true.
+            case ("friction")
+               law%contact = contact_law_t(friction=scene%fractures(f)%friction, &
+                                           dilation=tan(scene%fractures(f)%dilation))
+            case default
+               law%contact = contact_law_t()
+            end select
+            conditions%condition(cell) = face_contact
+         end associate
+      end do
+   end function face_conditions
+
+   !> A cell belongs to the fracture as it was at the start.
+   pure logical function was_there(start, f, s)
+      type(network_t), intent(in) :: start
+      integer(ik), intent(in) :: f
+      real(rk), intent(in) :: s(2)  !< arc length of the cell's ends [m]
+
+      associate (length => fracture_length(start, f))
+         was_there = minval(s) > -round_off*length .and. maxval(s) < (1.0_rk + round_off)*length
+      end associate
+   end function was_there
+
+   !> The slip that the scene gives to the nodes of fracture cells at load factor 1, in `jump` (tau
+   !! n, start end mid, fracture cell) [m].
+   pure subroutine given_slip(scene, start, network, fine, jump)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(inout) :: jump(:, :, :)
+      logical :: is_free(2)
+      real(rk) :: length
+      integer(ik) :: cell, f, k
+
+      do cell = 1, fine%fracture%n_cells
+         f = fine%fracture%cell_fracture(cell)
+         if (scene%fractures(f)%law /= "slip") cycle
+         length = fracture_length(start, f)
+         if (.not. was_there(start, f, fine%fracture%cell_s(:, cell))) cycle
+         is_free = [.not. network%s_start(f) < 0.0_rk, &
+                    .not. fracture_length(network, f) + network%s_start(f) > &
+                    (1.0_rk + round_off)*length]
+         do k = 1, 3
+            jump(1, k, cell) = tapered_slip(scene%fractures(f), length, is_free, &
+                                            fine%face_s(k, cell))
+         end do
+      end do
+   end subroutine given_slip
+
+   !> The slip at an arc length for load factor 1 [m]. Next to an end from which nothing has grown
+   !! it rises as a quarter of an ellipse; an end that leads into a wing slips like the middle.
+   pure real(rk) function tapered_slip(fracture, length, is_free, s) result(slip)
+      type(fracture_t), intent(in) :: fracture
+      real(rk), intent(in) :: length  !< [m]
+      logical, intent(in) :: is_free(2)  !< start, end
+      real(rk), intent(in) :: s  !< [m]
+      real(rk) :: taper, inwards(2)
+      integer :: i
+
+      slip = fracture%slip
+      taper = fracture%slip_taper
+      if (.not. taper > 0.0_rk) taper = 0.5_rk*length
+      inwards = max(0.0_rk, [s, length - s])/taper
+      do i = 1, 2
+         if (.not. is_free(i) .or. inwards(i) >= 1.0_rk) cycle
+         slip = slip*sqrt(inwards(i)*(2.0_rk - inwards(i)))
+      end do
+   end function tapered_slip
+
+   !> Contact on a new mesh: where a fracture was before, jump and slip of the old nodes,
+   !! interpolated; elsewhere closed and new.
+   pure subroutine transfer_contact(fine_old, old, fine_new, new)
+      type(fine_mesh_t), intent(in) :: fine_old
+      type(contact_t), intent(in) :: old
+      type(fine_mesh_t), intent(in) :: fine_new
+      type(contact_t), intent(out) :: new
+      real(rk) :: weight(3)
+      integer(ik) :: cell, k, source
+
+      new = new_contact(fine_new)
+      do cell = 1, fine_new%fracture%n_cells
+         do k = 1, 3
+            call find(fine_new%fracture%cell_fracture(cell), fine_new%face_s(k, cell), source, &
+                      weight)
+            if (source == 0) cycle
+            new%jump(:, k, cell) = matmul(old%jump(:, :, source), weight)
+            new%slip_before(k, cell) = dot_product(old%slip_before(:, source), weight)
+         end do
+      end do
+
+   contains
+
+      !> The old cell at an arc length of a fracture, and the shares of its nodes.
+      pure subroutine find(f, s, source, weight)
+         integer(ik), intent(in) :: f
+         real(rk), intent(in) :: s  !< [m]
+         integer(ik), intent(out) :: source  !< 0: none
+         real(rk), intent(out) :: weight(3)  !< start, end, mid
+         real(rk) :: x
+         integer(ik) :: i
+
+         source = 0
+         weight = 0.0_rk
+         do i = 1, fine_old%fracture%n_cells
+            if (fine_old%fracture%cell_fracture(i) /= f) cycle
+            x = (s - fine_old%face_s(1, i))/(fine_old%face_s(2, i) - fine_old%face_s(1, i))
+            if (x < -round_off .or. x > 1.0_rk + round_off) cycle
+            source = i
+            x = min(1.0_rk, max(0.0_rk, x))
+            if (fine_old%face_tip(i) == 1) x = sqrt(x)  ! nodes at the quarter point
+            if (fine_old%face_tip(i) == 2) x = 1.0_rk - sqrt(1.0_rk - x)
+            weight = [(1.0_rk - x)*(1.0_rk - 2.0_rk*x), x*(2.0_rk*x - 1.0_rk), &
+                      4.0_rk*x*(1.0_rk - x)]
+            return
+         end do
+      end subroutine find
+
+   end subroutine transfer_contact
+
+end module mechanics_faces
