@@ -8,6 +8,7 @@ program test_twolevel_window
    use coarse_state, only: step_report_t
    use contact_states, only: state_open, state_slip, state_stick
    use fine_faces, only: face_jump, face_loaded, face_slip
+   use mesh_types, only: mesh_t
    use sample_bodies, only: cell_centre
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
@@ -93,49 +94,63 @@ contains
    subroutine test_projection()
       type(scene_t) :: scene
       type(simulation_t) :: simulation
-      integer(ik) :: i, k, n_wrong, side, v, w
-      real(rk) :: across, worst
+      integer :: w
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, 0.0_rk, simulation)
       do w = 1, 2
-         associate (window => simulation%tips%window(w), coarse => simulation%mesh)
-            worst = 0.0_rk
-            do v = 1, window%model%mesh%n_nodes
-               worst = max(worst, maxval(abs(matmul(coarse%xy(:, &
-                                                              coarse%cell_nodes(:, &
-                       window%coarse_cell(v))), window%weight(:, v)) - window%model%mesh%xy(:, v))))
-            end do
-            call checks%is_close(worst, 0.0_rk, 1.0e-14_rk, "weights give the place back")
-            ! Inside: no weight is noticeably negative.
-            call checks%is_true(minval(window%weight) > -0.05_rk, "nodes lie in their cells")
-            n_wrong = 0
-            do i = 1, window%mesh%fracture%n_cells
-               associate (s => 0.5_rk*sum(window%mesh%fracture%cell_s(:, i)), &
-                          ends => coarse%fracture%cell_s(:, window%coarse_face(i)))
-                  if (.not. (ends(1) <= s .and. s <= ends(2))) n_wrong = n_wrong + 1
-                  if (window%coarse_end(i) /= merge(1, 2, &
-                                                    s < 0.5_rk*sum(ends))) n_wrong = n_wrong + 1
-               end associate
-               if (window%model%mesh%face_tip(i) > 0) cycle
-               do side = 1, 2
-                  do k = 1, 3
-                     v = window%model%mesh%face_nodes(k, side, i)
-                     associate (tau => window%model%mesh%face_tangent(:, i), &
-                                centre => cell_centre(coarse, window%coarse_cell(v)), &
-                                xy => window%model%mesh%xy(:, v))
-                        across = tau(1)*(centre(2) - xy(2)) - tau(2)*(centre(1) - xy(1))
-                        ! At the kink the neighbouring cell decides, which may look the other way.
-                        if (norm2(xy - [kinked_x(2), kinked_y(2)]) < 0.02_rk) cycle
-                        if ((across > 0.0_rk) .neqv. side == 2) n_wrong = n_wrong + 1
-                     end associate
-                  end do
-               end do
-            end do
-            call checks%is_true(n_wrong == 0, "sides and cells of fracture faces")
-         end associate
+         call check_places(simulation%tips%window(w), simulation%mesh)
+         call check_faces(simulation%tips%window(w), simulation%mesh)
       end do
    end subroutine test_projection
+
+   subroutine check_places(window, coarse)
+      type(window_t), intent(in) :: window
+      type(mesh_t), intent(in) :: coarse
+      integer(ik) :: v
+      real(rk) :: place(2), worst
+
+      worst = 0.0_rk
+      do v = 1, window%model%mesh%n_nodes
+         associate (nodes => coarse%cell_nodes(:, window%coarse_cell(v)))
+            place = matmul(coarse%xy(:, nodes), window%weight(:, v))
+         end associate
+         worst = max(worst, maxval(abs(place - window%model%mesh%xy(:, v))))
+      end do
+      call checks%is_close(worst, 0.0_rk, 1.0e-14_rk, "weights give the place back")
+      ! Inside: no weight is noticeably negative.
+      call checks%is_true(minval(window%weight) > -0.05_rk, "nodes lie in their cells")
+   end subroutine check_places
+
+   subroutine check_faces(window, coarse)
+      type(window_t), intent(in) :: window
+      type(mesh_t), intent(in) :: coarse
+      integer(ik) :: i, k, side, v
+      real(rk) :: ahead(2), s
+
+      do i = 1, window%mesh%fracture%n_cells
+         s = 0.5_rk*sum(window%mesh%fracture%cell_s(:, i))
+         associate (ends => coarse%fracture%cell_s(:, window%coarse_face(i)))
+            call checks%is_true(ends(1) <= s .and. s <= ends(2), "the coarse cell of a face")
+            call checks%is_true(window%coarse_end(i) == merge(1, 2, s < 0.5_rk*sum(ends)), &
+                                "the nearer end of the coarse cell")
+         end associate
+         if (window%model%mesh%face_tip(i) > 0) cycle
+         do side = 1, 2
+            do k = 1, 3
+               v = window%model%mesh%face_nodes(k, side, i)
+               ! At the kink the neighbouring cell decides, which may look the other way.
+               if (norm2(window%model%mesh%xy(:, v) - [kinked_x(2), kinked_y(2)]) < 0.02_rk) cycle
+               ahead = cell_centre(coarse, window%coarse_cell(v)) - window%model%mesh%xy(:, v)
+               associate (tau => window%model%mesh%face_tangent(:, i))
+                  call checks%is_true((tau(1)*ahead(2) &
+                                       - tau(2)*ahead(1) > 0.0_rk) .eqv. side == 2, &
+                                      "a node lies on its side of the fracture")
+               end associate
+            end do
+         end do
+      end do
+   end subroutine check_faces
 
    !> A sticking fracture in uniform stress, drained and undrained, under each condition on the
    !! faces: the window finds the coarse level's linear displacement and no intensity. Given
@@ -145,13 +160,11 @@ contains
       type(scene_t) :: scene
       type(simulation_t) :: simulation
       type(error_t), allocatable :: error
-      integer :: k, w, undrained
-      real(rk) :: slopes(2)
+      integer :: k, undrained, w
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, 0.0_rk, simulation)
       call checks%is_true(all(simulation%state%contact == state_stick), "all stick")
-      slopes = undrained_strain(scene)
       do undrained = 0, 1
          simulation%undrained = undrained == 1
          do k = 1, size(conditions)
@@ -159,21 +172,33 @@ contains
             call simulation%evaluate_tips(timers, error)
             call checks%no_error(error, "uniform stress")
             do w = 1, 2
-               associate (window => simulation%tips%window(w), &
-                          found => simulation%tips%tip(w)%intensity)
-                  call checks%is_true(window%undrained .eqv. simulation%undrained, "rock as wanted")
-                  call checks%is_close(maxval(abs(window%displacement &
-                                                  - spread(slopes, 2, &
-                                                           window%model%mesh%n_nodes) *window%model%mesh%xy)), 0.0_rk, 1.0e-13_rk, "uniform strain in the window: "//trim(conditions(k)))
-                  ! A millionth of 10 MPa*sqrt(pi*0.3 m) = 1e7 Pa m^1/2.
-                  call checks%is_close(max(abs(found%k1), abs(found%k2), abs(found%k1_dc), &
-                                           abs(found%k2_dc)), 0.0_rk, 10.0_rk, &
-                                       "no intensity: "//trim(conditions(k)))
-               end associate
+               call checks%is_true(simulation%tips%window(w)%undrained .eqv. undrained == 1, &
+                                   "rock as wanted")
+               call check_uniform(simulation%tips%window(w), undrained_strain(scene), &
+                                  simulation%tips%tip(w)%intensity, trim(conditions(k)))
             end do
          end do
       end do
    end subroutine test_uniform_stress
+
+   subroutine check_uniform(window, slopes, found, condition)
+      type(window_t), intent(in) :: window
+      real(rk), intent(in) :: slopes(2)  !< eps_xx, eps_yy
+      type(intensity_t), intent(in) :: found
+      character(len=*), intent(in) :: condition
+      real(rk) :: worst
+      integer(ik) :: v
+
+      worst = 0.0_rk
+      do v = 1, window%model%mesh%n_nodes
+         worst = max(worst, maxval(abs(window%displacement(:, v) &
+                                       - slopes*window%model%mesh%xy(:, v))))
+      end do
+      call checks%is_close(worst, 0.0_rk, 1.0e-13_rk, "uniform strain in the window: "//condition)
+      ! A millionth of 10 MPa*sqrt(pi*0.3 m) = 1e7 Pa m^1/2.
+      call checks%is_close(max(abs(found%k1), abs(found%k2), abs(found%k1_dc), &
+                               abs(found%k2_dc)), 0.0_rk, 10.0_rk, "no intensity: "//condition)
+   end subroutine check_uniform
 
    !> eps_xx, eps_yy of the undrained body under its load: sigma = 2 G eps + (lambda + alpha^2/S)
    !! tr eps.
@@ -198,8 +223,7 @@ contains
       type(scene_t) :: scene
       type(simulation_t) :: simulation
       type(error_t), allocatable :: error
-      real(rk) :: tilt
-      integer(ik) :: i, j, n_wrong
+      integer(ik) :: i
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, degree, simulation)
@@ -211,39 +235,49 @@ contains
       end do
       call simulation%evaluate_tips(timers, error)
       call checks%no_error(error, "various states")
-      associate (window => simulation%tips%window(2))
-         n_wrong = 0
+      associate (window => simulation%tips%window(2), state => simulation%state)
          do i = 1, window%mesh%fracture%n_cells
-            j = window%coarse_face(i)
-            associate (condition => window%model%conditions%condition(i))
-               tilt = window%model%conditions%dilation(i)
-               select case (simulation%state%contact(window%coarse_end(i), j))
-               case (state_stick)
-                  if (condition /= face_jump) n_wrong = n_wrong + 1
-               case (state_slip)
-                  if (condition /= face_slip) n_wrong = n_wrong + 1
-                  if (.not. abs(tilt - sign(tan(degree), &
-                                            simulation%state%jump(2, 1, &
-                                                           j))) <= 1.0e-15_rk) n_wrong = n_wrong + 1
-               case (state_open)
-                  if (condition /= face_loaded) n_wrong = n_wrong + 1
-               end select
-            end associate
-            if (.not. abs(window%loads%fluid_pressure(i) &
-                          - 1.0e6_rk*j) <= 0.0_rk) n_wrong = n_wrong + 1
-            associate (given => simulation%state%traction(:, window%coarse_end(i), j))
-               if (.not. all(abs(window%loads%traction(:, i) - given([2, 1])) <= 0.0_rk)) then
-                 n_wrong = n_wrong + 1
-               end if
+            call check_condition(window, i, state%contact(window%coarse_end(i), &
+                                                          window%coarse_face(i)), &
+                                 state%jump(2, 1, window%coarse_face(i)))
+            call checks%is_close(window%loads%fluid_pressure(i), 1.0e6_rk*window%coarse_face(i), &
+                                 0.0_rk, "fluid pressure on a face")
+            associate (given => state%traction(:, window%coarse_end(i), window%coarse_face(i)))
+               call checks%is_close(window%loads%traction(1, i), given(2), 0.0_rk, &
+                                    "shear on a face")
+               call checks%is_close(window%loads%traction(2, i), given(1), 0.0_rk, &
+                                    "pressure on a face")
             end associate
          end do
-         call checks%is_true(n_wrong == 0, "conditions and loads as the states say")
          call checks%is_true(any(window%model%conditions%condition == face_jump) &
                              .and. any(window%model%conditions%condition == face_slip) &
                              .and. any(window%model%conditions%condition == face_loaded), &
                              "all three occur")
       end associate
    end subroutine test_conditions
+
+   subroutine check_condition(window, face, contact, slip)
+      type(window_t), intent(in) :: window
+      integer(ik), intent(in) :: face
+      integer(ik), intent(in) :: contact  !< state of the coarse level there
+      real(rk), intent(in) :: slip  !< of the coarse level [m]
+
+      associate (condition => window%model%conditions%condition(face))
+         select case (contact)
+         case (state_stick)
+            call checks%is_true(condition == face_jump, "stick: given jump")
+         case (state_slip)
+            call checks%is_true(condition == face_slip, "slip: opening tied to it")
+            call checks%is_close(window%model%conditions%dilation(face), &
+                                 sign(tan(degree), slip), 1.0e-15_rk, &
+                                 "dilation with the sign of the slip")
+         case (state_open)
+            call checks%is_true(condition == face_loaded, "open: loaded")
+         case default
+            call checks%is_true(.false., "an unknown state")
+         end select
+      end associate
+   end subroutine check_condition
 
    !> Faces that slipped and then stick keep the window's jump, also on a new mesh and round the
    !! kink: the displacement stays as it is, and with it the intensities by its correlation. Those
