@@ -93,6 +93,7 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.is_window = given->is_window != 0;
     spec.rosette_sectors = given->rosette_sectors;
     spec.rosette_radii.usual = given->rosette_radius;
+    spec.rosette_radii.leave_no_short_piece = !spec.is_window;
     if (given->end_radius != nullptr)
         for (int f = 0; f < n_fractures; ++f)
             spec.rosette_radii.at_end.push_back(

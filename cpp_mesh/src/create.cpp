@@ -4,6 +4,7 @@
 #include "errors.hpp"
 #include "gmsh_session.hpp"
 #include "mesh.hpp"
+#include "narrow_places.hpp"
 #include "rosette.hpp"
 #include "skeleton.hpp"
 #include "smooth.hpp"
@@ -91,6 +92,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         discs.push_back(
             rosette_disc(graph.points[plan.point].xy, plan.radius, specification.rosette_sectors));
     mesh.size.set_discs(std::move(discs));
+    if (mesh.size.is_scale_free())
+        limit_sizes_in_narrow_places(graph, domain, mesh.size);
 
     std::vector<Vec2>& xy = mesh.plane.xy;
     std::vector<int> node_of_point;

@@ -14,6 +14,9 @@ constexpr double largest_turn = 75.0 * pi / 180.0;
 // Growth of cell sizes per distance outside a ring, whose triangles are smaller than those around.
 constexpr double growth_around = 0.3;
 
+// Least length of a piece of the segment behind the ring, in radii.
+constexpr double least_piece = 0.5;
+
 // Room for the ring beside its own last segment. The crack may be a ring radius long, else the rest
 // of the segment must hold a cell of about the same length.
 double room_on_segment(double wanted, double segment_length, bool kink_is_gentle) {
@@ -78,6 +81,8 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
                 if (fixed != tip && star[fixed].empty())
                     plan.radius = std::min(plan.radius, 0.5 * distance(at(tip), at(fixed)));
             plan.radius = std::min(plan.radius, 0.5 * domain.depth(at(tip)));
+            if (radii.leave_no_short_piece && plan.radius < own_length * (1.0 - 1e-9))
+                plan.radius = std::min(plan.radius, own_length / (1.0 + least_piece));
             plans.push_back(plan);
         }
     }

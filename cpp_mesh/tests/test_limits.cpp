@@ -110,6 +110,30 @@ void sharp_kinks(Checks& checks) {
     }
 }
 
+// Cells become smaller next to short segments and where a kink comes near another fracture.
+void narrow_places(Checks& checks) {
+    Polyline bends = {{0.3, 0.5}};
+    for (int k = 0; k < 8; ++k)
+        bends.push_back({bends.back()[0] + 0.004, bends.back()[1] + (k % 2 == 0 ? 0.002 : 0.0)});
+    bends.push_back({0.6, 0.6});
+    ApiMesh mesh;
+    if (check_meshed(checks, mesh, {bends}, 0, "short segments"))
+        check_quality(checks, mesh, 20.0, "short segments");
+    ApiMesh passing;
+    if (check_meshed(checks, passing,
+                     {{{0.2, 0.4}, {0.8, 0.4}}, {{0.3, 0.6}, {0.5, 0.401}, {0.7, 0.6}}}, -1,
+                     "a kink near a fracture"))
+        check_quality(checks, passing, 20.0, "a kink near a fracture");
+    // The share of small cells stays small: they grow away from the place.
+    ApiMesh free;
+    if (check_meshed(checks, free, {{{0.2, 0.4}, {0.8, 0.4}}, {{0.3, 0.6}, {0.5, 0.5}, {0.7, 0.6}}},
+                     -1, "a kink far from a fracture"))
+        checks.is_true(passing.counts.n_cells < 1.5 * free.counts.n_cells,
+                       "a kink near a fracture: number of cells, " +
+                           std::to_string(passing.counts.n_cells) + " for " +
+                           std::to_string(free.counts.n_cells));
+}
+
 } // namespace
 
 int main() {
@@ -117,5 +141,6 @@ int main() {
     close_tips(checks);
     flat_angles(checks);
     sharp_kinks(checks);
+    narrow_places(checks);
     return checks.finish();
 }

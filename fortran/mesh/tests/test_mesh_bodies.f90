@@ -54,6 +54,14 @@ contains
       end do
    end function total_area
 
+   !> Nodes exactly at a place.
+   integer function nodes_at(mesh, xy)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: xy(2)
+
+      nodes_at = count(.not. hypot(mesh%xy(1, :) - xy(1), mesh%xy(2, :) - xy(2)) > 0.0_rk)
+   end function nodes_at
+
    !> A disc of radius 1 m with the side numbers 1 (lower half) and 2 (upper half).
    function disc_spec(n) result(spec)
       integer, intent(in) :: n
@@ -102,11 +110,8 @@ contains
       call checks%is_close(length(1), half, 1.0e-12_rk, "disc: side 1")
       call checks%is_close(length(2), half, 1.0e-12_rk, "disc: side 2")
       do k = 1, 2
-         associate (p => spec%fixed_points(:, k))
-       call checks%is_true(count(.not. hypot(mesh%xy(1, :) - p(1), mesh%xy(2, :) - p(2)) > 0.0_rk) &
-                                == 1, &
-                                "disc: fixed points are nodes")
-         end associate
+         call checks%is_true(nodes_at(mesh, spec%fixed_points(:, k)) == 1, &
+                             "disc: fixed points are nodes")
       end do
       associate (f => mesh%fracture)
          call checks%is_true(f%n_tips == 2, "disc: tips")

@@ -1,0 +1,17 @@
+// Smaller cells where the fractures leave little room.
+#ifndef CPP_MESH_NARROW_PLACES_HPP
+#define CPP_MESH_NARROW_PLACES_HPP
+
+#include "domain.hpp"
+#include "network.hpp"
+#include "size_field.hpp"
+
+namespace cpp_mesh {
+
+// Cells start from the length of an edge of the graph that is shorter than they should be, and from
+// the distance of a point from an edge or the boundary that is so near, and grow from there.
+void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, SizeField& size);
+
+} // namespace cpp_mesh
+
+#endif
