@@ -66,6 +66,8 @@ contains
       self%active = .true.
       self%id%icntl(1:3) = -1  ! no printing
       self%id%icntl(4) = 0
+      ! No permutation by values: they are not known yet when the order is chosen.
+      self%id%icntl(6) = 0
       self%id%icntl(7) = 0  ! approximate minimum degree
       self%id%icntl(14) = 40
       self%id%icntl(24) = 1

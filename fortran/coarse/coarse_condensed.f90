@@ -11,9 +11,7 @@ module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_mumps, only: mumps_indefinite, mumps_t
-   use coarse_matrix, only: cell_area, matrix_t
-   use coarse_regions, only: face_length
-   use coarse_rock, only: rock_t
+   use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -39,10 +37,9 @@ module coarse_condensed
 contains
 
    !> Factorize for a time step and condense. The pattern is analysed at the first call.
-   subroutine factorize(self, mesh, rock, matrix, dt, error)
+   subroutine factorize(self, mesh, matrix, dt, error)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
@@ -54,7 +51,6 @@ contains
       self%dt = -1.0_rk
       if (.not. self%analysed) then
          self%n = mesh%fracture%n_cells
-         call find_scale(mesh, rock, matrix, self%scale)
          call find_frames(mesh, self%normal, self%length)
          call triplet_pattern(matrix, row, col)
          n = 3*matrix%n_blocks
@@ -63,6 +59,7 @@ contains
          if (allocated(error)) return
          self%analysed = .true.
       end if
+      call find_scale(matrix, dt, self%scale)
       call triplet_values(matrix, self%scale, dt, values)
       call self%solver%factorize(values, error)
       if (allocated(error)) return
@@ -150,25 +147,24 @@ contains
       call turn_to_normals(self, v)
    end subroutine turn_to_axes
 
-   !> Units in which all unknowns are of one size: displacement per sqrt(2G), pressure by the cell's size.
-   subroutine find_scale(mesh, rock, matrix, scale)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
+   !> Units in which the matrix has ones and minus ones on its diagonal.
+   pure subroutine find_scale(matrix, dt, scale)
       type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(out) :: scale(:)
 
-      integer(ik) :: c, i
-      real(rk) :: root
+      real(rk) :: diagonal
+      integer(ik) :: a, entry, i
 
-      root = sqrt(2.0_rk*rock%shear)
       allocate (scale(3*matrix%n_blocks))
-      scale = 1.0_rk/root
-      do c = 1, mesh%n_cells
-         scale(3*c) = root/sqrt(cell_area(mesh, c))
-      end do
-      do i = 1, mesh%fracture%n_cells
-         scale(3*(mesh%n_cells + 2*i - 1):3*(mesh%n_cells + 2*i):3) = root/face_length(mesh, &
-            mesh%fracture%cell_faces(1, i))
+      do i = 1, matrix%n_blocks
+         entry = matrix%row_first(i + 1) - 1
+         do a = 1, 3
+            diagonal = matrix%elastic(a, a, entry)
+            if (a == 3) diagonal = diagonal + dt*matrix%flow(entry)
+            scale(3*(i - 1) + a) = 1.0_rk
+            if (abs(diagonal) > 0.0_rk) scale(3*(i - 1) + a) = 1.0_rk/sqrt(abs(diagonal))
+         end do
       end do
    end subroutine find_scale
 

@@ -132,7 +132,7 @@ contains
       n = mesh%fracture%n_cells
       if (.not. abs(self%condensed%dt - dt) <= 1.0e-12_rk*dt) then
          call timers%start(phase_factorize)
-         call self%condensed%factorize(mesh, self%rock, self%matrix, dt, error)
+         call self%condensed%factorize(mesh, self%matrix, dt, error)
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if

@@ -5,6 +5,7 @@
 !! fracture is far below the rounding of the pressures. All unknowns and equations are scaled to Pa.
 module coarse_newton
    use base_kinds, only: ik, rk
+   use base_lapack, only: dgetrf, dgetrs
    use coarse_condensed, only: condensed_t
    use contact_law, only: contact_equations, contact_law_t, contact_residual
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
@@ -35,26 +36,6 @@ module coarse_newton
       real(rk), allocatable :: residual(:)  !< [Pa]
       real(rk), allocatable :: jacobian(:, :)  !< transposed
    end type equations_t
-
-   interface
-      subroutine dgetrf(m, n, a, lda, ipiv, info)
-         import :: ik, rk
-         implicit none(type, external)
-         integer(ik), intent(in) :: m, n, lda
-         real(rk), intent(inout) :: a(lda, *)
-         integer(ik), intent(out) :: ipiv(*), info
-      end subroutine dgetrf
-
-      subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: ik, rk
-         implicit none(type, external)
-         character, intent(in) :: trans
-         integer(ik), intent(in) :: n, nrhs, lda, ldb, ipiv(*)
-         real(rk), intent(in) :: a(lda, *)
-         real(rk), intent(inout) :: b(ldb, *)
-         integer(ik), intent(out) :: info
-      end subroutine dgetrs
-   end interface
 
 contains
 

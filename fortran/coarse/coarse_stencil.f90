@@ -13,6 +13,7 @@
 !! takes its volume change from the same tractions: these are the stabilizing terms.
 module coarse_stencil
    use base_kinds, only: ik, rk
+   use base_lapack, only: dgesv
    use coarse_regions, only: corner_geometry, face_length, fracture_end_region, regions_t, traction_face
    use coarse_rock, only: rock_t
    use mesh_types, only: mesh_t
@@ -42,16 +43,6 @@ module coarse_stencil
       real(rk), allocatable :: flow_coupling(:, :)  !< H
       real(rk), allocatable :: flow_response(:, :)
    end type local_t
-
-   interface
-      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: ik, rk
-         implicit none(type, external)
-         integer(ik), intent(in) :: n, nrhs, lda, ldb
-         real(rk), intent(inout) :: a(lda, *), b(ldb, *)
-         integer(ik), intent(out) :: ipiv(*), info
-      end subroutine dgesv
-   end interface
 
 contains
 
@@ -91,6 +82,9 @@ contains
       allocate (pivots(max(n, local%n_flow)))
       call dgesv(n, 3*nb + 1, local%matrix, n, pivots, local%response, n, info)
       if (info /= 0) return
+      associate (rotations => local%response(2*local%n_faces + 1:, :))
+         rotations = rotations/(2.0_rk*rock%shear)
+      end associate
       call dgesv(local%n_flow, nb + 1, local%flow, local%n_flow, pivots, local%flow_response, &
          local%n_flow, info)
       if (info /= 0) return
@@ -141,9 +135,11 @@ contains
                   + w*sign_flow(i)*sign_flow(j)*dot_product(lever(:, i), &
                   matmul(rock%resistivity, lever(:, j)))
             end do
-            w = sign_out(j)*area/3.0_rk
+            ! The rotation times 2G is the unknown, of the size of a traction: pivots stay comparable.
+            w = sign_out(j)*area/(6.0_rk*rock%shear)
             call add_symmetric(local%matrix, 2*at(j) - 1, rotation, -w*lever(2, j))
             call add_symmetric(local%matrix, 2*at(j), rotation, w*lever(1, j))
+            w = sign_out(j)*area/3.0_rk
             local%coupling(2*at(j) - 1, 3*c - 2) = 0.5_rk*sign_out(j)*length(j)
             local%coupling(2*at(j), 3*c - 1) = 0.5_rk*sign_out(j)*length(j)
             local%coupling(2*at(j) - 1:2*at(j), 3*c) = w*lever(:, j)*rock%biot &

@@ -68,6 +68,7 @@ contains
       spec = mesh_spec_t(x_min=scene%domain%x_min, x_max=scene%domain%x_max, y_min=scene%domain%y_min, &
          y_max=scene%domain%y_max, size_fracture=scene%discretization%size_fracture, &
          size_boundary=scene%discretization%size_boundary)
+      if (size(self%start%first) == 1) spec%size_fracture = spec%size_boundary
       call timers%start(phase_mesh)
       call build_mesh(spec, self%network, self%mesher, self%mesh, error)
       call timers%stop(phase_mesh)

@@ -117,7 +117,7 @@ contains
       r(1:2, :) = 1.0e5_rk*r(1:2, :)
       r(3, :) = 1.0e-8_rk*r(3, :)
       do k = 1, size(steps)
-         call condensed%factorize(mesh, rock, matrix, steps(k), error)
+         call condensed%factorize(mesh, matrix, steps(k), error)
          call checks%no_error(error, "factorization")
          call checks%is_close(condensed%dt, steps(k), 0.0_rk, "time step on record")
          call checks%is_true(condensed%n == n/6, "number of fracture cells")
@@ -204,7 +204,7 @@ contains
       call prepare(mesh, rock, matrix)
       allocate (unknowns(3, matrix%n_blocks))
       do k = 1, 2
-         call condensed%factorize(mesh, rock, matrix, 100.0_rk**k, error)
+         call condensed%factorize(mesh, matrix, 100.0_rk**k, error)
          call checks%no_error(error, "factorization without fracture")
          rhs = some_load(matrix, 100.0_rk**k)
          call condensed%condense(rhs, empty, error)
