@@ -1,0 +1,256 @@
+!> Whole scenes: wells, growth of both ends alike, fluid that is neither made nor lost by growth.
+program test_twolevel_simulation
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: state_t, step_report_t
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: injection_t, scene_t
+   use tips_network, only: end_gain
+   use twolevel_simulation, only: simulation_t
+   implicit none(type, external)
+
+   real(rk), parameter :: increment = 0.04_rk  !< l_max [m]
+   type(checks_t) :: checks
+   type(timers_t) :: timers
+
+   call test_wells()
+   call test_refused_step()
+   call test_growth("conserved")
+   call test_growth("prefilled")
+   call checks%finish()
+
+contains
+
+   !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
+   subroutine test_wells()
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      integer(ik) :: i, n
+      real(rk) :: middle(2)
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%time%end = 100.0_rk
+      call add_fracture(scene, "one", [0.8_rk, 1.2_rk], [0.9_rk, 1.0_rk], 0.5_rk, 0.0_rk)
+      call add_fracture(scene, "two", [0.5_rk, 1.0_rk, 1.5_rk], [1.5_rk, 1.5_rk, 1.6_rk], &
+                        0.5_rk, 0.0_rk)
+      scene%injections = [injection_t(fracture=1, at_point=.true., x=0.91_rk, y=0.97_rk, &
+                                      rate=1.0e-6_rk, start=10.0_rk, end=30.0_rk), &
+                          injection_t(fracture=2, rate=2.0e-6_rk, start=20.0_rk), &
+                          injection_t(fracture=1, at_point=.true., x=1.2_rk, y=1.0_rk, &
+                                      rate=-3.0e-6_rk, start=0.0_rk, end=25.0_rk)]
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "wells")
+      n = simulation%mesh%fracture%n_cells
+      call checks%is_true(all(shape(simulation%share) == [n, 3_ik]), "shares of three wells")
+      call checks%is_close(maxval(abs(sum(simulation%share, dim=1) - 1.0_rk)), 0.0_rk, &
+                           1.0e-14_rk, "shares add up to one")
+      do i = 1, n
+         associate (fracture => simulation%mesh%fracture, share => simulation%share(i, :))
+            middle = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), dim=2)
+            if (fracture%cell_fracture(i) == 1) then
+               call checks%is_close(share(2), 0.0_rk, 0.0_rk, "well 2 feeds fracture 2 only")
+               ! The foot of (0.91, 0.97) on the fracture lies at x = 0.92.
+               call checks%is_true((share(1) > 0.5_rk) .eqv. abs(middle(1) &
+                                                                 - 0.92_rk) <= 0.025_rk, &
+                                   "well 1 feeds the cell next to it")
+               call checks%is_true((share(3) > 0.5_rk) .eqv. fracture%cell_s(2, i) > 0.4_rk, &
+                                   "well 3 feeds the last cell")
+            else
+               call checks%is_close(share(2), (fracture%cell_s(2, i) &
+                                               - fracture%cell_s(1, i))/(0.5_rk &
+                                                                         + hypot(0.5_rk, &
+                                                                                 0.1_rk)), &
+                                    1.0e-14_rk, "share by length")
+               call checks%is_close(maxval(share([1, 3])), 0.0_rk, 0.0_rk, &
+                                    "the others feed fracture 1")
+            end if
+         end associate
+      end do
+      ! A step has the rate of its middle; a well runs from its start to its end.
+      call checks%is_close(simulation%rate(1_ik, 0.0_rk, 10.0_rk), 0.0_rk, 0.0_rk, &
+                           "before its start")
+      call checks%is_close(simulation%rate(1_ik, 10.0_rk, 1.0_rk), 1.0e-6_rk, 0.0_rk, &
+                           "from its start")
+      call checks%is_close(simulation%rate(1_ik, 29.0_rk, 1.0_rk), 1.0e-6_rk, 0.0_rk, "to its end")
+      call checks%is_close(simulation%rate(1_ik, 30.0_rk, 1.0_rk), 0.0_rk, 0.0_rk, "after its end")
+      call checks%is_close(simulation%rate(2_ik, 1.0e9_rk, 1.0_rk), 2.0e-6_rk, 0.0_rk, &
+                           "without end")
+      call switches_at(simulation, 0.0_rk, 10.0_rk)
+      call switches_at(simulation, 10.0_rk, 20.0_rk)
+      call switches_at(simulation, 20.0_rk, 25.0_rk)
+      call switches_at(simulation, 25.0_rk, 30.0_rk)
+      call switches_at(simulation, 29.9_rk, 30.0_rk)
+      call switches_at(simulation, 30.0_rk, 100.0_rk)
+   end subroutine test_wells
+
+   subroutine switches_at(simulation, now, next)
+      type(simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: now, next
+
+      simulation%state%time = now
+      call checks%is_close(simulation%next_switch(), next, 0.0_rk, "next time of change")
+   end subroutine switches_at
+
+   !> A sealed body squeezed from all sides by rollers, which looks the same from both ends of the
+   !! fracture in its middle; fluid is let into that.
+   function symmetric_scene(new_volume) result(scene)
+      character(len=*), intent(in) :: new_volume
+      type(scene_t) :: scene
+
+      scene = squeezed_body(0.0_rk, 0.0_rk)
+      scene%sides(1:2)%displacement_given(1) = .true.
+      scene%sides(3:4)%displacement_given(2) = .true.
+      ! Undrained total stresses of about -20 MPa and -8 MPa.
+      scene%sides(1)%displacement(1) = 0.34e-3_rk
+      scene%sides(2)%displacement(1) = -0.34e-3_rk
+      scene%sides(3)%displacement(2) = -0.02e-3_rk
+      scene%sides(4)%displacement(2) = 0.02e-3_rk
+      scene%material%toughness = 1.0e6_rk
+      scene%discretization%newton_tolerance = 1.0e-12_rk
+      scene%growth%enabled = .true.
+      scene%growth%new_volume = new_volume
+      scene%time%step = 100.0_rk
+      call add_fracture(scene, "middle", [0.85_rk, 1.15_rk], [0.85_rk, 1.15_rk], 0.3_rk, 0.01_rk)
+      scene%injections = [injection_t(fracture=1, rate=1.0e-7_rk)]
+   end function symmetric_scene
+
+   !> A step that does not converge leaves everything as it is.
+   subroutine test_refused_step()
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: pressure(:)
+      real(rk) :: time
+
+      scene = symmetric_scene("conserved")
+      call simulation%begin(scene, timers, error)
+      call simulation%equilibrate(timers, report, error)
+      call checks%is_true(report%converged, "initial state")
+      pressure = simulation%state%pressure
+      time = simulation%state%time
+      simulation%model%settings%iterations_max = 0
+      call simulation%step(scene%time%step, timers, report, error)
+      call checks%no_error(error, "a refused step is no error")
+      call checks%is_true(.not. report%converged, "refused step")
+      call checks%is_close(simulation%state%time, time, 0.0_rk, "time stands still")
+      call checks%is_close(maxval(abs(simulation%state%pressure - pressure)), 0.0_rk, 0.0_rk, &
+                           "the pressure stays")
+      call checks%is_close(simulation%injected, 0.0_rk, 0.0_rk, "nothing is injected")
+      call checks%is_close(simulation%leaked, 0.0_rk, 0.0_rk, "nothing leaks")
+      call checks%is_true(simulation%undrained, "still the initial state")
+   end subroutine test_refused_step
+
+   !> Both ends grow alike, and all fluid is accounted for: what the wells gave and what new cells
+   !! brought along is what rock and fractures have gained.
+   subroutine test_growth(new_volume)
+      character(len=*), intent(in) :: new_volume
+      type(scene_t) :: scene
+      type(simulation_t) :: simulation
+      type(state_t) :: before, first
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk) :: compressed, gain(2), given, leaked
+      integer :: growths, step
+      logical :: any_grew, grew
+
+      scene = symmetric_scene(new_volume)
+      call simulation%begin(scene, timers, error)
+      call simulation%equilibrate(timers, report, error)
+      call checks%is_true(report%converged, new_volume//": initial state")
+      first = simulation%state
+      given = -volume(simulation)
+      compressed = 0.0_rk
+      leaked = 0.0_rk
+      growths = 0
+      do step = 1, 8
+         before = simulation%state
+         call simulation%step(scene%time%step, timers, report, error)
+         call checks%is_true(report%converged, new_volume//": a step converges")
+         compressed = compressed + compression(simulation, before)
+         leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
+         call simulation%evaluate_tips(timers, error)
+         call checks%no_error(error, new_volume//": tips")
+         call simulation%grow_tips(increment, any_grew, timers, error)
+         call checks%no_error(error, new_volume//": growth")
+         if (.not. any_grew) cycle
+         call simulation%grow_coarse(increment, grew, timers, error)
+         call checks%no_error(error, new_volume//": growth of the coarse level")
+         if (grew) growths = growths + 1
+         call check_shares(simulation)
+         if (growths == 3) exit
+      end do
+      call checks%is_true(growths == 3, new_volume//": three growths")
+      ! A step after the last growth fills its cells.
+      before = simulation%state
+      call simulation%step(scene%time%step, timers, report, error)
+      call checks%is_true(report%converged, new_volume//": the last step")
+      compressed = compressed + compression(simulation, before)
+      leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
+
+      gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
+              end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
+      call checks%is_close(gain(1), gain(2), 0.02_rk*maxval(gain), new_volume &
+                           //": both ends gain alike")
+      call checks%is_close(maxval(abs(simulation%tips%tip(1)%xy + simulation%tips%tip(2)%xy &
+                                      - 2.0_rk)), 0.0_rk, 0.02_rk*maxval(gain), new_volume &
+                           //": and in the same direction")
+      given = given + volume(simulation) + compressed + sum(simulation%state%content) &
+              - sum(first%content)
+      call checks%is_close(simulation%injected, (step + 1)*scene%time%step*1.0e-7_rk, &
+                           1.0e-19_rk, new_volume//": injected")
+      call checks%is_close(given, simulation%injected + simulation%prefilled, &
+                           1.0e-12_rk*simulation%injected, new_volume &
+                           //": all fluid is accounted for")
+      call checks%is_close(simulation%leaked, leaked, 1.0e-12_rk*simulation%injected, &
+                           new_volume//": leak-off")
+      call checks%is_true((simulation%prefilled > 0.0_rk) .eqv. new_volume == "prefilled", &
+                          new_volume//": fluid brought along")
+      if (new_volume == "prefilled") call checks%is_close(simulation%prefilled, &
+                                                          sum(gain)*scene%growth%new_aperture, &
+                                                          1.0e-16_rk, "prefilled volume")
+      print "(2a,2f8.4,a,es9.2)", new_volume, ": gains [m]", gain, ", fluid error/injected", &
+         (given - simulation%injected - simulation%prefilled)/simulation%injected
+   end subroutine test_growth
+
+   !> [m]
+   function lengths(simulation) result(length)
+      type(simulation_t), intent(in) :: simulation
+      real(rk), allocatable :: length(:)
+
+      length = simulation%mesh%fracture%cell_s(2, :) - simulation%mesh%fracture%cell_s(1, :)
+   end function lengths
+
+   !> Volume of the fractures [m2].
+   function volume(simulation)
+      type(simulation_t), intent(in) :: simulation
+      real(rk) :: volume
+
+      volume = sum(simulation%state%aperture*lengths(simulation))
+   end function volume
+
+   !> Fluid that the fractures took up in a step by its compression, a c_p dp [m2].
+   function compression(simulation, before) result(gain)
+      type(simulation_t), intent(in) :: simulation
+      type(state_t), intent(in) :: before
+      real(rk) :: gain
+
+      gain = simulation%scene%fluid%compressibility*sum(lengths(simulation)*simulation%state%aperture *(simulation%state%pressure - before%pressure))
+   end function compression
+
+   !> The well goes on feeding the cells that it fed from the start.
+   subroutine check_shares(simulation)
+      type(simulation_t), intent(in) :: simulation
+
+      call checks%is_close(sum(simulation%share), 1.0_rk, 1.0e-14_rk, "shares after growth")
+      associate (s => simulation%mesh%fracture%cell_s)
+         call checks%is_true(all((simulation%share(:, 1) > 0.0_rk) .eqv. (s(1, :) > -1.0e-12_rk &
+                                                                          .and. s(2, &
+                                 :) < 0.3_rk*sqrt(2.0_rk) + 1.0e-12_rk)), "new cells have no share")
+      end associate
+   end subroutine check_shares
+
+end program test_twolevel_simulation
