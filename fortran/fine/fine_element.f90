@@ -5,6 +5,12 @@
 !! With t = 1 - lambda of the tip's corner and w running along the opposite edge p(w), the
 !! quarter-point element maps to x = x_tip + t**2 (p(w) - x_tip), so that displacements, polynomials
 !! in t, hold the root of the distance from the tip along every ray.
+!!
+!! The eight-node quadrilateral with one side collapsed into the tip and its three nodes there tied
+!! (Barsoum 1976) has the same six nodes and the same map. Summing the shape functions of the tied
+!! nodes leaves those of the triangle and the bubble b = 4 t (1 - t) w (1 - w), which the node in
+!! the middle of the opposite edge gets whole and the ends of that edge lose by halves: the part of
+!! the displacement that goes with t is quadratic in w instead of linear.
 module fine_element
    use base_kinds, only: ik, rk
    use fine_quadrature, only: collapsed_rule, triangle_rule_3
@@ -47,7 +53,7 @@ contains
 
    !> Everything that integrals need at one point of an element.
    pure subroutine evaluate_element(xy, tip_corner, lambda, values, gradients, area_coordinates, &
-                                    determinant)
+                                    determinant, collapsed)
       real(rk), intent(in) :: xy(2, 6)  !< nodes [m]
       integer(ik), intent(in) :: tip_corner  !< corner at a tip, 0 for an ordinary element
       real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle
@@ -55,10 +61,14 @@ contains
       real(rk), intent(out) :: gradients(2, 6)  !< their gradients [1/m]
       real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space: linear in x
       real(rk), intent(out) :: determinant  !< of the Jacobian [m2]
+      logical, intent(in), optional :: collapsed  !< quadrilateral at the tip; default: triangle
       real(rk) :: derivatives(2, 6), jacobian(2, 2), inverse(2, 2), t
 
       values = shape_values(lambda)
       derivatives = shape_derivatives(lambda)
+      if (present(collapsed) .and. tip_corner > 0) then
+         if (collapsed) call add_bubble(tip_corner, lambda, values, derivatives)
+      end if
       jacobian = matmul(derivatives, transpose(xy))
       determinant = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
       inverse(1, :) = [jacobian(2, 2), -jacobian(1, 2)]
@@ -72,16 +82,45 @@ contains
       end if
    end subroutine evaluate_element
 
+   !> What makes a collapsed quadrilateral of a triangle: b = 4 l_0 l_1 l_2/(l_1 + l_2), with the
+   !! barycentric coordinate l_0 of the tip and those of the ends of the opposite edge.
+   pure subroutine add_bubble(tip_corner, lambda, values, derivatives)
+      integer(ik), intent(in) :: tip_corner
+      real(rk), intent(in) :: lambda(3)
+      real(rk), intent(inout) :: values(6), derivatives(2, 6)
+      real(rk) :: bubble, by_lambda(3), slope(2), t, share
+      integer(ik) :: first, second, k
+
+      first = mod(tip_corner, 3) + 1
+      second = mod(first, 3) + 1
+      t = lambda(first) + lambda(second)
+      if (.not. t > 0.0_rk) return
+      bubble = 4.0_rk*lambda(tip_corner)*lambda(first)*lambda(second)/t
+      by_lambda(tip_corner) = 4.0_rk*lambda(first)*lambda(second)/t
+      by_lambda(first) = 4.0_rk*lambda(tip_corner)*(lambda(second)/t)**2
+      by_lambda(second) = 4.0_rk*lambda(tip_corner)*(lambda(first)/t)**2
+      slope = [by_lambda(2) - by_lambda(1), by_lambda(3) - by_lambda(1)]
+      do k = 1, 6
+         share = 0.0_rk
+         if (k == first .or. k == second) share = -0.5_rk
+         if (k == 3 + first) share = 1.0_rk
+         values(k) = values(k) + share*bubble
+         derivatives(:, k) = derivatives(:, k) + share*slope
+      end do
+   end subroutine add_bubble
+
    !> Stiffness matrix of an element, unit thickness; unknowns u_x, u_y of node 1, then of 2, ...
    !!
    !! Three points are exact for an ordinary element. In a quarter-point element strain times t is a
    !! polynomial of degree 1 in t and 2 in w, and the area element is proportional to t**3 dt dw; so
    !! the integrand has degrees 3 and 4, for which 2 by 3 collapsed Gauss points are exact.
-   pure subroutine stiffness_matrix(xy, tip_corner, lame_lambda, shear_modulus, stiffness)
+   pure subroutine stiffness_matrix(xy, tip_corner, lame_lambda, shear_modulus, stiffness, &
+                                    collapsed)
       real(rk), intent(in) :: xy(2, 6)  !< nodes [m]
       integer(ik), intent(in) :: tip_corner  !< corner at a tip, 0 for an ordinary element
       real(rk), intent(in) :: lame_lambda, shear_modulus  !< [Pa]
       real(rk), intent(out) :: stiffness(12, 12)  !< [Pa]
+      logical, intent(in), optional :: collapsed  !< quadrilateral at the tip; default: triangle
       integer(ik), parameter :: n_t = 2, n_w = 3
       real(rk) :: points(3, n_t*n_w), weights(n_t*n_w)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, weight, uniaxial
@@ -99,7 +138,7 @@ contains
       products = 0.0_rk
       do point = 1, n_points
          call evaluate_element(xy, tip_corner, points(:, point), values, gradients, &
-                               area_coordinates, determinant)
+                               area_coordinates, determinant, collapsed)
          weight = weights(point)*determinant
          do j = 1, 2
             do i = 1, 2

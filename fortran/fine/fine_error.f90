@@ -6,7 +6,6 @@
 module fine_error
    use base_kinds, only: ik, rk
    use fine_elasticity, only: elasticity_t
-   use fine_element, only: evaluate_element
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_7
@@ -72,9 +71,8 @@ contains
       squared_error = 0.0_rk
       associate (nodes => model%mesh%cell_nodes(:, cell))
          do point = 1, n_points
-            call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
-                                  points(:, point), values, gradients, area_coordinates, &
-                                  determinant)
+            call model%mesh%evaluate(cell, points(:, point), values, gradients, &
+                                     area_coordinates, determinant)
             stress = model%elasticity%total_stress(matmul(displacement(:, nodes), &
                                                           transpose(gradients)), 0.0_rk)
             difference = recovered_stress(model%mesh, recovery, cell, area_coordinates) &

@@ -2,7 +2,6 @@
 module fine_loads
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use fine_element, only: evaluate_element
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_3
    implicit none(type, external)
@@ -151,8 +150,8 @@ contains
       end do
       force = 0.0_rk
       do point = 1, n_points
-         call evaluate_element(fine%xy(:, fine%cell_nodes(:, cell)), fine%tip_corner(cell), &
-                               points(:, point), values, gradients, area_coordinates, determinant)
+         call fine%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
+                            determinant)
          weight = weights(point)*determinant
          stress = weight*matmul(corner, area_coordinates)
          body = weight*loads%body_force

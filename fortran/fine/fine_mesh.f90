@@ -2,11 +2,17 @@
 module fine_mesh
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use fine_element, only: evaluate_element
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
 
-   public :: build_fine_mesh, fine_mesh_t
+   public :: build_fine_mesh, fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
+
+   ! Elements around the free tips.
+   integer(ik), parameter :: tip_quarter = 1  !< six-node triangles with quarter points
+   integer(ik), parameter :: tip_collapsed = 2  !< collapsed eight-node quadrilaterals (Barsoum)
+   integer(ik), parameter :: tip_plain = 3  !< like all others
 
    !> Six-node triangles. The first n_vertices nodes are those of the mesh they come from, in its
    !! order; node n_vertices + f lies on its face f. Both sides of a fracture have nodes of their
@@ -17,7 +23,8 @@ module fine_mesh
       integer(ik) :: n_cells = 0
       real(rk), allocatable :: xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then the node on face k
-      integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner at a free tip, else 0
+      integer(ik) :: tip_element = tip_quarter  !< tip_quarter, tip_collapsed or tip_plain
+      integer(ik), allocatable :: tip_corner(:)  !< (n_cells) corner with quarter points, else 0
       logical, allocatable :: on_boundary(:)  !< (n_nodes) on the outer boundary
       !> (2, n) end nodes of the faces on the outer boundary, the body on their left
       integer(ik), allocatable :: boundary_faces(:, :)
@@ -25,21 +32,25 @@ module fine_mesh
       integer(ik), allocatable :: boundary_sides(:)  !< (n) on which side of the body they lie
       integer(ik), allocatable :: face_nodes(:, :, :)  !< (start end mid, side + -, fracture cell)
       integer(ik), allocatable :: face_cells(:, :)  !< (2, fracture cells) element on side +, -
-      integer(ik), allocatable :: face_tip(:)  !< (fracture cells) tip at start (1), end (2) or 0
+      integer(ik), allocatable :: face_at_tip(:)  !< (fracture cells) tip at start 1, end 2, none 0
+      integer(ik), allocatable :: face_tip(:)  !< the same, but 0 without quarter points
       real(rk), allocatable :: face_s(:, :)  !< (3, fracture cells) start, end, mid [m]
       real(rk), allocatable :: face_tangent(:, :)  !< (2, fracture cells) unit vector tau
       real(rk), allocatable :: face_length(:)  !< (fracture cells) [m]
       type(fracture_mesh_t) :: fracture  !< as in the mesh this one comes from
+   contains
+      procedure :: evaluate
    end type fine_mesh_t
 
 contains
 
    !> Number the nodes, place them, and check that no element is inverted.
-   subroutine build_fine_mesh(mesh, fine, error)
+   subroutine build_fine_mesh(mesh, fine, error, tip_element)
       type(mesh_t), intent(in) :: mesh
       type(fine_mesh_t), intent(out) :: fine
       type(error_t), allocatable, intent(out) :: error
-      logical, allocatable :: is_tip(:)
+      integer(ik), intent(in), optional :: tip_element  !< default: tip_quarter
+      logical, allocatable :: has_quarter_points(:), is_tip(:)
       integer(ik), allocatable :: outer(:)
       integer(ik) :: face, tip, tip_end, cell, k
       real(rk) :: ends(2, 2), near_start
@@ -52,6 +63,12 @@ contains
       do tip = 1, mesh%fracture%n_tips
          is_tip(mesh%fracture%tip_node(tip)) = .true.
       end do
+      if (present(tip_element)) fine%tip_element = tip_element
+      if (fine%tip_element < tip_quarter .or. fine%tip_element > tip_plain) then
+         call raise_error(error, "build_fine_mesh", "there is no such kind of element at tips")
+         return
+      end if
+      has_quarter_points = is_tip .and. fine%tip_element /= tip_plain
 
       fine%n_vertices = mesh%n_nodes
       fine%n_nodes = mesh%n_nodes + mesh%n_faces
@@ -61,13 +78,13 @@ contains
       do face = 1, mesh%n_faces
          ends = mesh%xy(:, mesh%face_nodes(:, face))
          near_start = 0.5_rk
-         if (all(is_tip(mesh%face_nodes(:, face)))) then
+         if (all(has_quarter_points(mesh%face_nodes(:, face)))) then
             call raise_error(error, "build_fine_mesh", &
                              "one edge joins two tips: the mesh around them is too coarse")
             return
-         else if (is_tip(mesh%face_nodes(1, face))) then
+         else if (has_quarter_points(mesh%face_nodes(1, face))) then
             near_start = 0.75_rk
-         else if (is_tip(mesh%face_nodes(2, face))) then
+         else if (has_quarter_points(mesh%face_nodes(2, face))) then
             near_start = 0.25_rk
          end if
          fine%xy(:, mesh%n_nodes + face) = near_start*ends(:, 1) + (1.0_rk - near_start)*ends(:, 2)
@@ -79,7 +96,7 @@ contains
       fine%cell_nodes(4:6, :) = mesh%n_nodes + mesh%cell_faces(:, :fine%n_cells)
       do cell = 1, fine%n_cells
          do k = 1, 3
-            if (is_tip(mesh%cell_nodes(k, cell))) fine%tip_corner(cell) = k
+            if (has_quarter_points(mesh%cell_nodes(k, cell))) fine%tip_corner(cell) = k
          end do
       end do
       call check_cells(fine, error)
@@ -103,11 +120,14 @@ contains
 
       call number_fracture_faces(mesh, fine, error)
       if (allocated(error)) return
-      allocate (fine%face_tip(fine%fracture%n_cells), source=0_ik)
+      allocate (fine%face_at_tip(fine%fracture%n_cells), source=0_ik)
       do face = 1, fine%fracture%n_cells
          do tip_end = 1, 2
-            if (is_tip(fine%face_nodes(tip_end, 1, face))) fine%face_tip(face) = tip_end
+            if (is_tip(fine%face_nodes(tip_end, 1, face))) fine%face_at_tip(face) = tip_end
          end do
+      end do
+      fine%face_tip = merge(0_ik, fine%face_at_tip, fine%tip_element == tip_plain)
+      do face = 1, fine%fracture%n_cells
          fine%face_s(1:2, face) = mesh%fracture%cell_s(:, face)
          near_start = 0.5_rk
          if (fine%face_tip(face) == 1) near_start = 0.75_rk
@@ -116,6 +136,21 @@ contains
                                 + (1.0_rk - near_start)*fine%face_s(2, face)
       end do
    end subroutine build_fine_mesh
+
+   !> Everything that integrals need at one point of an element (see evaluate_element).
+   pure subroutine evaluate(self, cell, lambda, values, gradients, area_coordinates, determinant)
+      class(fine_mesh_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle
+      real(rk), intent(out) :: values(6)  !< shape functions
+      real(rk), intent(out) :: gradients(2, 6)  !< their gradients [1/m]
+      real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space
+      real(rk), intent(out) :: determinant  !< of the Jacobian [m2]
+
+      call evaluate_element(self%xy(:, self%cell_nodes(:, cell)), self%tip_corner(cell), lambda, &
+                            values, gradients, area_coordinates, determinant, &
+                            self%tip_element == tip_collapsed)
+   end subroutine evaluate
 
    !> Every element must be counter-clockwise and not flat. The quarter-point map of a straight-
    !! edged triangle is one to one if the triangle is, so the corners decide.

@@ -7,11 +7,11 @@ module fine_model
    use fine_contact, only: contact_problem_t, contact_t, new_contact, set_contact_problem, &
                            solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t
-   use fine_element, only: evaluate_element, stiffness_matrix
+   use fine_element, only: stiffness_matrix
    use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
                          face_conditions_t, face_contact, face_loaded, prescribe_jumps
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
-   use fine_mesh, only: build_fine_mesh, fine_mesh_t
+   use fine_mesh, only: build_fine_mesh, fine_mesh_t, tip_collapsed
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -44,17 +44,18 @@ contains
 
    !> Number the nodes, so that conditions and loads can be set up for them, and form the element
    !! matrices.
-   subroutine set_mesh(self, mesh, elasticity, error)
+   subroutine set_mesh(self, mesh, elasticity, error, tip_element)
       class(fine_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(elasticity_t), intent(in) :: elasticity
       type(error_t), allocatable, intent(out) :: error
+      integer(ik), intent(in), optional :: tip_element  !< of fine_mesh; default: tip_quarter
       integer(ik) :: cell
       real(rk) :: lame_lambda, shear_modulus
 
       self%ready = .false.
       call check_elasticity(elasticity, error)
-      if (.not. allocated(error)) call build_fine_mesh(mesh, self%mesh, error)
+      if (.not. allocated(error)) call build_fine_mesh(mesh, self%mesh, error, tip_element)
       if (allocated(error)) return
       self%elasticity = elasticity
       if (allocated(self%stiffness)) deallocate (self%stiffness)
@@ -64,7 +65,8 @@ contains
       do cell = 1, self%mesh%n_cells
          call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), &
                                self%mesh%tip_corner(cell), &
-                               lame_lambda, shear_modulus, self%stiffness(:, :, cell))
+                               lame_lambda, shear_modulus, self%stiffness(:, :, cell), &
+                               self%mesh%tip_element == tip_collapsed)
       end do
    end subroutine set_mesh
 
@@ -342,8 +344,7 @@ contains
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
 
       associate (nodes => self%mesh%cell_nodes(:, cell))
-         call evaluate_element(self%mesh%xy(:, nodes), self%mesh%tip_corner(cell), lambda, &
-                               values, gradients, area_coordinates, determinant)
+         call self%mesh%evaluate(cell, lambda, values, gradients, area_coordinates, determinant)
          gradient = matmul(displacement(:, nodes), transpose(gradients))
       end associate
    end function displacement_gradient

@@ -2,7 +2,6 @@
 module fine_patches
    use base_kinds, only: ik, rk
    use base_lapack, only: dpotrf, dpotrs
-   use fine_element, only: shape_values
    use fine_model, only: fine_model_t
    use fine_quadrature, only: triangle_rule_3
    implicit none(type, external)
@@ -35,6 +34,7 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(samples_t), intent(out) :: samples
       real(rk) :: points(3, n_samples), weights(n_samples), stress(2, 2), edge(2, 2)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       integer(ik) :: cell, k
 
       call triangle_rule_3(points, weights)
@@ -48,9 +48,11 @@ contains
                samples%area(cell) = 0.5_rk*(edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))
                samples%centre(:, cell) = sum(fine%xy(:, nodes(1:3)), dim=2)/3.0_rk
                do k = 1, n_samples
-                  samples%xy(:, k, cell) = matmul(fine%xy(:, nodes), shape_values(points(:, k)))
-                  stress = model%elasticity%total_stress( &
-                           model%displacement_gradient(displacement, cell, points(:, k)), 0.0_rk)
+                  call fine%evaluate(cell, points(:, k), values, gradients, area_coordinates, &
+                                     determinant)
+                  samples%xy(:, k, cell) = matmul(fine%xy(:, nodes), values)
+                  stress = model%elasticity%total_stress(matmul(displacement(:, nodes), &
+                                                                transpose(gradients)), 0.0_rk)
                   samples%stress(:, k, cell) = [stress(1, 1), stress(2, 2), stress(1, 2)]
                end do
             end associate

@@ -10,7 +10,6 @@
 !! For straight extension J = G = (K_I**2 + K_II**2)/E'.
 module tips_energy
    use base_kinds, only: ik, rk
-   use fine_element, only: evaluate_element
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -74,8 +73,8 @@ contains
       body = matmul(frame%axes, loads%body_force)
       cell_share = 0.0_rk
       do point = 1, n_points
-         call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
-                               points(:, point), values, gradients, area_coordinates, determinant)
+         call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
+                                  determinant)
          ! All in the tip's axes.
          gradients = matmul(frame%axes, gradients)
          gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))

@@ -16,7 +16,6 @@
 !! off s, s0 and t, which would otherwise lose digits where it is large.
 module tips_interaction
    use base_kinds, only: ik, rk
-   use fine_element, only: evaluate_element
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -109,8 +108,8 @@ contains
       body = matmul(frame%axes, loads%body_force)
 
       do point = 1, n_points
-         call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
-                               points(:, point), values, gradients, area_coordinates, determinant)
+         call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
+                                  determinant)
          weight = weights(point)*determinant
          ! All in the tip's axes.
          place = matmul(frame%axes, matmul(model%mesh%xy(:, nodes), values) - frame%origin)
@@ -172,7 +171,7 @@ contains
       real(rk), intent(in) :: q(:)  !< (n_nodes)
       real(rk), intent(inout) :: integral(2)
       integer(ik), parameter :: n_points = 5
-      real(rk) :: s(n_points), weights(n_points), traction(2), ends(2, 2), r, q_here, weight
+      real(rk) :: s(n_points), weights(n_points), traction(2), ends(2, 2), r, x, q_here, weight
       real(rk) :: kolosov, shear_modulus, difference(2)
       type(auxiliary_field_t) :: above, below
       integer(ik) :: point, mode, source
@@ -184,21 +183,21 @@ contains
       kolosov = model%elasticity%kolosov()
       shear_modulus = model%elasticity%shear_modulus()
       associate (nodes => model%mesh%face_nodes(:, 1, cell), &
-                 length => model%mesh%face_length(cell), tip_end => model%mesh%face_tip(cell))
+                 length => model%mesh%face_length(cell), tip_end => model%mesh%face_at_tip(cell))
          ends = model%mesh%xy(:, nodes(1:2))
          do point = 1, n_points
-            associate (x => s(point))
-               q_here = (1.0_rk - x)*(1.0_rk - 2.0_rk*x)*q(nodes(1)) &
-                        + x*(2.0_rk*x - 1.0_rk)*q(nodes(2)) + 4.0_rk*x*(1.0_rk - x)*q(nodes(3))
-               weight = length*weights(point)
-               if (tip_end == 0) then
-                  r = norm2((1.0_rk - x)*ends(:, 1) + x*ends(:, 2) - frame%origin)
-               else
-                  ! r = length*t**2 takes the root out of the integrand.
-                  r = length*merge(x, 1.0_rk - x, tip_end == 1)**2
-                  weight = 2.0_rk*weight*sqrt(r/length)
-               end if
-            end associate
+            x = s(point)
+            weight = length*weights(point)
+            r = norm2((1.0_rk - x)*ends(:, 1) + x*ends(:, 2) - frame%origin)
+            if (tip_end > 0) then
+               ! r = length*t**2 takes the root out of the integrand; x follows t or t**2.
+               r = length*s(point)**2
+               weight = 2.0_rk*weight*s(point)
+               if (model%mesh%face_tip(cell) == 0) x = x**2
+               if (tip_end == 2) x = 1.0_rk - x
+            end if
+            q_here = (1.0_rk - x)*(1.0_rk - 2.0_rk*x)*q(nodes(1)) &
+                     + x*(2.0_rk*x - 1.0_rk)*q(nodes(2)) + 4.0_rk*x*(1.0_rk - x)*q(nodes(3))
             do mode = 1, 2
                above = auxiliary_field(mode, cmplx(0.0_rk, sqrt(r), rk), kolosov, shear_modulus)
                below = auxiliary_field(mode, cmplx(0.0_rk, -sqrt(r), rk), kolosov, shear_modulus)

@@ -9,11 +9,19 @@ program test_fine_element
    real(rk), parameter :: corners(2, 3) = reshape([0.3_rk, -0.2_rk, 1.4_rk, 0.1_rk, 0.5_rk, &
                                                    0.9_rk], [2, 3])
    integer(ik) :: corner
+   logical :: collapsed
 
    do corner = 0, 3
+      collapsed = .false.
       call check_shapes(corner)
       call check_stiffness(corner)
-      if (corner > 0) call check_root_field(corner)
+      if (corner == 0) cycle
+      call check_root_field(corner)
+      collapsed = .true.
+      call check_shapes(corner)
+      call check_stiffness(corner)
+      call check_root_field(corner)
+      call check_serendipity(corner)
    end do
    call checks%finish()
 
@@ -58,7 +66,7 @@ contains
       end do
       xy = element_nodes(tip_corner)
       call evaluate_element(xy, tip_corner, [0.23_rk, 0.41_rk, 0.36_rk], values, gradients, &
-                            area_coordinates, determinant)
+                            area_coordinates, determinant, collapsed)
       identity = matmul(xy, transpose(gradients))
       call checks%is_close(identity(1, 1), 1.0_rk, 1.0e-14_rk, "dx/dx")
       call checks%is_close(identity(1, 2), 0.0_rk, 1.0e-14_rk, "dx/dy")
@@ -82,7 +90,7 @@ contains
       integer(ik) :: point, k
 
       xy = element_nodes(tip_corner)
-      call stiffness_matrix(xy, tip_corner, lambda, mu, stiffness)
+      call stiffness_matrix(xy, tip_corner, lambda, mu, stiffness, collapsed)
       elastic = 0.0_rk
       elastic(1:2, 1:2) = lambda
       elastic(1, 1) = lambda + 2.0_rk*mu
@@ -92,7 +100,7 @@ contains
       reference = 0.0_rk
       do point = 1, n*n
          call evaluate_element(xy, tip_corner, points(:, point), values, gradients, &
-                               area_coordinates, determinant)
+                               area_coordinates, determinant, collapsed)
          strain = 0.0_rk
          do k = 1, 6
             strain(1, 2*k - 1) = gradients(1, k)
@@ -135,7 +143,7 @@ contains
          lambda(tip_corner) = 1.0_rk - t
          lambda(next) = t
          call evaluate_element(xy, tip_corner, lambda, values, gradients, area_coordinates, &
-                               determinant)
+                               determinant, collapsed)
          place = matmul(xy, values) - corners(:, tip_corner)
          distance = norm2(place)
          call checks%is_close(dot_product(values, nodal), field(distance), 1.0e-14_rk, &
@@ -145,6 +153,43 @@ contains
                               "its slope along the edge")
       end do
    end subroutine check_root_field
+
+   !> The collapsed quadrilateral's shape functions are those of the eight-node serendipity element,
+   !! the three at the tip added up (xi = 2 t - 1, eta = 2 w - 1).
+   subroutine check_serendipity(tip_corner)
+      integer(ik), intent(in) :: tip_corner
+      real(rk), parameter :: t = 0.35_rk, w = 0.8_rk
+      real(rk), parameter :: xi = 2.0_rk*t - 1.0_rk, eta = 2.0_rk*w - 1.0_rk
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, lambda(3)
+      real(rk) :: expected(6)
+      integer(ik) :: first, second
+
+      first = mod(tip_corner, 3) + 1
+      second = mod(first, 3) + 1
+      lambda(tip_corner) = 1.0_rk - t
+      lambda(first) = t*(1.0_rk - w)
+      lambda(second) = t*w
+      call evaluate_element(element_nodes(tip_corner), tip_corner, lambda, values, gradients, &
+                            area_coordinates, determinant, .true.)
+      expected(tip_corner) = corner_function(xi, eta, -1.0_rk, -1.0_rk) &
+                             + corner_function(xi, eta, -1.0_rk, 1.0_rk) &
+                             + 0.5_rk*(1.0_rk - xi)*(1.0_rk - eta**2)
+      expected(first) = corner_function(xi, eta, 1.0_rk, -1.0_rk)
+      expected(second) = corner_function(xi, eta, 1.0_rk, 1.0_rk)
+      expected(3 + tip_corner) = 0.5_rk*(1.0_rk - xi**2)*(1.0_rk - eta)
+      expected(3 + first) = 0.5_rk*(1.0_rk + xi)*(1.0_rk - eta**2)
+      expected(3 + second) = 0.5_rk*(1.0_rk - xi**2)*(1.0_rk + eta)
+      call checks%is_close(maxval(abs(values - expected)), 0.0_rk, 1.0e-15_rk, &
+                           "eight-node quadrilateral")
+   end subroutine check_serendipity
+
+   !> Serendipity function of the corner at (xi_node, eta_node).
+   pure real(rk) function corner_function(xi, eta, xi_node, eta_node)
+      real(rk), intent(in) :: xi, eta, xi_node, eta_node
+
+      corner_function = 0.25_rk*(1.0_rk + xi*xi_node)*(1.0_rk + eta*eta_node) &
+                        *(xi*xi_node + eta*eta_node - 1.0_rk)
+   end function corner_function
 
    pure real(rk) function field(r)
       real(rk), intent(in) :: r
