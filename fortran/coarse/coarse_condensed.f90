@@ -1,8 +1,9 @@
 !> The matrix equations condensed onto the fractures.
 !!
-!! Between two changes of the mesh or of the time step the rock is linear with constant coefficients: it is
-!! factorized once and condensed onto the jumps and the pressures of the fracture cells; what is left of it is
-!! a dense relation between jumps, pressures, tractions and fluxes on the fractures:
+!! Between two changes of the mesh or of the time step the rock is linear with constant
+!! coefficients: it is factorized once and condensed onto the jumps and the pressures of the
+!! fracture cells; what is left of it is a dense relation between jumps, pressures, tractions and
+!! fluxes on the fractures:
 !!   S q - g = ( -l/2 (f_n - p_F), -l/2 f_tau at the start, dt l lambda+,
 !!               -l/2 (f_n - p_F), -l/2 f_tau at the end,   dt l lambda- )
 !!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
@@ -70,7 +71,8 @@ contains
    !> Load g on the fractures.
    subroutine condense(self, rhs, g, error)
       class(condensed_t), intent(inout) :: self
-      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks), fracture cells without their tractions and fluxes
+      !> (3, n_blocks), fracture cells without their tractions and fluxes
+      real(rk), intent(in) :: rhs(:, :)
       real(rk), intent(out) :: g(:)  !< (6 n)
       type(error_t), allocatable, intent(out) :: error
 

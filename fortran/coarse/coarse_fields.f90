@@ -2,7 +2,8 @@
 module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: cell_area, matrix_t
-   use coarse_regions, only: corner_geometry, face_length, regions_t, traction_face, traction_position
+   use coarse_regions, only: corner_geometry, face_length, regions_t, traction_face, &
+                             traction_position
    use coarse_rock, only: rock_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -25,10 +26,10 @@ contains
       do r = 1, regions%n_regions
          at = traction_position(regions, r)
          n = 2*(regions%face_first(r + 1) - regions%face_first(r)) + regions%node_first(r + 1) &
-            - regions%node_first(r)
+             - regions%node_first(r)
          d = [unknowns(:, regions%blocks(regions%block_first(r):regions%block_first(r + 1) - 1))]
          call respond(n, size(d, kind=ik), regions%traction(regions%traction_first(r):), d, &
-            tractions(at:at + n - 1))
+                      tractions(at:at + n - 1))
       end do
    end subroutine corner_tractions
 
@@ -50,7 +51,7 @@ contains
          do k = 1, 3
             call corner_stress(mesh, regions, tractions, c, k, stress, rotation)
             content(c) = content(c) + rock%biot*area/3.0_rk*(stress(1, 1) + stress(2, 2)) &
-               /(2.0_rk*(rock%lame + rock%shear))
+                         /(2.0_rk*(rock%lame + rock%shear))
          end do
       end do
    end subroutine cell_contents
@@ -69,9 +70,10 @@ contains
       do r = 1, regions%n_regions
          n = regions%flow_first(r + 1) - regions%flow_first(r)
          pressures = unknowns(3, regions%blocks(regions%block_first(r): &
-            regions%block_first(r + 1) - 1))
+                                                regions%block_first(r + 1) - 1))
          allocate (flux(n))
-         call respond(n, size(pressures, kind=ik), regions%flux(regions%flux_first(r):), pressures, flux)
+         call respond(n, size(pressures, kind=ik), regions%flux(regions%flux_first(r):), &
+                      pressures, flux)
          do j = 1, n
             f = regions%flow_faces(regions%flow_first(r) + j - 1)
             associate (cells => mesh%face_cells(:, f), flow => 0.5_rk*face_length(mesh, f)*flux(j))
@@ -98,7 +100,7 @@ contains
          do k = 1, 3
             call corner_stress(mesh, regions, tractions, c, k, stress, rotation)
             stresses(:, c) = stresses(:, c) + [stress(1, 1), stress(2, 2), &
-               0.5_rk*(stress(1, 2) + stress(2, 1))]/3.0_rk
+                                               0.5_rk*(stress(1, 2) + stress(2, 1))]/3.0_rk
          end do
       end do
    end subroutine cell_stresses
@@ -122,15 +124,16 @@ contains
          centre = sum(mesh%xy(:, mesh%cell_nodes(:, c)), dim=2)/3.0_rk
          do k = 1, 3
             call corner_strain(mesh, rock, regions, unknowns, tractions, c, k, gradient(:, :, k), &
-               rotation(k))
+                               rotation(k))
             free(k) = rotation_is_free(regions, regions%region_of_node(mesh%cell_nodes(k, c)))
          end do
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
             offset = mesh%xy(:, v) - centre
-            ! A loaded corner of the body knows no rotation of its own: take the cell's other corners'.
+            ! A loaded corner of the body knows no rotation of its own: take the cell's other
+            ! corners'.
             if (free(k) .and. .not. all(free)) rotation(k) = sum(rotation, mask=.not. free) &
-               /real(count(.not. free), rk)
+                                                             /real(count(.not. free), rk)
             gradient(2, 1, k) = gradient(2, 1, k) + rotation(k)
             gradient(1, 2, k) = gradient(1, 2, k) - rotation(k)
             call corner_pressure_gradient(mesh, rock, regions, unknowns, c, k, pressure_gradient)
@@ -145,7 +148,8 @@ contains
    end subroutine nodal_values
 
    !> Strain (without rotation) at a corner: eps = A (sigma + alpha p I), and the vertex' rotation.
-   pure subroutine corner_strain(mesh, rock, regions, unknowns, tractions, cell, k, strain, rotation)
+   pure subroutine corner_strain(mesh, rock, regions, unknowns, tractions, cell, k, strain, &
+                                 rotation)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
@@ -185,14 +189,14 @@ contains
       do j = 1, 2
          call traction_face(mesh, faces(j), sign_out(j))
          at = traction_position(regions, r) + 2*(findloc(regions%faces(regions%face_first(r): &
-            regions%face_first(r + 1) - 1), faces(j), dim=1) - 1)
+                                               regions%face_first(r + 1) - 1), faces(j), dim=1) - 1)
          do i = 1, 2
             stress(:, i) = stress(:, i) + sign_out(j)*lever(i, j)*tractions(at:at + 1)
          end do
       end do
       rotation = tractions(traction_position(regions, r) + 2*(regions%face_first(r + 1) &
-         - regions%face_first(r)) - 1 + findloc(regions%nodes(regions%node_first(r): &
-         regions%node_first(r + 1) - 1), mesh%cell_nodes(k, cell), dim=1))
+                       - regions%face_first(r)) - 1 + findloc(regions%nodes(regions%node_first(r): &
+                                   regions%node_first(r + 1) - 1), mesh%cell_nodes(k, cell), dim=1))
    end subroutine corner_stress
 
    pure subroutine corner_pressure_gradient(mesh, rock, regions, unknowns, cell, k, gradient)
@@ -213,11 +217,11 @@ contains
       velocity = 0.0_rk
       do j = 1, 2
          row = findloc(regions%flow_faces(regions%flow_first(r):regions%flow_first(r + 1) - 1), &
-            faces(j), dim=1)
+                       faces(j), dim=1)
          flux = regions%flux(regions%flux_first(r) + nb*n + row - 1)
          do b = 1, nb
             flux = flux + regions%flux(regions%flux_first(r) + (b - 1)*n + row - 1) &
-               *unknowns(3, regions%blocks(regions%block_first(r) + b - 1))
+                   *unknowns(3, regions%blocks(regions%block_first(r) + b - 1))
          end do
          velocity = velocity + sign_out(j)*lever(:, j)*flux
       end do
@@ -236,7 +240,7 @@ contains
       if (is_free) then
          n = 5*3*(regions%block_first(r + 1) - regions%block_first(r))
          associate (response => regions%traction(regions%traction_first(r): &
-            regions%traction_first(r) + n - 1))
+                                                 regions%traction_first(r) + n - 1))
             is_free = .not. any(abs(response) > 0.0_rk)
          end associate
       end if

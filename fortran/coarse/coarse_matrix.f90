@@ -1,10 +1,10 @@
 !> The matrix of the coarse level: cells and fracture cells in blocks of three (see coarse_regions).
 !!
-!! Rows: balance of forces on a cell [N/m]; its fluid content, negated [m2]; force through an end of a fracture
-!! cell, negated [N/m]; fluid that leaves the rock through a fracture face within the step [m2].
-!! The matrix is symmetric and quasi-definite: positive for displacements, negative for pressures.
-!! It is kept as elastic - and - flow parts, so that a new time step needs no new discretization:
-!! matrix = elastic + dt*flow.
+!! Rows: balance of forces on a cell [N/m]; its fluid content, negated [m2]; force through an end of
+!! a fracture cell, negated [N/m]; fluid that leaves the rock through a fracture face within the
+!! step [m2]. The matrix is symmetric and quasi-definite: positive for displacements, negative for
+!! pressures. It is kept as elastic - and - flow parts, so that a new time step needs no new
+!! discretization: matrix = elastic + dt*flow.
 module coarse_matrix
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -26,9 +26,11 @@ module coarse_matrix
       integer(ik), allocatable :: col(:)
       real(rk), allocatable :: elastic(:, :, :)  !< (3, 3, n_entries)
       real(rk), allocatable :: flow(:)  !< (n_entries) of the pressures, per second
-      real(rk), allocatable :: elastic_known(:, :)  !< (3, n_blocks) right-hand side of the boundary data
+      !> (3, n_blocks) right-hand side of the boundary data
+      real(rk), allocatable :: elastic_known(:, :)
       real(rk), allocatable :: flow_known(:)  !< (n_blocks) the same for the fluid, per second
-      real(rk), allocatable :: storage(:)  !< (n_cells) content per pressure at fixed traction [m2/Pa]
+      !> (n_cells) content per pressure at fixed traction [m2/Pa]
+      real(rk), allocatable :: storage(:)
    end type matrix_t
 
 contains
@@ -52,15 +54,17 @@ contains
          call solve_region(mesh, rock, sides, r, regions, local, info)
          if (info /= 0) then
             associate (xy => mesh%xy(:, regions%nodes(regions%node_first(r))))
-               write (place, '(a,es12.5,a,es12.5,a)') "(", xy(1), ",", xy(2), ")"
+               write (place, "(a,es12.5,a,es12.5,a)") "(", xy(1), ",", xy(2), ")"
             end associate
-            call raise_error(error, "coarse_matrix", "degenerate cells around the mesh node at "//place)
+            call raise_error(error, "coarse_matrix", "degenerate cells around the mesh node at "// &
+                             place)
             return
          end if
          call add_region(regions, r, local, matrix)
       end do
       do c = 1, mesh%n_cells
-         matrix%storage(c) = cell_area(mesh, c)*(rock%storage + rock%biot**2/(rock%lame + rock%shear))
+         matrix%storage(c) = cell_area(mesh, c)*(rock%storage &
+                                                 + rock%biot**2/(rock%lame + rock%shear))
          associate (diagonal => matrix%row_first(c + 1) - 1)
             matrix%elastic(3, 3, diagonal) = matrix%elastic(3, 3, diagonal) - matrix%storage(c)
          end associate
@@ -123,7 +127,7 @@ contains
       integer(ik) :: a, b, entry
 
       associate (blocks => regions%blocks(regions%block_first(region): &
-         regions%block_first(region + 1) - 1))
+                                          regions%block_first(region + 1) - 1))
          do a = 1, size(blocks)
             associate (row => blocks(a))
                do b = 1, size(blocks)
@@ -132,11 +136,11 @@ contains
                      if (matrix%col(entry) == blocks(b)) exit
                   end do
                   matrix%elastic(:, :, entry) = matrix%elastic(:, :, entry) &
-                     + local%elastic(3*a - 2:3*a, 3*b - 2:3*b)
+                                                + local%elastic(3*a - 2:3*a, 3*b - 2:3*b)
                   matrix%flow(entry) = matrix%flow(entry) + local%flow(a, b)
                end do
                matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
-                  + local%elastic_known(3*a - 2:3*a)
+                                              + local%elastic_known(3*a - 2:3*a)
                matrix%flow_known(row) = matrix%flow_known(row) + local%flow_known(a)
             end associate
          end do
@@ -148,8 +152,9 @@ contains
       integer(ik), intent(in) :: cell
       real(rk) :: area  !< [m2]
 
-      associate (a => mesh%xy(:, mesh%cell_nodes(1, cell)), b => mesh%xy(:, mesh%cell_nodes(2, cell)), &
-         c => mesh%xy(:, mesh%cell_nodes(3, cell)))
+      associate (a => mesh%xy(:, mesh%cell_nodes(1, cell)), &
+                 b => mesh%xy(:, mesh%cell_nodes(2, cell)), &
+                 c => mesh%xy(:, mesh%cell_nodes(3, cell)))
          area = 0.5_rk*((b(1) - a(1))*(c(2) - a(2)) - (b(2) - a(2))*(c(1) - a(1)))
       end associate
    end function cell_area

@@ -1,12 +1,14 @@
-!> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step at a time.
+!> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step
+!! at a time.
 !!
-!! For one mesh the discretization is made once; for one time step on it the matrix is factorized once. A time
-!! step then costs one substitution in the factors and a few small dense Newton steps on the fractures.
+!! For one mesh the discretization is made once; for one time step on it the matrix is factorized
+!! once. A time step then costs one substitution in the factors and a few small dense Newton steps
+!! on the fractures.
 module coarse_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
-      phase_solve, timers_t
+                          phase_solve, timers_t
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
    use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
@@ -33,7 +35,8 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       logical :: drained = .false.  !< fluid may cross the outer boundary
-      real(rk), allocatable :: source(:, :)  !< (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
+      !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
+      real(rk), allocatable :: source(:, :)
    contains
       procedure :: set_mesh
       procedure :: equilibrate
@@ -55,8 +58,8 @@ contains
       self%sides = scene%sides
       self%drained = any(scene%sides%pressure_given)
       self%settings = newton_settings_t(tolerance=scene%discretization%newton_tolerance, &
-         iterations_max=scene%discretization%newton_max, viscosity=scene%fluid%viscosity, &
-         compressibility=scene%fluid%compressibility, young=scene%material%young)
+                  iterations_max=scene%discretization%newton_max, viscosity=scene%fluid%viscosity, &
+                            compressibility=scene%fluid%compressibility, young=scene%material%young)
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
       call self%condensed%solver%release()
@@ -81,8 +84,9 @@ contains
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c)/(model%rock%storage &
-            + model%rock%biot**2/(model%rock%lame + model%rock%shear))
+         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c) &
+                            /(model%rock%storage + model%rock%biot**2 &
+                              /(model%rock%lame + model%rock%shear))
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       state%unknowns(:2, :) = 0.0_rk
@@ -114,8 +118,8 @@ contains
       state%time = time
    end subroutine equilibrate
 
-   !> One backward Euler step. The state changes only if the step converges (report%converged); an error is
-   !! raised where the equations cannot be solved at all.
+   !> One backward Euler step. The state changes only if the step converges (report%converged); an
+   !! error is raised where the equations cannot be solved at all.
    subroutine advance(self, mesh, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -155,8 +159,8 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%condensed, self%cells, self%connections, self%settings, dt, g, state, &
-            q, report)
+         call solve_fractures(self%condensed, self%cells, self%connections, self%settings, dt, g, &
+                              state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
       end if
@@ -166,13 +170,14 @@ contains
       if (allocated(error)) return
       call timers%start(phase_assemble)
       call corner_tractions(self%regions, state%unknowns, state%tractions)
-      call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, state%tractions, &
-         state%content)
+      call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
+                         state%tractions, state%content)
       state%time = state%time + dt
       call mass_error(self, mesh, dt, before, state, report%mass_error)
       call timers%stop(phase_assemble)
-      if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) &
+      if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
          call raise_error(error, "coarse_model", "the solution is not a finite number")
+      end if
    end subroutine advance
 
    !> Fluid that appeared or vanished in the step [m2]: what is stored less what came in.
@@ -188,8 +193,8 @@ contains
       balance = sum(after%content - before%content)
       if (mesh%fracture%n_cells > 0) then
          balance = balance + sum(self%condensed%length*(after%aperture - before%aperture &
-            + after%aperture*self%settings%compressibility*(after%pressure - before%pressure))) &
-            - dt*sum(self%cells%injection)
+               + after%aperture*self%settings%compressibility*(after%pressure - before%pressure))) &
+                   - dt*sum(self%cells%injection)
       end if
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
       if (self%drained) then
@@ -197,7 +202,7 @@ contains
          call cell_outflow(mesh, self%regions, after%unknowns, outflow)
          balance = balance + dt*sum(outflow)
          if (mesh%fracture%n_cells > 0) balance = balance &
-            + dt*sum(self%condensed%length*after%leakoff)
+                                                  + dt*sum(self%condensed%length*after%leakoff)
       end if
    end subroutine mass_error
 
@@ -214,7 +219,7 @@ contains
          if (mesh%fracture%point_kind(point) /= point_interior) cycle
          n = n + 1
          connections(:, n) = mesh%fracture%point_cells(mesh%fracture%point_first(point): &
-            mesh%fracture%point_first(point) + 1)
+                                                       mesh%fracture%point_first(point) + 1)
       end do
       connections = connections(:, :n)
    end subroutine find_connections

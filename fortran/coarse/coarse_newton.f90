@@ -1,8 +1,11 @@
-!> Semismooth Newton iteration on the fractures: contact, cubic law, exchange with the rock, fluid mass.
+!> Semismooth Newton iteration on the fractures: contact, cubic law, exchange with the rock, fluid
+!! mass.
 !!
-!! Unknowns per fracture cell: [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-, p_F; and a flow
-!! per pair of neighbours along a fracture. The law of contact holds at both ends of a cell. The flow is an unknown of its own because the pressure difference that drives it along an open
-!! fracture is far below the rounding of the pressures. All unknowns and equations are scaled to Pa.
+!! Unknowns per fracture cell: [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-, p_F;
+!! and a flow per pair of neighbours along a fracture. The law of contact holds at both ends of a
+!! cell. The flow is an unknown of its own because the pressure difference that drives it along an
+!! open fracture is far below the rounding of the pressures. All unknowns and equations are scaled
+!! to Pa.
 module coarse_newton
    use base_kinds, only: ik, rk
    use base_lapack, only: dgetrf, dgetrs
@@ -23,10 +26,12 @@ module coarse_newton
       real(rk) :: viscosity = 0.0_rk  !< [Pa s]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
-      logical :: equilibrate = .false.  !< initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
+      !> initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
+      logical :: equilibrate = .false.
    end type newton_settings_t
 
-   !> One step's equations in scaled unknowns. Matrices are kept transposed: an equation is a column.
+   !> One step's equations in scaled unknowns. Matrices are kept transposed: an equation is a
+   !! column.
    type :: equations_t
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
@@ -39,8 +44,8 @@ module coarse_newton
 
 contains
 
-   !> One time step of the fractures, the rock condensed. `state` holds the state before and is replaced
-   !! only if the iteration converges.
+   !> One time step of the fractures, the rock condensed. `state` holds the state before and is
+   !! replaced only if the iteration converges.
    subroutine solve_fractures(condensed, cells, connections, settings, dt, g, state, q, report)
       type(condensed_t), intent(in) :: condensed
       type(fracture_cells_t), intent(in) :: cells
@@ -74,9 +79,10 @@ contains
       load = stress_without_jumps(condensed, g)
 
       do
-         call evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, contact)
+         call evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, &
+                       contact)
          report%stress_scale = max(maxval(abs(traction)), maxval(abs(x(7:per_cell*n:7))), load, &
-            1.0_rk)
+                                   1.0_rk)
          worst = maxval(abs(eq%residual))/report%stress_scale
          if (.not. worst <= huge(1.0_rk)) then
             report%reason = "the Newton iteration on the fractures met a value that is not a number"
@@ -102,8 +108,9 @@ contains
       call accept(condensed, cells, dt, eq, x, q, traction, contact, state, report)
    end subroutine solve_fractures
 
-   !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces without
-   !! fluid carry none, and yet rounding errors are relative to what has been released there.
+   !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
+   !! without fluid carry none, and yet rounding errors are relative to what has been released
+   !! there.
    pure function stress_without_jumps(condensed, g) result(stress)
       type(condensed_t), intent(in) :: condensed
       real(rk), intent(in) :: g(:)  !< (6 n)
@@ -142,8 +149,8 @@ contains
          do end = 1, 2
             at = 6*i - 5 + 3*(end - 1)
             report%contact_residual = max(report%contact_residual, contact_residual(cells%law(i), &
-               eq%stiffness, traction(:, end, i), q(at:at + 1), state%jump(2, end, i)) &
-               /report%stress_scale)
+                           eq%stiffness, traction(:, end, i), q(at:at + 1), state%jump(2, end, i)) &
+                                          /report%stress_scale)
             state%jump(:, end, i) = q(at:at + 1)
          end do
          state%leakoff(i) = -(eq%force(6*i - 3) + eq%force(6*i))/(dt*condensed%length(i))
@@ -181,7 +188,7 @@ contains
 
    !> Residuals [Pa] and their derivatives at x.
    subroutine evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, &
-      contact)
+                       contact)
       type(condensed_t), intent(in) :: condensed
       type(fracture_cells_t), intent(in) :: cells
       integer(ik), intent(in) :: connections(:, :)
@@ -197,14 +204,16 @@ contains
 
       do i = 1, condensed%n
          q(6*i - 5:6*i) = x(7*i - 6:7*i - 1)
-         q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) = q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1])/eq%stiffness
+         q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) = q([6*i - 5, 6*i - 4, 6*i - 2, 6*i &
+                                                      - 1])/eq%stiffness
       end do
       eq%force = matmul(condensed%stiffness, q) - g
       eq%jacobian = 0.0_rk
       do i = 1, condensed%n
          do end = 1, 2
-            call contact_rows(cells%law(i), i, end, 0.5_rk*condensed%length(i), state%jump(2, end, i), &
-               q, x, eq, traction(:, end, i), way(end, i), contact(end, i))
+            call contact_rows(cells%law(i), i, end, 0.5_rk*condensed%length(i), &
+                              state%jump(2, end, i), q, x, eq, traction(:, end, i), way(end, i), &
+                              contact(end, i))
          end do
          if (settings%equilibrate) then
             call equilibrium_rows(i, x, eq)
@@ -214,12 +223,14 @@ contains
          end if
       end do
       do k = 1, size(connections, 2)
-         call flow_row(condensed, cells, connections(:, k), per_cell*condensed%n + k, settings, x, eq)
+         call flow_row(condensed, cells, connections(:, k), per_cell*condensed%n + k, settings, x, &
+                       eq)
       end do
    end subroutine evaluate
 
    !> The two contact equations at one end of cell i.
-   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, way, contact)
+   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, way, &
+                                contact)
       type(contact_law_t), intent(in) :: law
       integer(ik), intent(in) :: i, end
       real(rk), intent(in) :: half_length, slip_before, q(:), x(:)
@@ -236,12 +247,12 @@ contains
       row = 7*i - 6 + 3*(end - 1)
       traction = [x(7*i), 0.0_rk] - eq%force(at:at + 1)/half_length
       call contact_equations(law, eq%stiffness, traction, q(at:at + 1), slip_before, way, &
-         contact, eq%residual(row:row + 1), by_traction, by_jump)
+                             contact, eq%residual(row:row + 1), by_traction, by_jump)
       do k = 1, 2
          associate (slope => eq%jacobian(:, row + k - 1))
             do m = 1, 2
                if (abs(by_traction(k, m)) > 0.0_rk) slope(:n) = slope(:n) &
-                  - by_traction(k, m)/half_length*eq%force_slope(:, at + m - 1)
+                                       - by_traction(k, m)/half_length*eq%force_slope(:, at + m - 1)
             end do
             slope(7*i) = slope(7*i) + by_traction(k, 1)
             slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/eq%stiffness
@@ -259,7 +270,8 @@ contains
       mean = 0.5_rk*(x(7*i - 6) + x(7*i - 3))/stiffness
    end function opening
 
-   !> Flux between the rock and the fracture on both sides: lambda = (kappa/mu)(p - p_F)/(a/2), kappa = a^2/12.
+   !> Flux between the rock and the fracture on both sides: lambda = (kappa/mu)(p - p_F)/(a/2),
+   !! kappa = a^2/12.
    pure subroutine exchange_rows(cells, settings, i, length, x, eq)
       type(fracture_cells_t), intent(in) :: cells
       type(newton_settings_t), intent(in) :: settings
@@ -271,7 +283,8 @@ contains
       integer(ik) :: n, row, side
 
       n = size(eq%force_slope, 1)
-      call conducting_aperture(cells%residual_aperture(i), opening(x, i, eq%stiffness), aperture, slope)
+      call conducting_aperture(cells%residual_aperture(i), opening(x, i, eq%stiffness), aperture, &
+                               slope)
       conductance = eq%dt*length*aperture/(6.0_rk*settings%viscosity)
       do side = 1, 2
          row = 7*i - 7 + 3*side
@@ -279,7 +292,7 @@ contains
          eq%residual(row) = volume/conductance - (x(row) - x(7*i))
          eq%jacobian(:n, row) = eq%force_slope(:, 6*i - 6 + 3*side)/conductance
          eq%jacobian([7*i - 6, 7*i - 3], row) = eq%jacobian([7*i - 6, 7*i - 3], row) &
-            - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
+                                           - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
          eq%jacobian(row, row) = eq%jacobian(row, row) - 1.0_rk
          eq%jacobian(7*i, row) = eq%jacobian(7*i, row) + 1.0_rk
       end do
@@ -302,12 +315,12 @@ contains
       aperture = cells%residual_aperture(i) + opening(x, i, eq%stiffness)
       compression = settings%compressibility*(x(row) - state%pressure(i))
       eq%residual(row) = (length*(aperture - state%aperture(i) + aperture*compression) &
-         - eq%force(6*i - 3) - eq%force(6*i) - eq%dt*cells%injection(i))/eq%unit
+                          - eq%force(6*i - 3) - eq%force(6*i) - eq%dt*cells%injection(i))/eq%unit
       eq%jacobian(:n, row) = -(eq%force_slope(:, 6*i - 3) + eq%force_slope(:, 6*i))/eq%unit
       eq%jacobian([7*i - 6, 7*i - 3], row) = eq%jacobian([7*i - 6, 7*i - 3], row) &
-         + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
+                                       + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
       eq%jacobian(row, row) = eq%jacobian(row, row) &
-         + length*aperture*settings%compressibility/eq%unit
+                              + length*aperture*settings%compressibility/eq%unit
    end subroutine balance_row
 
    !> Initial state: nothing flows, and the fracture has the pressure of the rock around it.
@@ -349,12 +362,12 @@ contains
          do k = 1, 2
             associate (i => pair(k))
                call conducting_aperture(cells%residual_aperture(i), opening(x, i, eq%stiffness), &
-                  aperture, slope)
+                                        aperture, slope)
                resistance = 6.0_rk*settings%viscosity*condensed%length(i)/aperture**3*eq%unit/eq%dt
                eq%residual(row) = eq%residual(row) + resistance*x(row)
                eq%jacobian(row, row) = eq%jacobian(row, row) + resistance
                eq%jacobian([7*i - 6, 7*i - 3], row) = -1.5_rk*resistance*x(row)/aperture*slope &
-                  /eq%stiffness
+                                                      /eq%stiffness
             end associate
          end do
          eq%jacobian(first, row) = -1.0_rk
@@ -366,7 +379,8 @@ contains
       end associate
    end subroutine flow_row
 
-   !> Aperture that conducts fluid; iterates with closed or overlapping faces keep a hundredth of a0.
+   !> Aperture that conducts fluid; iterates with closed or overlapping faces keep a hundredth of
+   !! a0.
    pure subroutine conducting_aperture(residual, opening, aperture, slope)
       real(rk), intent(in) :: residual, opening  !< a0, [u]_n [m]
       real(rk), intent(out) :: aperture, slope  !< [m], and its derivative by [u]_n

@@ -1,9 +1,9 @@
 !> Interaction regions: which cells, faces and unknowns meet around each vertex of the mesh.
 !!
-!! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector between
-!! fractures. Across a fracture the traction is continuous and the displacement jumps; the jump is an
-!! unknown at each end of a fracture cell (at the third points of the face), so that it varies linearly
-!! along the cell. Each node has a rotation of its own.
+!! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector
+!! between fractures. Across a fracture the traction is continuous and the displacement jumps; the
+!! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
+!! varies linearly along the cell. Each node has a rotation of its own.
 module coarse_regions
    use base_kinds, only: ik, rk
    use mesh_types, only: mesh_t
@@ -15,9 +15,9 @@ module coarse_regions
 
    !> Around each vertex; and how tractions and fluxes there follow from the unknowns.
    !!
-   !! Unknowns come in blocks of three: first (u_x, u_y, p) per cell, then two blocks per fracture cell i,
-   !! n_cells + 2i - 1 = (jump x, y at its start, p on side +) and n_cells + 2i = (jump x, y at its
-   !! end, p on side -).
+   !! Unknowns come in blocks of three: first (u_x, u_y, p) per cell, then two blocks per fracture
+   !! cell i, n_cells + 2i - 1 = (jump x, y at its start, p on side +) and n_cells + 2i = (jump x, y
+   !! at its end, p on side -).
    type :: regions_t
       integer(ik) :: n_regions = 0
       integer(ik) :: n_blocks = 0
@@ -32,11 +32,12 @@ module coarse_regions
       integer(ik), allocatable :: blocks(:)  !< cells first
       integer(ik), allocatable :: cell_count(:)  !< (n_regions) how many of the blocks are cells
       integer(ik), allocatable :: traction_first(:)  !< (n_regions+1) into traction
-      !> Per region (2 n_faces + n_nodes, 3 n_blocks + 1): tractions [Pa], then rotations [-], per unit of
-      !! each unknown; the last column holds what the boundary data alone give.
+      !> Per region (2 n_faces + n_nodes, 3 n_blocks + 1): tractions [Pa], then rotations [-], per
+      !! unit of each unknown; the last column holds what the boundary data alone give.
       real(rk), allocatable :: traction(:)
       integer(ik), allocatable :: flux_first(:)  !< (n_regions+1) into flux
-      real(rk), allocatable :: flux(:)  !< per region (n_flow_faces, n_blocks + 1): fluxes [m/s], likewise
+      !> per region (n_flow_faces, n_blocks + 1): fluxes [m/s], likewise
+      real(rk), allocatable :: flux(:)
    end type regions_t
 
 contains
@@ -63,7 +64,7 @@ contains
          label = [([c, c, c], c=1, mesh%n_cells)]
          do i = 1, mesh%fracture%n_cells
             associate (ends => region(mesh%face_nodes(:, mesh%fracture%cell_faces(1, i))), &
-               block => mesh%n_cells + 2*i)
+                       block => mesh%n_cells + 2*i)
                owner = [owner, ends, ends]
                label = [label, block - 1, block - 1, block, block]
             end associate
@@ -87,11 +88,11 @@ contains
       regions%flux_first(1) = 1
       do r = 1, n
          associate (n_faces => regions%face_first(r + 1) - regions%face_first(r), &
-            n_nodes => regions%node_first(r + 1) - regions%node_first(r), &
-            n_flow => regions%flow_first(r + 1) - regions%flow_first(r), &
-            n_blocks => regions%block_first(r + 1) - regions%block_first(r))
+                    n_nodes => regions%node_first(r + 1) - regions%node_first(r), &
+                    n_flow => regions%flow_first(r + 1) - regions%flow_first(r), &
+                    n_blocks => regions%block_first(r + 1) - regions%block_first(r))
             regions%traction_first(r + 1) = regions%traction_first(r) &
-               + (2*n_faces + n_nodes)*(3*n_blocks + 1)
+                                            + (2*n_faces + n_nodes)*(3*n_blocks + 1)
             regions%flux_first(r + 1) = regions%flux_first(r) + n_flow*(n_blocks + 1)
          end associate
       end do
@@ -110,9 +111,10 @@ contains
       leader = [(v, v=1, mesh%n_nodes)]
       do i = 1, mesh%fracture%n_cells
          associate (plus => mesh%face_nodes(:, mesh%fracture%cell_faces(1, i)), &
-            minus => mesh%face_nodes(:, mesh%fracture%cell_faces(2, i)))
+                    minus => mesh%face_nodes(:, mesh%fracture%cell_faces(2, i)))
             do a = 1, 2
-               b = minloc(norm2(mesh%xy(:, minus) - spread(mesh%xy(:, plus(a)), 2, 2), dim=1), dim=1)
+               b = minloc(norm2(mesh%xy(:, minus) - spread(mesh%xy(:, plus(a)), 2, 2), dim=1), &
+                          dim=1)
                call unite(plus(a), minus(b))
             end do
          end associate
@@ -177,10 +179,11 @@ contains
       end do
    end subroutine sort_into
 
-   !> Geometry of corner k of a cell: its two faces and the vectors that build a stress from tractions.
+   !> Geometry of corner k of a cell: its two faces and the vectors that build a stress from
+   !! tractions.
    !!
-   !! sigma = sum_j sign_j t_j (x) lever_j, where t_j is the traction on face j for the face's own normal
-   !! (out of its first cell).
+   !! sigma = sum_j sign_j t_j (x) lever_j, where t_j is the traction on face j for the face's own
+   !! normal (out of its first cell).
    pure subroutine corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cell, k
@@ -206,7 +209,8 @@ contains
       lever(:, 2) = after*(-length(2)/(2.0_rk*area))
    end subroutine corner_geometry
 
-   !> The face that carries the traction: of a fracture, the one on side +, with the sign turned on side -.
+   !> The face that carries the traction: of a fracture, the one on side +, with the sign turned on
+   !! side -.
    pure subroutine traction_face(mesh, face, sign_out)
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(inout) :: face
@@ -233,7 +237,7 @@ contains
       integer(ik) :: k
 
       associate (nodes => mesh%face_nodes(:, mesh%fracture%cell_faces(1, cell)), &
-         point => mesh%fracture%point_xy(:, mesh%fracture%cell_points(end, cell)))
+                 point => mesh%fracture%point_xy(:, mesh%fracture%cell_points(end, cell)))
          do k = 1, 2
             distance(k) = norm2(mesh%xy(:, nodes(k)) - point)
          end do

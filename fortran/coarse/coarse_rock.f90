@@ -41,7 +41,7 @@ contains
       if (material%storage == "textbook") rock%storage = rock%storage*(1.0_rk - material%biot)
       rock%storage = rock%storage + material%porosity*fluid%compressibility
       rock%permeability = [material%permeability_xx, material%permeability_yy, &
-         material%permeability_xy]
+                           material%permeability_xy]
       determinant = material%permeability_xx*material%permeability_yy - material%permeability_xy**2
       rock%resistivity(1, 1) = material%permeability_yy
       rock%resistivity(2, 2) = material%permeability_xx

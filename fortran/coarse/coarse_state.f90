@@ -17,15 +17,18 @@ module coarse_state
    !> Unknowns and what is remembered of them.
    type :: state_t
       real(rk) :: time = 0.0_rk  !< [s]
-      real(rk), allocatable :: unknowns(:, :)  !< (3, n_blocks) in blocks as in coarse_regions [m], [Pa]
+      !> (3, n_blocks) in blocks as in coarse_regions [m], [Pa]
+      real(rk), allocatable :: unknowns(:, :)
       real(rk), allocatable :: content(:)  !< (n_cells) fluid content above the initial state [m2]
       real(rk), allocatable :: tractions(:)  !< corner tractions [Pa], packed as in coarse_fields
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
-      real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
+      !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
+      real(rk), allocatable :: traction(:, :, :)
       integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open
       real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
-      real(rk), allocatable :: aperture(:)  !< (n) a [m]; below a0 only where fluid has yet to fill a new cell
+      !> (n) a [m]; below a0 only where fluid has yet to fill a new cell
+      real(rk), allocatable :: aperture(:)
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 

@@ -16,7 +16,8 @@ program test_coarse_model
    implicit none(type, external)
 
    real(rk), parameter :: undrained_pressure = 6902061.032_rk  !< catalogue 4.0 [Pa]
-   real(rk), parameter :: undrained_u(2) = [-0.6412206423e-3_rk, -0.04122064228e-3_rk]  !< at (2, 2) [m]
+   !> at (2, 2) [m]
+   real(rk), parameter :: undrained_u(2) = [-0.6412206423e-3_rk, -0.04122064228e-3_rk]
    type(checks_t) :: checks
 
    call undrained_square()
@@ -56,7 +57,7 @@ contains
       type(error_t), allocatable :: error
 
       spec = mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
-         size_boundary=size_boundary)
+                         size_boundary=size_boundary)
       network%first = [1_ik]
       allocate (network%s_start(0))
       if (size(xy) > 0) then
@@ -126,10 +127,10 @@ contains
       call start(mesh, scene, 0.0_rk, 0.0_rk, model, state)
       call model%advance(mesh, 1800.0_rk, state, timers, report, error)
       call checks%no_error(error, "undrained step")
-      call checks%is_close(maxval(abs(state%unknowns(3, :) - undrained_pressure)), 0.0_rk, 1.0e-2_rk, &
-         "undrained pressure")
-      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), 0.0_rk, &
-         1.0e-12_rk, "undrained displacement")
+      call checks%is_close(maxval(abs(state%unknowns(3, :) - undrained_pressure)), 0.0_rk, &
+                           1.0e-2_rk, "undrained pressure")
+      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), &
+                           0.0_rk, 1.0e-12_rk, "undrained displacement")
       allocate (stresses(3, mesh%n_cells))
       call cell_stresses(mesh, model%regions, state%tractions, stresses)
       call checks%is_close(maxval(abs(stresses(1, :) + 20.0e6_rk)), 0.0_rk, 1.0e-3_rk, "sigma_xx")
@@ -167,10 +168,11 @@ contains
          x(c) = sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk
       end do
       call checks%is_close(maxval(abs(state%unknowns(3, :) - (3.0e6_rk - 1.0e6_rk*x))), 0.0_rk, &
-         1.0e-3_rk, "linear pressure")
+                           1.0e-3_rk, "linear pressure")
    end subroutine linear_pressure
 
-   !> A fracture with high friction in the uniform state changes nothing and carries the resolved stress.
+   !> A fracture with high friction in the uniform state changes nothing and carries the resolved
+   !! stress.
    subroutine sticking_fracture()
       type(mesh_t) :: mesh
       type(scene_t) :: scene
@@ -190,18 +192,18 @@ contains
       call checks%is_true(all(state%contact == state_stick), "all stick")
       ! At 45 degrees: sigma_n = -15 MPa, shear (sigma_yy - sigma_xx)/2 = 5 MPa
       call checks%is_close(maxval(abs(state%pressure - undrained_pressure)), 0.0_rk, 1.0e-1_rk, &
-         "fracture pressure")
-      call checks%is_close(maxval(abs(state%traction(1, :, :) - undrained_pressure + 15.0e6_rk)), 0.0_rk, &
-         1.0e-1_rk, "normal traction")
+                           "fracture pressure")
+      call checks%is_close(maxval(abs(state%traction(1, :, :) - undrained_pressure + 15.0e6_rk)), &
+                           0.0_rk, 1.0e-1_rk, "normal traction")
       call checks%is_close(maxval(abs(state%traction(2, :, :) - 5.0e6_rk)), 0.0_rk, 1.0e-1_rk, &
-         "shear traction")
+                           "shear traction")
       call checks%is_close(maxval(abs(state%jump)), 0.0_rk, 1.0e-15_rk, "no jump")
-      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), 0.0_rk, &
-         1.0e-12_rk, "undrained displacement with a fracture")
+      call checks%is_close(maxval(abs(corner_displacement(mesh, model, state) - undrained_u)), &
+                           0.0_rk, 1.0e-12_rk, "undrained displacement with a fracture")
    end subroutine sticking_fracture
 
-   !> Closed frictional crack with dilation (catalogue 3.1, undrained elasticity): the slip converges with the
-   !! cell size, and the tractions follow the law.
+   !> Closed frictional crack with dilation (catalogue 3.1, undrained elasticity): the slip
+   !! converges with the cell size, and the tractions follow the law.
    subroutine slipping_fracture()
       type(mesh_t) :: mesh
       type(scene_t) :: scene
@@ -211,13 +213,15 @@ contains
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.05_rk, h = a/sqrt(2.0_rk), psi = tan(0.0174532925199433_rk)
-      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], [2, 2])
+      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], &
+                                                [2, 2])
       real(rk) :: drop, slip, error_of(3), exact, modulus, x
       integer(ik) :: end, i, level, n
 
       call paper_c(scene)
       drop = (5.0e6_rk - 0.5_rk*(15.0e6_rk - undrained_pressure))/(1.0_rk + 0.5_rk*psi)
-      ! Undrained plane-strain modulus E_u/(1-nu_u^2) = 2G/(1-nu_u), nu_u = 0.3104329765 (catalogue 4.3)
+      ! Undrained plane-strain modulus E_u/(1-nu_u^2) = 2G/(1-nu_u), nu_u = 0.3104329765 (catalogue
+      ! 4.3)
       modulus = 2.0_rk*40.0e9_rk/2.4_rk/(1.0_rk - 0.3104329765_rk)
       slip = 4.0_rk*drop*a/modulus
       do level = 1, 3
@@ -240,11 +244,11 @@ contains
          end do
          error_of(level) = sqrt(error_of(level))/(slip*sqrt(4.0_rk*a/3.0_rk))
          call checks%is_close(sum(state%traction(1, :, :))/real(2*n, rk), &
-            undrained_pressure - 15.0e6_rk - psi*drop, 2.0e4_rk, "contact pressure with dilation")
+              undrained_pressure - 15.0e6_rk - psi*drop, 2.0e4_rk, "contact pressure with dilation")
          call checks%is_close(maxval(abs(state%jump(1, :, :) - psi*state%jump(2, :, :))), 0.0_rk, &
-            1.0e-14_rk, "dilation")
+                              1.0e-14_rk, "dilation")
       end do
-      print '(a,3f9.5)', "slip, relative L2 error", error_of
+      print "(a,3f9.5)", "slip, relative L2 error", error_of
       associate (order => log(error_of(1)/error_of(3))/log(4.0_rk))
          call checks%is_true(order > 0.5_rk .and. order < 1.2_rk, "slip: order between 1/2 and 1")
       end associate
@@ -272,10 +276,13 @@ contains
          call model%advance(mesh, dt, state, timers, report, error)
          call checks%no_error(error, "injection step")
          call checks%is_true(report%converged, "injection step converges")
-         call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*rate*dt, "fluid mass in injection")
-         call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-8_rk, "contact law in injection")
-         print '(a,i0,a,f9.4,a,i0,a,es9.2,a,es9.2)', "step ", i, " p_F [MPa]", state%pressure(1)/1.0e6_rk, &
-            " iterations ", report%iterations, " mass", report%mass_error, " slip", state%jump(2, 1, 5)
+         call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*rate*dt, &
+                              "fluid mass in injection")
+         call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-8_rk, &
+                              "contact law in injection")
+         print "(a,i0,a,f9.4,a,i0,a,es9.2,a,es9.2)", "step ", i, " p_F [MPa]", &
+            state%pressure(1)/1.0e6_rk, " iterations ", report%iterations, " mass", &
+            report%mass_error, " slip", state%jump(2, 1, 5)
       end do
    end subroutine injection_conserves_mass
 

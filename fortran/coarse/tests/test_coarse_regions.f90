@@ -54,13 +54,13 @@ contains
             place = mesh%xy(:, regions%nodes(regions%node_first(r)))
             do i = regions%node_first(r), regions%node_first(r + 1) - 1
                if (.not. norm2(mesh%xy(:, regions%nodes(i)) - place) <= 1.0e-12_rk) then
-                 n_wrong = n_wrong + 1
+                  n_wrong = n_wrong + 1
                end if
             end do
             do i = regions%flow_first(r), regions%flow_first(r + 1) - 1
                associate (ends => mesh%xy(:, mesh%face_nodes(:, regions%flow_faces(i))))
                   if (.not. minval(norm2(ends - spread(place, 2, 2), dim=1)) <= 1.0e-12_rk) then
-                    n_wrong = n_wrong + 1
+                     n_wrong = n_wrong + 1
                   end if
                end associate
             end do
@@ -215,10 +215,10 @@ contains
             rebuilt = 0.0_rk
             do j = 1, 2
                if (.not. any(mesh%face_nodes(:, faces(j)) == mesh%cell_nodes(k, c))) then
-                 n_wrong = n_wrong + 1
+                  n_wrong = n_wrong + 1
                end if
                if (.not. abs(length(j) - face_length(mesh, faces(j))) <= 1.0e-15_rk) then
-                 n_wrong = n_wrong + 1
+                  n_wrong = n_wrong + 1
                end if
                traction = matmul(stress, outward_normal(mesh, c, faces(j)))
                ! The face's own normal leaves its first cell.
