@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -73,3 +78,29 @@ def test_a_failure_of_its_own_is_kept(tmp_path: Path) -> None:
     assert report.verdict == FAILED
     assert "reason" in report.checks[0].reasons[0]
     assert sorted(case.calls) == ALL
+
+
+def test_an_interrupted_call_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    case = small_case(tmp_path, "absolute")
+    (case.case / "check.toml").write_text(case.toml)
+    case.ends_with("fine", f"touch {tmp_path}/started; exec sleep 60")
+    command = [sys.executable, "-m", "wingcrack_verify", "--jobs", "1"]
+    for name, folder in (("cases", "verification"), ("build", "build"), ("cache", "cache")):
+        command += [f"--{name}", str(tmp_path / folder)]
+    command += ["--report", str(tmp_path / "report")]
+    packages = {"PYTHONPATH": str(Path(__file__).parents[1])}
+    with subprocess.Popen(command, env=os.environ | packages, preexec_fn=heed_interrupts) as call:
+        deadline = time.monotonic() + 60.0
+        while not (tmp_path / "started").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        call.send_signal(signal.SIGINT)
+        assert call.wait(timeout=30.0) == 130
+    assert not (tmp_path / "report").exists()
+    case.ends_with("fine", "true")
+    assert case.judge().verdict == PASSED
+    assert case.calls == ["coarse", "middle", "fine", "fine"]
+
+
+def heed_interrupts() -> None:
+    """Undo an ignored SIGINT, which the call would inherit."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
