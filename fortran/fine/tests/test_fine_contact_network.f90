@@ -1,0 +1,163 @@
+!> Contact on a network with a kink, a T joint and five free tips, under loads that change their
+!! direction from step to step: the law must hold at every pair, with its whole history.
+program test_fine_contact_network
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_law_t, contact_residual
+   use contact_states, only: state_open, state_stick
+   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
+   use fine_contact, only: contact_t, new_contact
+   use fine_elasticity, only: elasticity_t
+   use fine_faces, only: face_conditions_t, face_contact, face_law_t, loaded_everywhere
+   use fine_loads, only: fine_loads_t, no_loads
+   use fine_mesh, only: tip_collapsed
+   use fine_model, only: fine_model_t
+   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_types, only: mesh_t, network_t
+   implicit none(type, external)
+   integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4
+   real(rk), parameter :: half(2) = [3.5_rk, 2.5_rk]
+   type(checks_t) :: checks
+   type(fine_model_t) :: model
+   type(fine_boundary_t) :: boundary
+   integer(ik) :: seen(0:2) = 0
+
+   call set_body()
+   call history(0.0_rk, 0.0_rk)
+   call history(0.3_rk, 0.0_rk)
+   call history(0.6_rk, 0.1_rk)
+   call checks%is_true(all(seen > 0), "network: every state occurs")
+   call checks%finish()
+
+contains
+
+   subroutine set_body()
+      type(network_t) :: network
+      type(mesh_spec_t) :: spec
+      type(mesher_t) :: mesher
+      type(mesh_t) :: mesh
+      type(error_t), allocatable :: error
+
+      ! The second fracture has kinks, the third ends on the first.
+      network = network_t(first=[1_ik, 3_ik, 6_ik, 8_ik], s_start=[0.0_rk, 0.0_rk, 0.0_rk], &
+                          xy=reshape([-1.2_rk, 0.1_rk, 0.6_rk, 0.3_rk, &
+                                      0.9_rk, -1.0_rk, 1.4_rk, -0.4_rk, 1.4_rk, 0.7_rk, &
+                                      -0.7_rk, -1.1_rk, -0.3_rk, 0.2_rk], [2, 7]))
+      spec%x_min = -half(1)
+      spec%x_max = half(1)
+      spec%y_min = -half(2)
+      spec%y_max = half(2)
+      spec%size_fracture = 0.1_rk
+      spec%size_boundary = 0.8_rk
+      spec%is_window = .true.
+      spec%rosette_sectors = 12
+      spec%rosette_radius = 0.1_rk
+      call build_mesh(spec, network, mesher, mesh, error)
+      call checks%no_error(error, "network is meshed")
+      call model%set_mesh(mesh, elasticity_t(70.0e9_rk, 0.21_rk, 0.0_rk, .false.), error, &
+                          tip_collapsed)
+      call checks%no_error(error, "network is numbered")
+      boundary = free_boundary(model%mesh)
+      boundary%prescribed(:, nearest_node(model%mesh, -half)) = .true.
+      boundary%prescribed(2, nearest_node(model%mesh, [half(1), -half(2)])) = .true.
+   end subroutine set_body
+
+   !> Eight loads one after the other.
+   subroutine history(friction, dilation)
+      real(rk), intent(in) :: friction, dilation
+      type(fine_loads_t) :: loads
+      type(face_conditions_t) :: conditions
+      type(contact_t) :: contact
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :)
+      real(rk) :: stress(3), direction
+      integer(ik) :: state, step
+
+      conditions = loaded_everywhere(model%mesh)
+      conditions%condition = face_contact
+      conditions%law = face_law_t(contact_law_t(friction, dilation))
+      call model%prepare(conditions, error, boundary)
+      call checks%no_error(error, "network is set up")
+      contact = new_contact(model%mesh)
+      do step = 1, 8
+         ! Mean pressure from 7 MPa to -1 MPa and back, shear stress of 4 MPa that turns.
+         direction = 1.3_rk*step
+         stress = 4.0e6_rk*[cos(direction), -cos(direction), sin(direction)]
+         stress(1:2) = stress(1:2) - 3.0e6_rk + 4.0e6_rk*sin(0.8_rk*step)
+         loads = no_loads(model%mesh)
+         call add_side_traction(model%mesh, left, -stress([1, 3]), loads%force)
+         call add_side_traction(model%mesh, right, stress([1, 3]), loads%force)
+         call add_side_traction(model%mesh, bottom, -stress([3, 2]), loads%force)
+         call add_side_traction(model%mesh, top, stress([3, 2]), loads%force)
+         call model%solve(loads, displacement, error, contact)
+         call checks%no_error(error, "network is solved")
+         if (allocated(error)) return
+         call checks%is_true(contact%iterations <= 10, "network: iterations")
+         call check_law(conditions%law(1)%contact, displacement, contact)
+         call check_equilibrium(loads, displacement)
+         do state = state_stick, state_open
+            seen(state) = seen(state) + count(contact%state == state)
+         end do
+         call contact%accept()
+      end do
+   end subroutine history
+
+   !> The law at the middle of every cell, with jumps from the displacements and tractions from the
+   !! elements on both sides.
+   subroutine check_law(law, displacement, contact)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: displacement(:, :)
+      type(contact_t), intent(in) :: contact
+      real(rk), parameter :: share = 2.0_rk/3.0_rk  ! of a middle node, with quarter points or not
+      real(rk), parameter :: stiffness = 70.0e9_rk/0.1_rk
+      real(rk) :: jump(2), tau(2), normal(2), force(2, 6), traction(2, 2), worst, apart
+      integer(ik) :: cell, element, k, side
+
+      worst = 0.0_rk
+      apart = 0.0_rk
+      do cell = 1, model%mesh%fracture%n_cells
+         tau = model%mesh%face_tangent(:, cell)
+         normal = [-tau(2), tau(1)]
+         associate (middle => model%mesh%face_nodes(3, :, cell))
+            jump = displacement(:, middle(2)) - displacement(:, middle(1))
+            do side = 1, 2
+               element = model%mesh%face_cells(side, cell)
+               k = findloc(model%mesh%cell_nodes(:, element), middle(side), dim=1)
+               force = model%element_forces(displacement, element)
+               traction(:, side) = force(:, k)/(share*model%mesh%face_length(cell))
+            end do
+         end associate
+         apart = max(apart, norm2(traction(:, 1) + traction(:, 2)))
+         worst = max(worst, &
+                     contact_residual(law, stiffness, &
+                                      [dot_product(normal, traction(:, 1)), &
+                                       dot_product(tau, traction(:, 1))], &
+                                      [dot_product(normal, jump), dot_product(tau, jump)], &
+                                      contact%slip_before(3, cell)))
+      end do
+      call checks%is_close(apart, 0.0_rk, 1.0e-2_rk, "network: equal and opposite tractions")
+      call checks%is_close(worst, 0.0_rk, 1.0e-2_rk, "network: law fulfilled")
+   end subroutine check_law
+
+   !> What acts on the nodes besides the loads is contact, equal and opposite; so nothing is left
+   !! at nodes away from the fractures, and nothing as a whole.
+   subroutine check_equilibrium(loads, displacement)
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)
+      real(rk) :: force(2, model%mesh%n_nodes)
+      logical :: on_fracture(model%mesh%n_nodes)
+      integer(ik) :: cell
+
+      force = model%reactions(loads, displacement)
+      on_fracture = .false.
+      do cell = 1, model%mesh%fracture%n_cells
+         on_fracture(pack(model%mesh%face_nodes(:, :, cell), .true.)) = .true.
+      end do
+      call checks%is_close(maxval(abs(force), mask=.not. spread(on_fracture, 1, 2)), 0.0_rk, &
+                           1.0e-2_rk, "network: equilibrium")
+      call checks%is_close(maxval(abs(sum(force, dim=2))), 0.0_rk, 1.0e-2_rk, &
+                           "network: contact forces cancel")
+   end subroutine check_equilibrium
+
+end program test_fine_contact_network
