@@ -17,6 +17,7 @@ module coarse_newton
 
    public :: newton_settings_t, solve_fractures
 
+   real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
    integer(ik), parameter :: per_cell = 7  !< unknowns of a cell
 
    !> What the iteration needs to know.
@@ -88,7 +89,9 @@ contains
             report%reason = "the Newton iteration on the fractures met a value that is not a number"
             return
          end if
-         report%converged = worst <= settings%tolerance .and. all(contact == before)
+         report%converged = all(contact == before)
+         if (report%converged .and. worst > settings%tolerance) report%converged = &
+            is_rounding(eq, x, settings%tolerance*report%stress_scale)
          if (report%converged .or. report%iterations >= settings%iterations_max) exit
          before = contact
          call dgetrf(n_all, n_all, eq%jacobian, n_all, pivots, info)
@@ -107,6 +110,26 @@ contains
       end if
       call accept(condensed, cells, dt, eq, x, q, traction, contact, state, report)
    end subroutine solve_fractures
+
+   !> Whether every residual is either below the tolerance or no more than the rounding errors of the
+   !! terms it is the sum of: where rock conducts well, those of the fluid balance are larger than any
+   !! fixed tolerance.
+   pure function is_rounding(eq, x, tolerance) result(is_small)
+      type(equations_t), intent(in) :: eq
+      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: tolerance  !< [Pa]
+      logical :: is_small
+
+      integer(ik) :: row
+
+      is_small = .true.
+      do row = 1, size(x)
+         if (abs(eq%residual(row)) <= tolerance) cycle
+         is_small = abs(eq%residual(row)) <= 8.0_rk*epsilon(1.0_rk) &
+                    *dot_product(abs(eq%jacobian(:, row)), abs(x))
+         if (.not. is_small) return
+      end do
+   end function is_rounding
 
    !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
    !! without fluid carry none, and yet rounding errors are relative to what has been released
@@ -151,8 +174,16 @@ contains
             report%contact_residual = max(report%contact_residual, contact_residual(cells%law(i), &
                            eq%stiffness, traction(:, end, i), q(at:at + 1), state%jump(2, end, i)) &
                                           /report%stress_scale)
-            state%jump(:, end, i) = q(at:at + 1)
          end do
+      end do
+      if (.not. report%contact_residual <= contact_residual_max) then
+         report%converged = .false.
+         report%reason = "the law of contact is not fulfilled on some fracture cell"
+         return
+      end if
+      do i = 1, n
+         state%jump(:, 1, i) = q(6*i - 5:6*i - 4)
+         state%jump(:, 2, i) = q(6*i - 2:6*i - 1)
          state%leakoff(i) = -(eq%force(6*i - 3) + eq%force(6*i))/(dt*condensed%length(i))
       end do
       state%traction = traction
