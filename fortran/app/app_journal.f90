@@ -140,6 +140,8 @@ contains
       end associate
       self%record%mass_error_relative = max(self%record%mass_error_relative, row%mass_error_relative)
       self%record%contact_residual = max(self%record%contact_residual, report%contact_residual)
+      self%record%condition_estimate = max(self%record%condition_estimate, report%condition)
+      self%record%forward_error_bound = max(self%record%forward_error_bound, report%error_bound)
       self%record%newton_total = self%record%newton_total + report%iterations
       self%record%newton_max = max(self%record%newton_max, report%iterations)
       if (dt > 0.0_rk) self%record%steps = self%record%steps + 1

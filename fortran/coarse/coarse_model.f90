@@ -11,9 +11,10 @@ module coarse_model
                           phase_solve, timers_t
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
+   use coarse_equations, only: newton_settings_t
    use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
    use coarse_matrix, only: discretize, matrix_t
-   use coarse_newton, only: newton_settings_t, solve_fractures
+   use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t

@@ -1,47 +1,18 @@
-!> Semismooth Newton iteration on the fractures: contact, cubic law, exchange with the rock, fluid
-!! mass.
-!!
-!! Unknowns per fracture cell: [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-, p_F;
-!! and a flow per pair of neighbours along a fracture. The law of contact holds at both ends of a
-!! cell. The flow is an unknown of its own because the pressure difference that drives it along an
-!! open fracture is far below the rounding of the pressures. All unknowns and equations are scaled
-!! to Pa.
+!> Semismooth Newton iteration on the fractures: when it has converged, and what is accepted. The
+!! equations are those of coarse_equations.
 module coarse_newton
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgetrf, dgetrs
+   use base_lapack, only: dgecon, dgetrf, dgetrs
    use coarse_condensed, only: condensed_t
-   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use coarse_equations, only: equations_t, evaluate, newton_settings_t, per_cell, prepare
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use contact_law, only: contact_residual
    implicit none(type, external)
    private
 
-   public :: newton_settings_t, solve_fractures
+   public :: solve_fractures
 
    real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
-   integer(ik), parameter :: per_cell = 7  !< unknowns of a cell
-
-   !> What the iteration needs to know.
-   type :: newton_settings_t
-      real(rk) :: tolerance = 1.0e-9_rk  !< residuals relative to the largest stress [-]
-      integer(ik) :: iterations_max = 30
-      real(rk) :: viscosity = 0.0_rk  !< [Pa s]
-      real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
-      real(rk) :: young = 0.0_rk  !< [Pa]
-      !> initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
-      logical :: equilibrate = .false.
-   end type newton_settings_t
-
-   !> One step's equations in scaled unknowns. Matrices are kept transposed: an equation is a
-   !! column.
-   type :: equations_t
-      real(rk) :: dt = 0.0_rk  !< [s]
-      real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
-      real(rk) :: unit = 0.0_rk  !< fluid volumes are divided by it [m2/Pa]
-      real(rk), allocatable :: force_slope(:, :)  !< (7 n, 6 n) of the condensed forces
-      real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g
-      real(rk), allocatable :: residual(:)  !< [Pa]
-      real(rk), allocatable :: jacobian(:, :)  !< transposed
-   end type equations_t
 
 contains
 
@@ -59,16 +30,16 @@ contains
       type(step_report_t), intent(out) :: report
 
       type(equations_t) :: eq
-      real(rk), allocatable :: x(:), step(:, :), traction(:, :, :)
+      real(rk), allocatable :: x(:), step(:), traction(:, :, :)
       real(rk) :: load, worst
-      integer(ik), allocatable :: contact(:, :), before(:, :), way(:, :), pivots(:)
-      integer(ik) :: i, info, n, n_all
+      integer(ik), allocatable :: contact(:, :), before(:, :), way(:, :)
+      integer(ik) :: i, n, n_all
 
       n = condensed%n
       n_all = per_cell*n + size(connections, 2)
       call prepare(condensed, settings, dt, n_all, eq)
       allocate (x(n_all), source=0.0_rk)
-      allocate (step(n_all, 1), pivots(n_all), traction(2, 2, n), contact(2, n))
+      allocate (step(n_all), traction(2, 2, n), contact(2, n))
       allocate (way(2, n), source=0_ik)
       before = state%contact
       do i = 1, n
@@ -94,14 +65,9 @@ contains
             is_rounding(eq, x, settings%tolerance*report%stress_scale)
          if (report%converged .or. report%iterations >= settings%iterations_max) exit
          before = contact
-         call dgetrf(n_all, n_all, eq%jacobian, n_all, pivots, info)
-         if (info /= 0) then
-            report%reason = "the Newton matrix on the fractures is singular"
-            return
-         end if
-         step(:, 1) = -eq%residual
-         call dgetrs("T", n_all, 1_ik, eq%jacobian, n_all, pivots, step, n_all, info)
-         x = x + step(:, 1)
+         call newton_step(eq, step, report)
+         if (allocated(report%reason)) return
+         x = x + step
          report%iterations = report%iterations + 1
       end do
       if (.not. report%converged) then
@@ -111,9 +77,43 @@ contains
       call accept(condensed, cells, dt, eq, x, q, traction, contact, state, report)
    end subroutine solve_fractures
 
-   !> Whether every residual is either below the tolerance or no more than the rounding errors of the
-   !! terms it is the sum of: where rock conducts well, those of the fluid balance are larger than any
-   !! fixed tolerance.
+   !> Solve for the step; equations are scaled to a largest coefficient of one. The report keeps the
+   !! condition number (1-norm of the transposed matrix, estimated), and the bound that it gives for
+   !! the relative error of the solution.
+   subroutine newton_step(eq, step, report)
+      type(equations_t), intent(inout) :: eq
+      real(rk), intent(out) :: step(:)
+      type(step_report_t), intent(inout) :: report
+
+      real(rk) :: inverse_condition, norm, rhs(size(step), 1), scale, work(4*size(step))
+      integer(ik) :: info, iwork(size(step)), n, pivots(size(step)), row
+
+      n = size(step, kind=ik)
+      norm = 0.0_rk
+      do row = 1, n
+         scale = maxval(abs(eq%jacobian(:, row)))
+         if (scale > 0.0_rk) then
+            eq%jacobian(:, row) = eq%jacobian(:, row)/scale
+            eq%residual(row) = eq%residual(row)/scale
+         end if
+         norm = max(norm, sum(abs(eq%jacobian(:, row))))
+      end do
+      rhs(:, 1) = -eq%residual
+      call dgetrf(n, n, eq%jacobian, n, pivots, info)
+      if (info /= 0) then
+         report%reason = "the Newton matrix on the fractures is singular"
+         return
+      end if
+      call dgetrs("T", n, 1_ik, eq%jacobian, n, pivots, rhs, n, info)
+      call dgecon("1", n, eq%jacobian, n, norm, inverse_condition, work, iwork, info)
+      step = rhs(:, 1)
+      report%condition = 1.0_rk/max(inverse_condition, tiny(1.0_rk))
+      report%error_bound = min(1.0_rk, report%condition*epsilon(1.0_rk))
+   end subroutine newton_step
+
+   !> Whether every residual is either below the tolerance or no more than the rounding errors of
+   !! the terms it is the sum of: where rock conducts well, those of the fluid balance are larger
+   !! than any fixed tolerance.
    pure function is_rounding(eq, x, tolerance) result(is_small)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)
@@ -191,237 +191,5 @@ contains
       state%aperture = aperture
       state%contact = contact
    end subroutine accept
-
-   !> Units, and the part of the derivatives that does not change within the step.
-   subroutine prepare(condensed, settings, dt, n_all, eq)
-      type(condensed_t), intent(in) :: condensed
-      type(newton_settings_t), intent(in) :: settings
-      real(rk), intent(in) :: dt
-      integer(ik), intent(in) :: n_all
-      type(equations_t), intent(out) :: eq
-
-      real(rk) :: reference
-      integer(ik) :: i, n
-
-      n = condensed%n
-      reference = sum(condensed%length)/real(n, rk)
-      eq%dt = dt
-      eq%stiffness = settings%young/reference
-      eq%unit = reference**2/settings%young
-      allocate (eq%force_slope(per_cell*n, 6*n), source=0.0_rk)
-      allocate (eq%residual(n_all), eq%jacobian(n_all, n_all))
-      do i = 1, n
-         eq%force_slope(7*i - 6:7*i - 1, :) = condensed%stiffness(6*i - 5:6*i, :)
-         eq%force_slope([7*i - 6, 7*i - 5, 7*i - 3, 7*i - 2], :) = &
-            eq%force_slope([7*i - 6, 7*i - 5, 7*i - 3, 7*i - 2], :)/eq%stiffness
-      end do
-   end subroutine prepare
-
-   !> Residuals [Pa] and their derivatives at x.
-   subroutine evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, &
-                       contact)
-      type(condensed_t), intent(in) :: condensed
-      type(fracture_cells_t), intent(in) :: cells
-      integer(ik), intent(in) :: connections(:, :)
-      type(newton_settings_t), intent(in) :: settings
-      real(rk), intent(in) :: g(:), x(:)
-      type(state_t), intent(in) :: state
-      type(equations_t), intent(inout) :: eq
-      real(rk), intent(out) :: q(:), traction(:, :, :)
-      integer(ik), intent(inout) :: way(:, :)  !< direction of slip at the ends of each cell
-      integer(ik), intent(out) :: contact(:, :)
-
-      integer(ik) :: end, i, k
-
-      do i = 1, condensed%n
-         q(6*i - 5:6*i) = x(7*i - 6:7*i - 1)
-         q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) = q([6*i - 5, 6*i - 4, 6*i - 2, 6*i &
-                                                      - 1])/eq%stiffness
-      end do
-      eq%force = matmul(condensed%stiffness, q) - g
-      eq%jacobian = 0.0_rk
-      do i = 1, condensed%n
-         do end = 1, 2
-            call contact_rows(cells%law(i), i, end, 0.5_rk*condensed%length(i), &
-                              state%jump(2, end, i), q, x, eq, traction(:, end, i), way(end, i), &
-                              contact(end, i))
-         end do
-         if (settings%equilibrate) then
-            call equilibrium_rows(i, x, eq)
-         else
-            call exchange_rows(cells, settings, i, condensed%length(i), x, eq)
-            call balance_row(cells, settings, i, condensed%length(i), state, x, eq)
-         end if
-      end do
-      do k = 1, size(connections, 2)
-         call flow_row(condensed, cells, connections(:, k), per_cell*condensed%n + k, settings, x, &
-                       eq)
-      end do
-   end subroutine evaluate
-
-   !> The two contact equations at one end of cell i.
-   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, way, &
-                                contact)
-      type(contact_law_t), intent(in) :: law
-      integer(ik), intent(in) :: i, end
-      real(rk), intent(in) :: half_length, slip_before, q(:), x(:)
-      type(equations_t), intent(inout) :: eq
-      real(rk), intent(out) :: traction(:)
-      integer(ik), intent(inout) :: way
-      integer(ik), intent(out) :: contact
-
-      real(rk) :: by_traction(2, 2), by_jump(2, 2)
-      integer(ik) :: at, k, m, n, row
-
-      n = size(eq%force_slope, 1)
-      at = 6*i - 5 + 3*(end - 1)
-      row = 7*i - 6 + 3*(end - 1)
-      traction = [x(7*i), 0.0_rk] - eq%force(at:at + 1)/half_length
-      call contact_equations(law, eq%stiffness, traction, q(at:at + 1), slip_before, way, &
-                             contact, eq%residual(row:row + 1), by_traction, by_jump)
-      do k = 1, 2
-         associate (slope => eq%jacobian(:, row + k - 1))
-            do m = 1, 2
-               if (abs(by_traction(k, m)) > 0.0_rk) slope(:n) = slope(:n) &
-                                       - by_traction(k, m)/half_length*eq%force_slope(:, at + m - 1)
-            end do
-            slope(7*i) = slope(7*i) + by_traction(k, 1)
-            slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/eq%stiffness
-         end associate
-      end do
-   end subroutine contact_rows
-
-   !> Opening of cell i, the mean of its ends' [u]_n [m].
-   pure function opening(x, i, stiffness) result(mean)
-      real(rk), intent(in) :: x(:)
-      integer(ik), intent(in) :: i
-      real(rk), intent(in) :: stiffness
-      real(rk) :: mean
-
-      mean = 0.5_rk*(x(7*i - 6) + x(7*i - 3))/stiffness
-   end function opening
-
-   !> Flux between the rock and the fracture on both sides: lambda = (kappa/mu)(p - p_F)/(a/2),
-   !! kappa = a^2/12.
-   pure subroutine exchange_rows(cells, settings, i, length, x, eq)
-      type(fracture_cells_t), intent(in) :: cells
-      type(newton_settings_t), intent(in) :: settings
-      integer(ik), intent(in) :: i
-      real(rk), intent(in) :: length, x(:)
-      type(equations_t), intent(inout) :: eq
-
-      real(rk) :: aperture, conductance, slope, volume
-      integer(ik) :: n, row, side
-
-      n = size(eq%force_slope, 1)
-      call conducting_aperture(cells%residual_aperture(i), opening(x, i, eq%stiffness), aperture, &
-                               slope)
-      conductance = eq%dt*length*aperture/(6.0_rk*settings%viscosity)
-      do side = 1, 2
-         row = 7*i - 7 + 3*side
-         volume = eq%force(6*i - 6 + 3*side)
-         eq%residual(row) = volume/conductance - (x(row) - x(7*i))
-         eq%jacobian(:n, row) = eq%force_slope(:, 6*i - 6 + 3*side)/conductance
-         eq%jacobian([7*i - 6, 7*i - 3], row) = eq%jacobian([7*i - 6, 7*i - 3], row) &
-                                           - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
-         eq%jacobian(row, row) = eq%jacobian(row, row) - 1.0_rk
-         eq%jacobian(7*i, row) = eq%jacobian(7*i, row) + 1.0_rk
-      end do
-   end subroutine exchange_rows
-
-   !> Fluid balance of cell i (model.md section 3), without the flow along the fracture.
-   pure subroutine balance_row(cells, settings, i, length, state, x, eq)
-      type(fracture_cells_t), intent(in) :: cells
-      type(newton_settings_t), intent(in) :: settings
-      integer(ik), intent(in) :: i
-      real(rk), intent(in) :: length, x(:)
-      type(state_t), intent(in) :: state
-      type(equations_t), intent(inout) :: eq
-
-      real(rk) :: aperture, compression
-      integer(ik) :: n, row
-
-      n = size(eq%force_slope, 1)
-      row = 7*i
-      aperture = cells%residual_aperture(i) + opening(x, i, eq%stiffness)
-      compression = settings%compressibility*(x(row) - state%pressure(i))
-      eq%residual(row) = (length*(aperture - state%aperture(i) + aperture*compression) &
-                          - eq%force(6*i - 3) - eq%force(6*i) - eq%dt*cells%injection(i))/eq%unit
-      eq%jacobian(:n, row) = -(eq%force_slope(:, 6*i - 3) + eq%force_slope(:, 6*i))/eq%unit
-      eq%jacobian([7*i - 6, 7*i - 3], row) = eq%jacobian([7*i - 6, 7*i - 3], row) &
-                                       + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
-      eq%jacobian(row, row) = eq%jacobian(row, row) &
-                              + length*aperture*settings%compressibility/eq%unit
-   end subroutine balance_row
-
-   !> Initial state: nothing flows, and the fracture has the pressure of the rock around it.
-   pure subroutine equilibrium_rows(i, x, eq)
-      integer(ik), intent(in) :: i
-      real(rk), intent(in) :: x(:)
-      type(equations_t), intent(inout) :: eq
-
-      real(rk) :: conductance
-      integer(ik) :: at, row, side
-
-      do side = 1, 2
-         row = 7*i - 7 + 3*side
-         at = 6*i - 6 + 3*side
-         conductance = abs(eq%force_slope(row, at))
-         eq%residual(row) = eq%force(at)/conductance
-         eq%jacobian(:size(eq%force_slope, 1), row) = eq%force_slope(:, at)/conductance
-      end do
-      row = 7*i
-      eq%residual(row) = x(row) - 0.5_rk*(x(row - 4) + x(row - 1))
-      eq%jacobian(row, row) = 1.0_rk
-      eq%jacobian([row - 4, row - 1], row) = -0.5_rk
-   end subroutine equilibrium_rows
-
-   !> Flow from the first to the second cell of a pair: cubic law, two-point.
-   pure subroutine flow_row(condensed, cells, pair, row, settings, x, eq)
-      type(condensed_t), intent(in) :: condensed
-      type(fracture_cells_t), intent(in) :: cells
-      integer(ik), intent(in) :: pair(2), row
-      type(newton_settings_t), intent(in) :: settings
-      real(rk), intent(in) :: x(:)
-      type(equations_t), intent(inout) :: eq
-
-      real(rk) :: aperture, resistance, slope
-      integer(ik) :: k
-
-      associate (first => 7*pair(1), second => 7*pair(2))
-         eq%residual(row) = x(second) - x(first)
-         do k = 1, 2
-            associate (i => pair(k))
-               call conducting_aperture(cells%residual_aperture(i), opening(x, i, eq%stiffness), &
-                                        aperture, slope)
-               resistance = 6.0_rk*settings%viscosity*condensed%length(i)/aperture**3*eq%unit/eq%dt
-               eq%residual(row) = eq%residual(row) + resistance*x(row)
-               eq%jacobian(row, row) = eq%jacobian(row, row) + resistance
-               eq%jacobian([7*i - 6, 7*i - 3], row) = -1.5_rk*resistance*x(row)/aperture*slope &
-                                                      /eq%stiffness
-            end associate
-         end do
-         eq%jacobian(first, row) = -1.0_rk
-         eq%jacobian(second, row) = 1.0_rk
-         eq%residual(first) = eq%residual(first) + x(row)
-         eq%residual(second) = eq%residual(second) - x(row)
-         eq%jacobian(row, first) = 1.0_rk
-         eq%jacobian(row, second) = -1.0_rk
-      end associate
-   end subroutine flow_row
-
-   !> Aperture that conducts fluid; iterates with closed or overlapping faces keep a hundredth of
-   !! a0.
-   pure subroutine conducting_aperture(residual, opening, aperture, slope)
-      real(rk), intent(in) :: residual, opening  !< a0, [u]_n [m]
-      real(rk), intent(out) :: aperture, slope  !< [m], and its derivative by [u]_n
-
-      aperture = residual + opening
-      slope = 1.0_rk
-      if (.not. aperture > 0.01_rk*residual) then
-         aperture = 0.01_rk*residual
-         slope = 0.0_rk
-      end if
-   end subroutine conducting_aperture
 
 end module coarse_newton

@@ -37,6 +37,8 @@ module coarse_state
       integer(ik) :: iterations = 0
       logical :: converged = .false.
       real(rk) :: contact_residual = 0.0_rk  !< relative to the largest traction [-]
+      real(rk) :: condition = 0.0_rk  !< of the last Newton matrix, estimated; 0 without one [-]
+      real(rk) :: error_bound = 0.0_rk  !< of the relative error of its solution [-]
       real(rk) :: stress_scale = 0.0_rk  !< [Pa]
       real(rk) :: mass_error = 0.0_rk  !< [m2]
       character(len=:), allocatable :: reason  !< why it did not converge

@@ -32,6 +32,9 @@ module output_record
       integer(ik) :: fracture_cells = 0  !< at the end
       real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
       real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
+      real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
+      !> of their solutions, relative; with the one above [-]
+      real(rk) :: forward_error_bound = 0.0_rk
       integer(ik) :: newton_total = 0  !< iterations
       integer(ik) :: newton_max = 0  !< iterations in one step
       integer(ik) :: step_cuts = 0
@@ -133,6 +136,10 @@ contains
       call json%add("peak_memory_mb", peak_memory_mb())
       call json%add("mass_error_relative", self%mass_error_relative)
       call json%add("contact_residual", self%contact_residual)
+      if (self%condition_estimate > 0.0_rk) then
+         call json%add("condition_estimate", self%condition_estimate)
+         call json%add("forward_error_bound", self%forward_error_bound)
+      end if
       call json%begin_object("newton_iterations")
       call json%add("total", self%newton_total)
       call json%add("max", self%newton_max)

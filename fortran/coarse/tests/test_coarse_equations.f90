@@ -1,0 +1,167 @@
+!> The equations on the fractures: all derivatives against central differences, in states without any
+!! pattern; flow along fractures takes from one cell what it gives to the next.
+program test_coarse_equations
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_equations, only: equations_t, evaluate, newton_settings_t, per_cell, prepare
+   use coarse_model, only: coarse_model_t, new_state
+   use coarse_state, only: state_t
+   use contact_law, only: contact_law_t
+   use contact_states, only: state_open, state_slip, state_stick
+   use mesh_builder, only: mesher_t
+   use mesh_types, only: mesh_t
+   use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
+   use scene_types, only: scene_t
+   implicit none(type, external)
+
+   real(rk), parameter :: dt = 10.0_rk  !< [s]
+   type(checks_t) :: checks
+   type(mesh_t) :: mesh
+   type(coarse_model_t) :: model
+   type(state_t) :: state
+   logical :: has_occurred(state_stick:state_open) = .false.
+
+   call start()
+   call compare_slopes(.false., 1)
+   call compare_slopes(.false., 2)
+   call compare_slopes(.true., 3)
+   call checks%is_true(all(has_occurred), "cells stick, slip and are open")
+   call test_exchange_along_fractures()
+   call checks%finish()
+
+contains
+
+   !> Two fractures with laws and apertures that differ from cell to cell.
+   subroutine start()
+      type(scene_t) :: scene
+      type(mesher_t) :: mesher
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, &
+                                                       1.7_rk, 1.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
+      integer(ik) :: i
+
+      scene = porous_body()
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      scene%material%permeability_xx = 1.0e-15_rk
+      scene%material%permeability_yy = 1.0e-15_rk
+      call mesh_square(checks, straight_network(lines), 0.3_rk, 0.5_rk, mesher, mesh)
+      model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-4_rk)
+      do i = 1, mesh%fracture%n_cells
+         model%cells%law(i) = contact_law_t(friction=0.2_rk*mod(i, 4_ik), &
+                                            dilation=0.05_rk*mod(i, 3_ik))
+         model%cells%injection(i) = 1.0e-7_rk*i
+      end do
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization")
+      call model%condensed%factorize(mesh, model%rock, model%matrix, dt, error)
+      call checks%no_error(error, "factorization")
+      call new_state(mesh, model%cells, 5.0e6_rk, model, state)
+      state%jump = 1.0e-5_rk*reshape(scattered(size(state%jump, kind=ik)), shape(state%jump))
+      state%pressure = state%pressure + 1.0e6_rk*scattered(mesh%fracture%n_cells)
+   end subroutine start
+
+   !> Unknowns of the size that they have in rock under some 10 MPa.
+   subroutine some_unknowns(variant, x)
+      integer, intent(in) :: variant
+      real(rk), allocatable, intent(out) :: x(:)
+      real(rk), allocatable :: numbers(:)
+      integer(ik) :: i, n
+
+      n = mesh%fracture%n_cells
+      allocate (numbers, source=scattered(int(variant, ik)*(per_cell*n + size(model%connections, 2))))
+      x = numbers((variant - 1)*size(numbers)/variant + 1:)
+      x = 4.0e6_rk*x
+      do i = 1, n
+         x([7*i - 4, 7*i - 1, 7*i]) = x([7*i - 4, 7*i - 1, 7*i]) + 6.0e6_rk
+      end do
+      ! Flows that the cubic law takes some MPa for.
+      x(per_cell*n + 1:) = 1.0e4_rk*x(per_cell*n + 1:)
+   end subroutine some_unknowns
+
+   subroutine equations_at(x, equilibrate, eq, contact)
+      real(rk), intent(in) :: x(:)
+      logical, intent(in) :: equilibrate
+      type(equations_t), intent(out) :: eq
+      integer(ik), allocatable, intent(out) :: contact(:, :)
+      type(newton_settings_t) :: settings
+      real(rk), allocatable :: g(:), q(:), traction(:, :, :)
+      integer(ik), allocatable :: way(:, :)
+
+      associate (n => mesh%fracture%n_cells)
+         settings = model%settings
+         settings%equilibrate = equilibrate
+         allocate (g, source=1.0e6_rk*scattered(6*n))
+         g(3::3) = 1.0e-5_rk*scattered(2*n)
+         allocate (q(6*n), traction(2, 2, n), contact(2, n))
+         allocate (way(2, n), source=0_ik)
+         call prepare(model%condensed, settings, dt, size(x, kind=ik), eq)
+         call evaluate(model%condensed, model%cells, model%connections, settings, g, state, x, eq, q, &
+                       traction, way, contact)
+      end associate
+   end subroutine equations_at
+
+   !> Each column of the Jacobian, relative to the largest entry of its row. Where a difference would
+   !! reach across a change of state it says nothing.
+   subroutine compare_slopes(equilibrate, variant)
+      logical, intent(in) :: equilibrate
+      integer, intent(in) :: variant
+      type(equations_t) :: above, below, eq
+      real(rk), allocatable :: moved(:), row_scale(:), x(:)
+      real(rk) :: step, worst
+      integer(ik), allocatable :: contact(:, :), contact_above(:, :), contact_below(:, :)
+      integer(ik) :: k, n_compared
+
+      call some_unknowns(variant, x)
+      call equations_at(x, equilibrate, eq, contact)
+      do k = state_stick, state_open
+         has_occurred(k) = has_occurred(k) .or. any(contact == k)
+      end do
+      allocate (row_scale, source=maxval(abs(eq%jacobian), dim=1))
+      worst = 0.0_rk
+      n_compared = 0
+      do k = 1, size(x)
+         step = 1.0e-5_rk*max(abs(x(k)), 1.0e6_rk)
+         moved = x
+         moved(k) = x(k) + step
+         call equations_at(moved, equilibrate, above, contact_above)
+         moved(k) = x(k) - step
+         call equations_at(moved, equilibrate, below, contact_below)
+         if (any(contact_above /= contact) .or. any(contact_below /= contact)) cycle
+         n_compared = n_compared + 1
+         worst = max(worst, maxval(abs((above%residual - below%residual)/(2.0_rk*step) &
+                                       - eq%jacobian(k, :))/row_scale))
+      end do
+      call checks%is_close(worst, 0.0_rk, 1.0e-7_rk, "derivatives")
+      call checks%is_true(n_compared > 0.9_rk*size(x), "nearly all columns were compared")
+   end subroutine compare_slopes
+
+   !> What flows along a fracture leaves one balance and enters the next; the other ends are closed.
+   subroutine test_exchange_along_fractures()
+      type(equations_t) :: at_rest, flowing
+      real(rk), allocatable :: x(:)
+      real(rk) :: balance
+      integer(ik), allocatable :: contact(:, :)
+      integer(ik) :: first, k, n
+
+      n = mesh%fracture%n_cells
+      call checks%is_true(size(model%connections, 2) == n - 2, "two fractures, not connected")
+      call some_unknowns(1, x)
+      x(per_cell*n + 1:) = 0.0_rk
+      call equations_at(x, .false., at_rest, contact)
+      do k = 1, size(model%connections, 2)
+         x(per_cell*n + 1:) = 0.0_rk
+         x(per_cell*n + k) = 3.0e6_rk
+         call equations_at(x, .false., flowing, contact)
+         first = model%connections(1, k)
+         balance = flowing%residual(7*first) - at_rest%residual(7*first)
+         call checks%is_close(balance, 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, "out of the first cell")
+         balance = sum(flowing%residual(7:7*n:7) - at_rest%residual(7:7*n:7))
+         call checks%is_close(balance, 0.0_rk, 1.0e-6_rk*3.0e6_rk, "nothing is lost on the way")
+      end do
+   end subroutine test_exchange_along_fractures
+
+end program test_coarse_equations
