@@ -1,5 +1,5 @@
-!> The equations on the fractures: all derivatives against central differences, in states without any
-!! pattern; flow along fractures takes from one cell what it gives to the next.
+!> The equations on the fractures: all derivatives against central differences, in states without
+!! any pattern; flow along fractures takes from one cell what it gives to the next.
 program test_coarse_equations
    use base_checks, only: checks_t
    use base_errors, only: error_t
@@ -21,6 +21,7 @@ program test_coarse_equations
    type(mesh_t) :: mesh
    type(coarse_model_t) :: model
    type(state_t) :: state
+   real(rk), allocatable :: g(:)  !< load on the condensed system
    logical :: has_occurred(state_stick:state_open) = .false.
 
    call start()
@@ -39,8 +40,8 @@ contains
       type(mesher_t) :: mesher
       type(timers_t) :: timers
       type(error_t), allocatable :: error
-      real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, &
-                                                       1.7_rk, 1.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
+      real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.7_rk, &
+                                                       1.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
       integer(ik) :: i
 
       scene = porous_body()
@@ -57,7 +58,7 @@ contains
       end do
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
-      call model%condensed%factorize(mesh, model%rock, model%matrix, dt, error)
+      call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
       call new_state(mesh, model%cells, 5.0e6_rk, model, state)
       state%jump = 1.0e-5_rk*reshape(scattered(size(state%jump, kind=ik)), shape(state%jump))
@@ -72,7 +73,8 @@ contains
       integer(ik) :: i, n
 
       n = mesh%fracture%n_cells
-      allocate (numbers, source=scattered(int(variant, ik)*(per_cell*n + size(model%connections, 2))))
+      allocate (numbers, source=scattered(int(variant, ik)*(per_cell*n &
+                                                            + size(model%connections, 2))))
       x = numbers((variant - 1)*size(numbers)/variant + 1:)
       x = 4.0e6_rk*x
       do i = 1, n
@@ -82,30 +84,56 @@ contains
       x(per_cell*n + 1:) = 1.0e4_rk*x(per_cell*n + 1:)
    end subroutine some_unknowns
 
+   !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial
+   !! shear f_tau + c d[u]_tau some MPa.
+   subroutine choose_load(x)
+      real(rk), intent(in) :: x(:)
+      type(equations_t) :: eq
+      real(rk), allocatable :: normal(:), shear(:)
+      real(rk) :: slip
+      integer(ik), allocatable :: contact(:, :)
+      integer(ik) :: at, end, i
+
+      associate (n => mesh%fracture%n_cells)
+         g = 1.0e-5_rk*scattered(6*n)
+         call equations_at(x, .false., eq, contact)
+         allocate (normal, source=-6.0e6_rk + 8.0e6_rk*scattered(2*n))
+         allocate (shear, source=1.5e6_rk*scattered(4*n))
+         do i = 1, n
+            do end = 1, 2
+               at = 6*i - 5 + 3*(end - 1)
+               slip = x(7*i - 5 + 3*(end - 1)) - eq%stiffness*state%jump(2, end, i)
+               associate (half_length => 0.5_rk*model%condensed%length(i), k => 2*(i - 1) + end)
+                  g(at:at + 1) = g(at:at + 1) + eq%force(at:at + 1) &
+                                 - half_length*[x(7*i) - normal(k), slip - shear(2*n + k)]
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine choose_load
+
    subroutine equations_at(x, equilibrate, eq, contact)
       real(rk), intent(in) :: x(:)
       logical, intent(in) :: equilibrate
       type(equations_t), intent(out) :: eq
       integer(ik), allocatable, intent(out) :: contact(:, :)
       type(newton_settings_t) :: settings
-      real(rk), allocatable :: g(:), q(:), traction(:, :, :)
+      real(rk), allocatable :: q(:), traction(:, :, :)
       integer(ik), allocatable :: way(:, :)
 
       associate (n => mesh%fracture%n_cells)
          settings = model%settings
          settings%equilibrate = equilibrate
-         allocate (g, source=1.0e6_rk*scattered(6*n))
-         g(3::3) = 1.0e-5_rk*scattered(2*n)
          allocate (q(6*n), traction(2, 2, n), contact(2, n))
          allocate (way(2, n), source=0_ik)
          call prepare(model%condensed, settings, dt, size(x, kind=ik), eq)
-         call evaluate(model%condensed, model%cells, model%connections, settings, g, state, x, eq, q, &
-                       traction, way, contact)
+         call evaluate(model%condensed, model%cells, model%connections, settings, g, state, x, &
+                       eq, q, traction, way, contact)
       end associate
    end subroutine equations_at
 
-   !> Each column of the Jacobian, relative to the largest entry of its row. Where a difference would
-   !! reach across a change of state it says nothing.
+   !> Each column of the Jacobian, relative to the largest entry of its row. Where a difference
+   !! would reach across a change of state it says nothing.
    subroutine compare_slopes(equilibrate, variant)
       logical, intent(in) :: equilibrate
       integer, intent(in) :: variant
@@ -116,6 +144,7 @@ contains
       integer(ik) :: k, n_compared
 
       call some_unknowns(variant, x)
+      call choose_load(x)
       call equations_at(x, equilibrate, eq, contact)
       do k = state_stick, state_open
          has_occurred(k) = has_occurred(k) .or. any(contact == k)
@@ -124,7 +153,7 @@ contains
       worst = 0.0_rk
       n_compared = 0
       do k = 1, size(x)
-         step = 1.0e-5_rk*max(abs(x(k)), 1.0e6_rk)
+         step = 1.0e-4_rk*max(abs(x(k)), 1.0e6_rk)
          moved = x
          moved(k) = x(k) + step
          call equations_at(moved, equilibrate, above, contact_above)

@@ -277,8 +277,8 @@ contains
       scene%material%permeability_yy = 1.0e-18_rk
    end subroutine opening_scene
 
-   !> Viscous fluid opens a fracture from one end; then it is drawn off there, and the fracture closes
-   !! again. Derivatives that are wrong anywhere would let the iteration converge slowly.
+   !> Viscous fluid opens a fracture from one end; then it is drawn off there, and the fracture
+   !! closes again. Derivatives that are wrong anywhere would let the iteration converge slowly.
    subroutine test_quadratic_convergence()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
@@ -289,8 +289,8 @@ contains
 
       call opening_scene(scene)
       scene%fluid%viscosity = 0.02_rk
-      call start(scene, inside, contact_law_t(friction=0.5_rk, dilation=0.02_rk), 1.0e-4_rk, mesh, model, &
-                 state)
+      call start(scene, inside, contact_law_t(friction=0.5_rk, dilation=0.02_rk), 1.0e-4_rk, &
+                 mesh, model, state)
       call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
       model%cells%injection(1) = opening_rate
       call converge(mesh, model, state, "opening")
@@ -320,7 +320,8 @@ contains
       call model%advance(mesh, opening_time, state, timers, exact, error)
       call checks%is_true(exact%converged, name//": eleven digits")
       call checks%is_true(exact%iterations <= rough%iterations + 2, name//": quadratic convergence")
-      print '(2a,2i4)', name, ", iterations to 1e-3 and to 1e-11:", rough%iterations, exact%iterations
+      print "(2a,2i4)", name, ", iterations to 1e-3 and to 1e-11:", rough%iterations, &
+         exact%iterations
       associate (given => opening_time*sum(model%cells%injection), &
                  gained => balance(mesh, model, before, state))
          call checks%is_close(gained, given, 1.0e-9_rk*abs(given), name//": fluid")
