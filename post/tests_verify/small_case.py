@@ -129,6 +129,26 @@ reference = "rising"
 metric = "monotonic"
 tolerance = 1.0e-6
 """,
+    "at_least": """\
+[[check]]
+quantity = "no less than the range of a line"
+unit = "Pa"
+judged = ["fine"]
+result = { file = "profile.csv", column = "p_pa", take = "max" }
+reference = { run_file = "exact.csv", column = "factor*x_m + 5", take = "span" }
+metric = "at_least"
+tolerance = 1.0e-6
+""",
+    "of another run": """\
+[[check]]
+quantity = "profile beside that of a coarser run"
+unit = "Pa"
+runs = ["fine"]
+result = { file = "profile.csv", column = "p_pa", x = "x_m" }
+reference = { run = "middle", file = "profile.csv", column = "p_pa", x = "x_m" }
+metric = "max_relative"
+tolerance = 0.01
+""",
     "residual": """\
 [[check]]
 quantity = "mass error"

@@ -11,7 +11,7 @@ from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
 
 PROFILE = "fine/profile.csv"
 LAST = "1.0,2.005"  # the last row of the finest result
-COMPARING = sorted(set(CHECKS) - {"residual", "monotonic"})
+COMPARING = sorted(set(CHECKS) - {"residual", "monotonic", "at_least"})
 
 
 def replace_last(case: SmallCase, value: str) -> None:
@@ -46,6 +46,34 @@ def test_sign_factor_and_unit_fail(tmp_path: Path, name: str, factor: float) -> 
     case = small_case(tmp_path, name)
     scale_column(case, factor)
     assert case.judge().verdict == FAILED
+
+
+@pytest.mark.parametrize("factor", [-1.0, 0.5, 1.0e-6], ids=["sign", "half", "unit"])
+def test_less_than_the_least_fails(tmp_path: Path, factor: float) -> None:
+    case = small_case(tmp_path, "at_least")
+    scale_column(case, factor)
+    assert case.judge().verdict == FAILED
+
+
+def test_a_run_is_never_compared_with_itself(tmp_path: Path) -> None:
+    case = small_case(tmp_path, "of another run")
+    case.toml = case.toml.replace('run = "middle"', 'run = "fine"')
+    assert case.judge().verdict == ERROR
+    assert "compared with itself" in only_reason(case)
+
+
+def test_comparing_with_an_unknown_run_is_an_error(tmp_path: Path) -> None:
+    case = small_case(tmp_path, "of another run")
+    case.toml = case.toml.replace('run = "middle"', 'run = "finest"')
+    assert case.judge().verdict == ERROR
+    assert "there is no run 'finest'" in only_reason(case)
+
+
+def test_comparing_with_a_run_that_failed_is_an_error(tmp_path: Path) -> None:
+    case = small_case(tmp_path, "of another run")
+    case.write_record("middle", status="failed")
+    assert case.judge().verdict == ERROR
+    assert "has not finished" in only_reason(case)
 
 
 def test_a_falling_profile_is_not_rising(tmp_path: Path) -> None:
@@ -187,6 +215,7 @@ def test_a_case_that_says_what_nobody_knows_is_an_error(
         ("range", "lower = 1.9", "lower = 1.6"),
         ("monotonic", "tolerance = 1.0e-6", "tolerance = 0.11"),
         ("residual", "tolerance = 1.0e-8", "tolerance = 0.11"),
+        ("at_least", "tolerance = 1.0e-6", "tolerance = 0.11"),
     ],
 )
 def test_a_tolerance_above_a_tenth_of_the_signal_is_an_error(

@@ -30,6 +30,9 @@ def pair(result: list[float], reference: list[float]) -> Pair:
         ("max_relative", [1.0, -3.0], [1.0, -4.0], 0.25),
         ("monotonic", [0.0, 2.0, 1.5, 4.0], [0.0] * 4, 0.125),
         ("monotonic", [4.0, 2.0, 1.5, 0.0], [0.0] * 4, math.inf),
+        ("at_least", [5.0], [4.0], 0.0),
+        ("at_least", [3.0], [4.0], 0.25),
+        ("at_least", [-3.0], [-2.0], 0.5),
     ],
 )
 def test_error_of_few_values(

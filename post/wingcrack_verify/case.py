@@ -41,6 +41,7 @@ class Reference:
     expression: str | None = None
     selection: Selection | None = None
     of_run: bool = False
+    other_run: str | None = None
     limits: tuple[float, float] | None = None
     direction: str | None = None
 
@@ -198,6 +199,7 @@ def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | No
     if normalise == "range" and not METRICS[metric].can_normalise:
         raise CaseError(f"{fields.place}: 'normalise' is not for the metric {metric}")
     reference = _read_reference(fields.take("reference"), f"{fields.place}: reference")
+    _check_other_run(reference, runs, measured, fields.place)
     _check_kind(metric, reference, fields.place)
     if reference.limits is not None:
         tolerance = 0.5 * (reference.limits[1] - reference.limits[0])
@@ -256,6 +258,10 @@ def _read_reference(data: Any, place: str) -> Reference:
         reference = Reference(limits=(lower, upper))
     elif fields.has("expression"):
         reference = Reference(expression=fields.text("expression"))
+    elif fields.has("run"):
+        other = fields.text("run")
+        selection = read_selection(fields, fields.text("file"))
+        reference = Reference(selection=selection, other_run=other)
     elif fields.has("run_file"):
         selection = read_selection(fields, fields.text("run_file"))
         reference = Reference(selection=selection, of_run=True)
@@ -263,6 +269,19 @@ def _read_reference(data: Any, place: str) -> Reference:
         reference = Reference(selection=read_selection(fields, fields.text("file")))
     fields.done()
     return reference
+
+
+def _check_other_run(
+    reference: Reference, runs: tuple[Run, ...], measured: tuple[str, ...], place: str
+) -> None:
+    """Refuse a reference run that is none, or a run that would be compared with itself."""
+    other = reference.other_run
+    if other is None:
+        return
+    if other not in {run.name for run in runs}:
+        raise CaseError(f"{place}: reference: there is no run '{other}'")
+    if other in measured:
+        raise CaseError(f"{place}: the run '{other}' would be compared with itself")
 
 
 def _check_kind(metric: str, reference: Reference, place: str) -> None:

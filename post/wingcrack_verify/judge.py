@@ -14,7 +14,7 @@ from wingcrack_verify.execute import Outcome
 from wingcrack_verify.expressions import Array, evaluate
 from wingcrack_verify.metrics import Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
-from wingcrack_verify.selection import Values, interpolated, select
+from wingcrack_verify.selection import Selection, Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
 VERDICTS = (PASSED, GAP, FAILED, ERROR)  # from good to bad
@@ -135,7 +135,7 @@ def judge_case(case: Case, outcomes: Mapping[str, Outcome]) -> CaseReport:
 def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> CheckReport:
     """Measure and judge one check."""
     runs = [run for run in case.runs if run.name in check.runs]
-    measured = tuple(_measure(case, check, run, outcomes[run.name]) for run in runs)
+    measured = tuple(_measure(case, check, run, outcomes) for run in runs)
     orders = _orders(check, measured)
     reasons = [f"{item.run.name}: {item.broken}" for item in measured if item.broken]
     broken = bool(reasons) or any(order.broken for order in orders)
@@ -172,7 +172,8 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     return CheckReport(check, verdict, tuple(reasons), measured, orders, points, advice)
 
 
-def _measure(case: Case, check: Check, run: Run, outcome: Outcome) -> Measured:
+def _measure(case: Case, check: Check, run: Run, outcomes: Mapping[str, Outcome]) -> Measured:
+    outcome = outcomes[run.name]
     judged = run.name in check.judged
     if outcome.status != "finished":
         broken = outcome.reason if outcome.status == "invalid" else ""
@@ -181,7 +182,10 @@ def _measure(case: Case, check: Check, run: Run, outcome: Outcome) -> Measured:
         constants = _constants(case, run)
         output = Path(outcome.folder) / "output"
         result = select(check.result, output, constants)
-        pair = _pair(check, case, result, output, constants)
+        if check.reference.other_run is None:
+            pair = _pair(check, case, result, output, constants)
+        else:
+            pair = _pair_of_runs(check, case, result, outcomes)
         error = measure(check.metric, pair, check.by_range)
         size = signal(check.metric, pair, check.scale)
         check_tolerance(check.tolerance, size)
@@ -214,9 +218,27 @@ def _pair(
         return _paired(result, np.atleast_1d(evaluate(reference.expression, names)))
     assert reference.selection is not None
     folder = output if reference.of_run else case.folder
-    found = select(reference.selection, folder, constants)
+    return _beside(reference.selection, result, folder, constants)
+
+
+def _pair_of_runs(
+    check: Check, case: Case, result: Values, outcomes: Mapping[str, Outcome]
+) -> Pair:
+    """Result beside the same quantity of another run of the case."""
+    assert check.reference.selection is not None
+    other = next(run for run in case.runs if run.name == check.reference.other_run)
+    if outcomes[other.name].status != "finished":
+        raise CaseError(f"the run '{other.name}' that it is compared with has not finished")
+    folder = Path(outcomes[other.name].folder) / "output"
+    return _beside(check.reference.selection, result, folder, _constants(case, other))
+
+
+def _beside(
+    selection: Selection, result: Values, folder: Path, constants: Mapping[str, float]
+) -> Pair:
+    found = select(selection, folder, constants)
     if found.x is not None and result.x is not None:
-        return _paired(result, interpolated(found, result.x, reference.selection.file))
+        return _paired(result, interpolated(found, result.x, selection.file))
     return _paired(result, found.values)
 
 

@@ -95,6 +95,11 @@ def _wrong_way(pair: Pair, _by_range: bool) -> float:
     return float(max(0.0, np.max(-np.diff(pair.result))) / total)
 
 
+def _shortfall(pair: Pair, _by_range: bool) -> float:
+    missing = float(pair.reference[0] - pair.result[0])
+    return max(0.0, missing) / _nonzero(abs(float(pair.reference[0])))
+
+
 METRICS: dict[str, Metric] = {
     "absolute": Metric(_absolute, has_unit=True),
     "relative": Metric(_relative, one_value=True),
@@ -103,6 +108,7 @@ METRICS: dict[str, Metric] = {
     "l2_relative": Metric(_l2_relative, can_normalise=True),
     "range": Metric(_absolute, has_unit=True),
     "monotonic": Metric(_wrong_way),
+    "at_least": Metric(_shortfall, one_value=True),
 }
 
 

@@ -28,6 +28,7 @@ TAKES: dict[str, Callable[[Array], float]] = {
     "max": lambda values: float(np.max(values)),
     "min": lambda values: float(np.min(values)),
     "max_abs": lambda values: float(np.max(np.abs(values))),
+    "span": lambda values: float(np.ptp(values)),
     "mean": lambda values: float(np.mean(values)),
     "sum": lambda values: float(np.sum(values)),
 }
