@@ -6,6 +6,10 @@
 !! nodal lengths L are the integrals of the shape functions over the faces (1/6, 4/6, 1/6 of a cell,
 !! and 0, 2/3, 1/3 from the tip in a quarter-point element); they are positive wherever a pair
 !! exists, so the sign of a force is that of the traction f.
+!!
+!! At a joint one link follows from the others (fine_joints). Its jump is C w, and its traction f_c
+!! that of the middle of its cell, at the node m: S w - g = -L f - C' L_c f_c with f_c = -(S w -
+!! g)_m/L_m. Rows of S and g combined accordingly leave the form above.
 module fine_contact
    use base_kinds, only: ik, rk
    use base_lapack, only: dgetrf, dgetrs
@@ -17,7 +21,8 @@ module fine_contact
    implicit none(type, external)
    private
 
-   public :: contact_problem_t, contact_t, new_contact, set_contact_problem, solve_contact
+   public :: close_joints, contact_problem_t, contact_t, new_contact, set_contact_problem
+   public :: solve_contact
 
    !> Contact on all faces, node by node as start, end, mid of each fracture cell; what several
    !! cells share has the same value in each of them. Zero and open where there is no contact.
@@ -33,11 +38,20 @@ module fine_contact
       procedure :: accept
    end type contact_t
 
+   !> A link that closes a ring at a joint.
+   type :: closing_t
+      integer(ik) :: cell = 0, end = 0  !< fracture cell and its end at the joint
+      integer(ik) :: middle = 0  !< contact number of the middle of the cell
+      real(rk) :: ratio = 0.0_rk  !< nodal length at the joint over that of the middle [-]
+      real(rk), allocatable :: jump_of(:, :)  !< C (n tau, 2 n) its jump from all jumps
+   end type closing_t
+
    !> What does not change from load to load.
    type :: contact_problem_t
       integer(ik) :: n = 0  !< pairs in contact
       real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
-      real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n) [Pa]
+      real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
+      type(closing_t), allocatable :: closing(:)
       real(rk), allocatable :: length(:)  !< L (n) [m]
       type(contact_law_t), allocatable :: law(:)  !< (n)
       logical, allocatable :: slip_given(:)  !< (n)
@@ -110,7 +124,61 @@ contains
          if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
       end do
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)
+      call find_closing(fine, constraints, problem)
    end subroutine set_contact_problem
+
+   !> The links that close rings, with their jumps as sums of others.
+   pure subroutine find_closing(fine, constraints, problem)
+      type(fine_mesh_t), intent(in) :: fine
+      type(constraints_t), intent(in) :: constraints
+      type(contact_problem_t), intent(inout) :: problem
+      real(rk) :: tau(2), axes(2, 2)
+      integer(ik) :: column, i, j, node, side, row
+
+      allocate (problem%closing(size(constraints%closing, 2)))
+      do i = 1, size(problem%closing)
+         associate (link => problem%closing(i))
+            link%cell = constraints%closing(1, i)
+            link%end = constraints%closing(2, i)
+            link%middle = problem%place(3, link%cell)
+            link%ratio = problem%share(link%end, link%cell)/problem%length(link%middle)
+            allocate (link%jump_of(2, 2*problem%n), source=0.0_rk)
+            tau = fine%face_tangent(:, link%cell)
+            axes = reshape([-tau(2), tau(1), tau(1), tau(2)], [2, 2])
+            do side = 1, 2
+               node = fine%face_nodes(link%end, side, link%cell)
+               do column = 1, constraints%n_columns(node)
+                  ! The motion of the joint as a whole is no jump, and falls out of the difference.
+                  row = findloc(constraints%contact_dofs, constraints%dof(column, node), dim=1)
+                  if (row == 0) cycle
+                  do j = 1, 2
+                     link%jump_of(j, row) = link%jump_of(j, row) + (2*side - 3) &
+                                            *dot_product(axes(:, j), &
+                                                         constraints%basis(:, column, node))
+                  end do
+               end do
+            end do
+         end associate
+      end do
+   end subroutine find_closing
+
+   !> Let the tractions of closing links act: combine the rows of the condensed system or the load.
+   pure subroutine close_joints(problem, rows)
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(inout) :: rows(:, :)  !< (any, 2 n) an equation per column
+      integer(ik) :: i, row
+
+      do i = 1, size(problem%closing)
+         associate (link => problem%closing(i), middle => problem%closing(i)%middle)
+            do row = 1, 2*problem%n
+               if (.not. any(abs(link%jump_of(:, row)) > 0.0_rk)) cycle
+               rows(:, row) = rows(:, row) &
+                              - link%ratio*(link%jump_of(1, row)*rows(:, 2*middle - 1) &
+                                            + link%jump_of(2, row)*rows(:, 2*middle))
+            end do
+         end associate
+      end do
+   end subroutine close_joints
 
    !> Find the jumps that fulfil equilibrium and the law. A reason is given if that fails.
    subroutine solve_contact(problem, load, given_jump, contact, jump, reason)
@@ -193,7 +261,7 @@ contains
       real(rk) :: force(size(load)), by_traction(2, 2), by_jump(2, 2)
       integer(ik) :: i, k, m, row
 
-      force = matmul(problem%condensed, jump) - load
+      force = matmul(jump, problem%condensed) - load
       do i = 1, problem%n
          row = 2*i - 1
          traction(:, i) = -force(row:row + 1)/problem%length(i)
@@ -243,7 +311,7 @@ contains
       real(rk), intent(in) :: jump(:), traction(:, :)
       integer(ik), intent(in) :: state(:)
       type(contact_t), intent(inout) :: contact
-      integer(ik) :: cell, k
+      integer(ik) :: cell, i_closing, k
 
       do cell = 1, size(problem%place, 2)
          do k = 1, 3
@@ -254,6 +322,13 @@ contains
                contact%state(k, cell) = state(i)
             end associate
          end do
+      end do
+      do i_closing = 1, size(problem%closing)
+         associate (link => problem%closing(i_closing))
+            contact%jump([2, 1], link%end, link%cell) = matmul(link%jump_of, jump)
+            contact%traction(:, link%end, link%cell) = traction([2, 1], link%middle)
+            contact%state(link%end, link%cell) = state(link%middle)
+         end associate
       end do
    end subroutine scatter
 

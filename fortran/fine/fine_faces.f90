@@ -8,13 +8,14 @@
 !! definite, without penalty or multipliers.
 !!
 !! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
-!! whatever the conditions of the cells around, and so does a pair of which a node is held at the
-!! outer boundary.
+!! whatever the conditions of the cells around, unless these are in contact (fine_joints). A pair of
+!! which a node is held at the outer boundary stays free, too.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
    use fine_boundary, only: fine_boundary_t
+   use fine_loads, only: face_shares
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
@@ -23,7 +24,7 @@ module fine_faces
    public :: columns_max, face_contact, face_jump, face_law_t, face_loaded, face_slip
    public :: loaded_everywhere, prescribe_jumps
 
-   integer(ik), parameter :: columns_max = 4  !< unknowns that may move one node
+   integer(ik), parameter :: columns_max = 8  !< unknowns that may move one node
 
    ! Conditions of a fracture cell. Where cells meet, the larger number holds at their common nodes.
    integer(ik), parameter :: face_loaded = 1  !< contact traction and fluid pressure given
@@ -61,6 +62,7 @@ module fine_faces
       ! Pairs in contact.
       integer(ik), allocatable :: contact_pairs(:)  !< (n_contact) which pairs
       integer(ik), allocatable :: contact_dofs(:)  !< (2 n_contact) unknowns [u]_n, [u]_tau of each
+      integer(ik), allocatable :: closing(:, :)  !< (2, n) cell and end whose jump others decide
    end type constraints_t
 
 contains
@@ -164,6 +166,7 @@ contains
          if (follows(node) > 0) constraints%dof(:, node) = constraints%dof(:, follows(node))
       end do
       allocate (constraints%contact_pairs(0), constraints%contact_dofs(0))
+      allocate (constraints%closing(2, 0))
       do pair = 1, constraints%n_pairs
          if (constraints%pair_condition(pair) /= face_contact) cycle
          plus = constraints%pair_nodes(1, pair)
@@ -226,7 +229,8 @@ contains
    end subroutine find_pairs
 
    !> The condition of each pair, and the frame of those that may slip. At a kink it is the mean of
-   !! the frames of the cells that have the pair's condition, and so is the dilation.
+   !! the frames of the cells that have the pair's condition, and so is the dilation. In contact the
+   !! mean is weighted by the cells' nodal lengths: a uniform pressure then has no shear component.
    pure subroutine combine_conditions(fine, boundary, conditions, constraints, dilation)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -234,7 +238,7 @@ contains
       type(constraints_t), intent(inout) :: constraints
       real(rk), allocatable, intent(out) :: dilation(:)  !< (n_pairs)
       integer(ik), allocatable :: n_alike(:)
-      real(rk) :: tau(2)
+      real(rk) :: share(3), tau(2)
       integer(ik) :: cell, k, pair
 
       allocate (constraints%tangent(2, constraints%n_pairs), source=0.0_rk)
@@ -264,6 +268,10 @@ contains
             ! Seen from the other side tau, n and the jump all change sign: its components do not.
             tau = fine%face_tangent(:, cell)
             if (constraints%face_flipped(k, cell)) tau = -tau
+            if (conditions%condition(cell) == face_contact) then
+               share = face_shares(fine%face_tip(cell))
+               tau = share(k)*fine%face_length(cell)*tau
+            end if
             constraints%tangent(:, pair) = constraints%tangent(:, pair) + tau
             dilation(pair) = dilation(pair) + conditions%dilation(cell)
             n_alike(pair) = n_alike(pair) + 1

@@ -4,12 +4,13 @@ module fine_model
    use base_kinds, only: ik, rk
    use base_mumps, only: mumps_definite, mumps_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, fine_boundary_t
-   use fine_contact, only: contact_problem_t, contact_t, new_contact, set_contact_problem, &
-                           solve_contact
+   use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
+                           set_contact_problem, solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t
    use fine_element, only: stiffness_matrix
    use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
                          face_conditions_t, face_contact, face_loaded, prescribe_jumps
+   use fine_joints, only: tie_joints
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t, tip_collapsed
    use mesh_types, only: mesh_t
@@ -92,6 +93,7 @@ contains
       call check_boundary(self%mesh, self%boundary, error)
       if (allocated(error)) return
       call build_constraints(self%mesh, self%boundary, conditions, self%constraints)
+      call tie_joints(self%mesh, self%boundary, conditions, self%constraints)
       if (present(boundary)) then
          associate (tied => self%constraints%pair_condition /= face_loaded)
             allocate (bonds(2, count(tied)))
@@ -125,6 +127,7 @@ contains
          if (problem%n == 0) return
          allocate (problem%condensed(2*problem%n, 2*problem%n))
          call self%solver%get_schur(problem%condensed)
+         call close_joints(problem, problem%condensed)
       end associate
    end subroutine condense_contact
 
@@ -259,16 +262,17 @@ contains
       type(contact_t), intent(inout) :: contact
       real(rk), intent(inout), contiguous :: x(:, :)  !< (n_dofs, 1) loads, then unknowns
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: load(2*self%contact_problem%n), jump(2*self%contact_problem%n)
+      real(rk) :: load(1, 2*self%contact_problem%n), jump(2*self%contact_problem%n)
       character(len=:), allocatable :: reason
 
       if (self%contact_problem%n == 0) then
          call self%solver%solve(x, error)
          return
       end if
-      call self%solver%condense(x(:, 1), load, error)
+      call self%solver%condense(x(:, 1), load(1, :), error)
       if (allocated(error)) return
-      call solve_contact(self%contact_problem, load, given_jump, contact, jump, reason)
+      call close_joints(self%contact_problem, load)
+      call solve_contact(self%contact_problem, load(1, :), given_jump, contact, jump, reason)
       if (allocated(reason)) then
          call raise_error(error, "fine_model_t%solve", "contact: "//reason)
          return

@@ -1,12 +1,15 @@
-!> Contact on a network with a kink, a T joint and five free tips, under loads that change their
-!! direction from step to step: the law must hold at every pair, with its whole history.
+!> Contact on a network with kinks, a T and an X joint and seven free tips: under a uniform stress
+!! that the faces can carry, and under loads that change their direction from step to step, when the
+!! law must hold at every pair, with its whole history.
 program test_fine_contact_network
    use base_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t, contact_residual
    use contact_states, only: state_open, state_stick
-   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
+   use exact_cracks, only: uniform_field
+   use fine_boundary, only: add_side_traction, clamped_boundary, fine_boundary_t, free_boundary, &
+                            nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_contact, face_law_t, loaded_everywhere
@@ -24,6 +27,8 @@ program test_fine_contact_network
    integer(ik) :: seen(0:2) = 0
 
    call set_body()
+   call uniform_stress(0.0_rk, 0.0_rk)
+   call uniform_stress(0.6_rk, 1.5e6_rk)
    call history(0.0_rk, 0.0_rk)
    call history(0.3_rk, 0.0_rk)
    call history(0.6_rk, 0.1_rk)
@@ -39,11 +44,12 @@ contains
       type(mesh_t) :: mesh
       type(error_t), allocatable :: error
 
-      ! The second fracture has kinks, the third ends on the first.
-      network = network_t(first=[1_ik, 3_ik, 6_ik, 8_ik], s_start=[0.0_rk, 0.0_rk, 0.0_rk], &
+      ! The second fracture has a kink, the third ends on the first, which the fourth crosses.
+      network = network_t(first=[1_ik, 3_ik, 6_ik, 8_ik, 10_ik], s_start=spread(0.0_rk, 1, 4), &
                           xy=reshape([-1.2_rk, 0.1_rk, 0.6_rk, 0.3_rk, &
                                       0.9_rk, -1.0_rk, 1.4_rk, -0.4_rk, 1.4_rk, 0.7_rk, &
-                                      -0.7_rk, -1.1_rk, -0.3_rk, 0.2_rk], [2, 7]))
+                                      -0.7_rk, -1.1_rk, -0.3_rk, 0.2_rk, &
+                                      0.1_rk, 0.9_rk, 0.2_rk, -0.5_rk], [2, 9]))
       spec%x_min = -half(1)
       spec%x_max = half(1)
       spec%y_min = -half(2)
@@ -62,6 +68,52 @@ contains
       boundary%prescribed(:, nearest_node(model%mesh, -half)) = .true.
       boundary%prescribed(2, nearest_node(model%mesh, [half(1), -half(2)])) = .true.
    end subroutine set_body
+
+   !> Closed faces that hold carry a uniform stress through the joints as if they were not there.
+   subroutine uniform_stress(friction, shear)
+      real(rk), intent(in) :: friction, shear  !< [-], [Pa]
+      real(rk), parameter :: pressure = 5.0e6_rk
+      type(fine_boundary_t) :: clamped
+      type(fine_loads_t) :: loads
+      type(face_conditions_t) :: conditions
+      type(contact_t) :: contact
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :)
+      real(rk) :: exact(2, model%mesh%n_nodes), tau(2), normal(2), across(2), apart
+      integer(ik) :: cell, k, node
+
+      conditions = loaded_everywhere(model%mesh)
+      conditions%condition = face_contact
+      conditions%law = face_law_t(contact_law_t(friction))
+      clamped = clamped_boundary(model%mesh)
+      call model%prepare(conditions, error, clamped)
+      loads = no_loads(model%mesh)
+      do node = 1, model%mesh%n_nodes
+         exact(:, node) = uniform_field(model%elasticity, [-pressure, -pressure, shear], &
+                                        model%mesh%xy(:, node))
+      end do
+      loads%boundary_displacement = exact
+      contact = new_contact(model%mesh)
+      call model%solve(loads, displacement, error, contact)
+      call checks%no_error(error, "uniform stress is solved")
+      call checks%is_close(maxval(abs(displacement - exact)), 0.0_rk, &
+                           1.0e-12_rk*maxval(abs(exact)), "uniform stress: displacement")
+      apart = 0.0_rk
+      do cell = 1, model%mesh%fracture%n_cells
+         tau = model%mesh%face_tangent(:, cell)
+         normal = [-tau(2), tau(1)]
+         across = -pressure*normal + shear*[normal(2), normal(1)]
+         do k = 1, 3
+            ! A kink has a frame of its own; a tip has no pair.
+            if (model%constraints%face_pair(k, cell) == 0) cycle
+            if (norm2(model%constraints%tangent(:, model%constraints%face_pair(k, cell)) - tau) &
+                > 1.0e-9_rk) cycle
+            apart = max(apart, abs(contact%traction(1, k, cell) - dot_product(across, tau)), &
+                        abs(contact%traction(2, k, cell) - dot_product(across, normal)))
+         end do
+      end do
+      call checks%is_close(apart, 0.0_rk, 1.0e-2_rk, "uniform stress: tractions")
+   end subroutine uniform_stress
 
    !> Eight loads one after the other.
    subroutine history(friction, dilation)
