@@ -102,7 +102,11 @@ contains
          if (allocated(error)) return
          if (has_onset) then
             call simulation%grow(increment, any_grew, timers, error)
-            if (allocated(error)) return
+            if (simulation%is_cut) then
+               call end_broken(simulation, journal, error)
+               is_done = .true.
+            end if
+            if (allocated(error) .or. is_done) return
          else
             simulation%tip%advance = 0.0_rk
          end if
@@ -113,6 +117,17 @@ contains
          if (is_done .or. interrupted()) return
       end do
    end subroutine follow_growth
+
+   !> Fractures have cut the body: no equilibrium is left, and that is how the scene ends.
+   subroutine end_broken(simulation, journal, error)
+      type(simulation_t), intent(in) :: simulation
+      type(load_journal_t), intent(inout) :: journal
+      type(error_t), allocatable, intent(inout) :: error
+
+      call journal%growth_done(simulation)
+      journal%record%reason = "a piece of the body has come loose"
+      if (allocated(error)) deallocate (error)
+   end subroutine end_broken
 
    !> Whether a fracture's end has grown as far as the scene wants.
    subroutine check_gain(simulation, journal, is_done)

@@ -13,7 +13,8 @@ module app_load_journal
    use output_progress, only: progress_t, progress_values_t
    use output_record, only: run_record_t
    use output_run, only: run_output_t
-   use output_tables, only: event_arrest, event_growth, event_remesh
+   use mesh_types, only: point_boundary, point_interior, point_tip
+   use output_tables, only: event_growth, event_joint, event_remesh
    use tips_growth, only: growth_drive_t
    use tips_network, only: total_length
    use tips_types, only: intensity_t
@@ -61,6 +62,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(history_row_t) :: row
       real(rk), allocatable :: jump(:, :)
+      integer(ik) :: i
 
       call timers%start(phase_output)
       associate (body => simulation%body)
@@ -72,6 +74,9 @@ contains
          row%fracture_length = total_length(simulation%network)
          row%seismic_moment = simulation%seismic_moment
          row%n_tips = body%mesh%fracture%n_tips
+         row%n_intersections = count([(all(body%mesh%fracture%point_kind(i) /= &
+                                           [point_interior, point_tip, point_boundary]), &
+                                       i=1, body%mesh%fracture%n_points)])
          if (body%mesh%fracture%n_cells > 0) then
             jump = fracture_jump(body)
             row%max_opening = maxval(jump(1, :))
@@ -209,12 +214,10 @@ contains
                   tip%kink*degrees, " deg"
                call self%files%event_row(simulation%time(), event_growth, trim(detail), &
                                          tip%fracture, tip%xy)
-            else if (allocated(tip%arrest_reason)) then
-               call self%record%warn("fracture "// &
-                                     trim(simulation%scene%fractures(tip%fracture)%name)// &
-                                     " stopped growing "//tip%arrest_reason)
-               call self%files%event_row(simulation%time(), event_arrest, tip%arrest_reason, &
-                                         tip%fracture, tip%xy)
+               if (allocated(tip%joint)) then
+                  call self%files%event_row(simulation%time(), event_joint, tip%joint, &
+                                            tip%fracture, tip%xy)
+               end if
             end if
          end associate
       end do

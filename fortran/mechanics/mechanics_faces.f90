@@ -2,7 +2,7 @@
 !! what is kept of contact when the mesh changes.
 !!
 !! New faces, which growth has made, have the law of their fracture; but next to a given slip, which
-!! belongs to the fracture as it was at the start, they are free of traction.
+!! belongs to the fracture as it was at the start, they touch without friction.
 module mechanics_faces
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
@@ -36,8 +36,7 @@ contains
             case ("open")
                cycle
             case ("slip")
-               if (.not. was_there(start, f, fine%fracture%cell_s(:, cell))) cycle
-               law%slip_given = .true.
+               law%slip_given = was_there(start, f, fine%fracture%cell_s(:, cell))
             case ("friction")
                law%contact = contact_law_t(friction=scene%fractures(f)%friction, &
                                            dilation=tan(scene%fractures(f)%dilation))
@@ -84,7 +83,37 @@ contains
                                             fine%face_s(k, cell))
          end do
       end do
+      call turn_at_kinks(scene, start, fine, jump)
    end subroutine given_slip
+
+   !> Where a given slip d leads into a wing, the node of both has the mean of their directions as
+   !! its tangent (fine_faces): along it goes the part of d that points that way; what is across,
+   !! the opening of the wing's mouth, is left to contact.
+   pure subroutine turn_at_kinks(scene, start, fine, jump)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(inout) :: jump(:, :, :)
+      real(rk) :: tangent(2), along
+      integer(ik) :: cell
+
+      do cell = 1, fine%fracture%n_cells - 1  ! cells are stored along each fracture
+         associate (f => fine%fracture%cell_fracture, s => fine%fracture%cell_s)
+            if (f(cell) /= f(cell + 1) .or. scene%fractures(f(cell))%law /= "slip") cycle
+            if (was_there(start, f(cell), s(:, cell)) .eqv. &
+                was_there(start, f(cell), s(:, cell + 1))) cycle
+         end associate
+         tangent = fine%face_tangent(:, cell) + fine%face_tangent(:, cell + 1)
+         tangent = tangent/norm2(tangent)
+         if (abs(jump(1, 2, cell)) > 0.0_rk) then  ! the slip is on this cell
+            along = jump(1, 2, cell)*dot_product(tangent, fine%face_tangent(:, cell))
+         else
+            along = jump(1, 1, cell + 1)*dot_product(tangent, fine%face_tangent(:, cell + 1))
+         end if
+         jump(1, 2, cell) = along
+         jump(1, 1, cell + 1) = along
+      end do
+   end subroutine turn_at_kinks
 
    !> The slip at an arc length for load factor 1 [m]. Next to an end from which nothing has grown
    !! it rises as a quarter of an ellipse; an end that leads into a wing slips like the middle.

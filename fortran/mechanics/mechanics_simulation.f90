@@ -5,10 +5,12 @@ module mechanics_simulation
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, timers_t
    use mechanics_body, only: body_t
+   use mechanics_outline, only: outline_of_scene, outline_t
+   use mechanics_targets, only: cuts_through, find_target, target_boundary, target_none
    use mesh_types, only: network_t
    use scene_types, only: scene_t
    use tips_growth, only: advances, carry_over, growth_drive, growth_drive_t, new_tip
-   use tips_network, only: extend, network_of_scene, other_distance
+   use tips_network, only: extend, network_of_scene
    use tips_path, only: path_t
    use tips_types, only: intensity_t
    implicit none(type, external)
@@ -26,8 +28,8 @@ module mechanics_simulation
    type, extends(path_t) :: tip_t
       integer(ik) :: fracture = 0  !< in the network
       integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
-      logical :: arrested = .false.
-      character(len=:), allocatable :: arrest_reason
+      logical :: arrested = .false.  !< joined to something
+      character(len=:), allocatable :: joint  !< to what, for events; allocated once
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
       type(intensity_t) :: intensity_before  !< before the last increment of any tip
@@ -40,6 +42,8 @@ module mechanics_simulation
       type(scene_t) :: scene
       type(network_t) :: start  !< network of the scene
       type(network_t) :: network
+      type(outline_t) :: outline
+      logical :: is_cut = .false.  !< fractures have cut off a piece that nothing holds
       type(body_t) :: body
       type(tip_t), allocatable :: tip(:)
       real(rk) :: factor = 0.0_rk  !< of the load [-]
@@ -66,6 +70,7 @@ contains
       self%factor = scene%load%from
       self%start = network_of_scene(scene)
       self%network = self%start
+      self%outline = outline_of_scene(scene)
       call self%body%build(scene, self%start, self%network, phase_mesh, timers, error)
       if (allocated(error)) return
       associate (fracture => self%body%mesh%fracture)
@@ -105,7 +110,10 @@ contains
             associate (tip => self%tip(i))
                k = findloc(fracture%tip_fracture == tip%fracture .and. &
                            fracture%tip_end == tip%end, .true., dim=1)
-               if (k == 0) cycle  ! no longer free
+               if (k == 0) then  ! another fracture has joined it
+                  tip%arrested = .true.
+                  cycle
+               end if
                tip%intensity = self%body%intensity(k)
                tip%rosette_radius = fracture%tip_radius(k)
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
@@ -228,8 +236,7 @@ contains
             tip%carried = left
             if (.not. applied > 0.0_rk) cycle
             to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
-            call find_obstacle(self%network, self%scene, tip, to)
-            if (tip%arrested) cycle
+            call meet_target(self, tip, tip%xy, to)
             call extend(self%network, tip%fracture, tip%end, to)
             call tip%move(to, tip%drive%angle)
             any_grew = .true.
@@ -242,8 +249,10 @@ contains
          any_turned = .false.
          do i = 1, size(self%tip)
             associate (tip => self%tip(i))
+               if (tip%arrested) cycle
                call tip%correct(tip%drive%angle, has_turned)
                if (.not. has_turned) cycle
+               call meet_target(self, tip, tip%origin, tip%xy)
                at = merge(self%network%first(tip%fracture), &
                           self%network%first(tip%fracture + 1) - 1, tip%end == 1)
                self%network%xy(:, at) = tip%xy
@@ -264,29 +273,29 @@ contains
 
       call self%body%build(self%scene, self%start, self%network, phase_remesh, timers, error)
       if (.not. allocated(error)) call self%respond(self%factor, timers, error)
+      if (allocated(error)) self%is_cut = cuts_through(self%body%mesh%fracture)
    end subroutine rebuild
 
-   !> A tip that comes nearer to another fracture or to the boundary than the mesh can resolve
-   !! stops.
-   subroutine find_obstacle(network, scene, tip, to)
-      type(network_t), intent(in) :: network
-      type(scene_t), intent(in) :: scene
+   !> A tip that crosses another fracture or the boundary, or comes nearer to it than its rosette
+   !! is wide, joins it there and stops.
+   subroutine meet_target(self, tip, from, to)
+      type(simulation_t), intent(in) :: self
       type(tip_t), intent(inout) :: tip
-      real(rk), intent(in) :: to(2)
-      real(rk) :: distance
-      integer(ik) :: nearest
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(inout) :: to(2)  !< where it grows, or meets something [m]
+      real(rk) :: at(2), reach
+      integer(ik) :: target
 
-      associate (domain => scene%domain, reach => scene%discretization%size_fracture)
-         call other_distance(network, tip%fracture, tip%xy, to, distance, nearest)
-         if (distance < reach) then
-            tip%arrested = .true.
-            tip%arrest_reason = "next to fracture "//trim(scene%fractures(nearest)%name)
-         else if (min(to(1) - domain%x_min, domain%x_max - to(1), to(2) - domain%y_min, &
-                      domain%y_max - to(2)) < reach) then
-            tip%arrested = .true.
-            tip%arrest_reason = "next to the outer boundary"
-         end if
-      end associate
-   end subroutine find_obstacle
+      reach = self%scene%discretization%rosette_radius
+      if (.not. reach > 0.0_rk) reach = self%scene%discretization%size_fracture
+      call find_target(self%network, self%outline, tip%fracture, from, to, reach, target, at)
+      if (target == target_none) return
+      to = at
+      tip%arrested = .true.
+      tip%joint = "joins the outer boundary"
+      if (target /= target_boundary) then
+         tip%joint = "joins fracture "//trim(self%scene%fractures(target)%name)
+      end if
+   end subroutine meet_target
 
 end module mechanics_simulation

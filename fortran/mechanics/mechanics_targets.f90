@@ -1,0 +1,104 @@
+!> Where a growing tip meets another fracture or the outer boundary.
+module mechanics_targets
+   use base_kinds, only: ik, rk
+   use mechanics_outline, only: outline_t
+   use mesh_types, only: fracture_mesh_t, network_t, point_boundary
+   implicit none(type, external)
+   private
+
+   public :: cuts_through, find_target, target_boundary, target_none
+
+   integer(ik), parameter :: target_none = 0
+   integer(ik), parameter :: target_boundary = -1
+
+   !> Share of the reach within which a joint is put onto a vertex that is there already.
+   real(rk), parameter :: snap = 0.3_rk
+
+contains
+
+   !> What a new segment at the end of a fracture crosses first, or else what its end comes near.
+   pure subroutine find_target(network, outline, fracture, from, to, reach, target, at)
+      type(network_t), intent(in) :: network
+      type(outline_t), intent(in) :: outline
+      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
+      real(rk), intent(in) :: reach  !< how near is near [m]
+      integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
+      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk) :: best
+      integer(ik) :: f, v, k, n
+
+      target = target_none
+      at = to
+      best = huge(1.0_rk)
+      do f = 1, size(network%first, kind=ik) - 1
+         if (f == fracture) cycle
+         do v = network%first(f), network%first(f + 1) - 2
+            call try(from, to, network%xy(:, v:v + 1), reach, f, best, target, at)
+         end do
+      end do
+      n = size(outline%corners, 2, kind=ik)
+      do k = 1, n
+         call try(from, to, outline%corners(:, [k, mod(k, n) + 1]), reach, target_boundary, best, &
+                  target, at)
+      end do
+   end subroutine find_target
+
+   !> Keep the candidate if it comes first. Crossings rank by their share of the segment, below 1;
+   !! nearness follows after all of them.
+   pure subroutine try(from, to, ends, reach, candidate, best, target, at)
+      real(rk), intent(in) :: from(2), to(2), ends(2, 2), reach
+      integer(ik), intent(in) :: candidate
+      real(rk), intent(inout) :: best
+      integer(ik), intent(inout) :: target
+      real(rk), intent(inout) :: at(2)
+      real(rk) :: along(2), side(2), place(2), determinant, share(2), rank
+      integer :: k
+
+      along = to - from
+      side = ends(:, 2) - ends(:, 1)
+      determinant = along(1)*side(2) - along(2)*side(1)
+      rank = huge(1.0_rk)
+      place = to
+      if (abs(determinant) > 0.0_rk) then
+         associate (between => ends(:, 1) - from)
+            share = [between(1)*side(2) - between(2)*side(1), &
+                     between(1)*along(2) - between(2)*along(1)]/determinant
+         end associate
+         if (all(share >= 0.0_rk .and. share <= 1.0_rk)) then
+            rank = share(1)
+            place = ends(:, 1) + share(2)*side
+         end if
+      end if
+      if (rank > 1.0_rk) then
+         share(2) = min(1.0_rk, max(0.0_rk, dot_product(to - ends(:, 1), side) &
+                                    /dot_product(side, side)))
+         place = ends(:, 1) + share(2)*side
+         if (norm2(place - to) < reach) rank = 1.0_rk + norm2(place - to)/reach
+      end if
+      if (.not. rank < best) return
+      best = rank
+      target = candidate
+      at = place
+      do k = 1, 2
+         if (norm2(place - ends(:, k)) < snap*reach) at = ends(:, k)
+      end do
+   end subroutine try
+
+   !> Fractures, with the outer boundary as one more, form a ring: they cut a piece off the body.
+   pure logical function cuts_through(fracture)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik) :: group(fracture%n_points), cell, i, outer, roots(2)
+
+      group = [(i, i=1, fracture%n_points)]
+      outer = findloc(fracture%point_kind, point_boundary, dim=1)
+      if (outer > 0) where (fracture%point_kind == point_boundary) group = outer
+      cuts_through = .false.
+      do cell = 1, fracture%n_cells
+         roots = group(fracture%cell_points(:, cell))
+         if (roots(1) == roots(2)) cuts_through = .true.
+         where (group == roots(2)) group = roots(1)
+      end do
+   end function cuts_through
+
+end module mechanics_targets

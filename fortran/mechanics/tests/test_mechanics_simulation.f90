@@ -1,0 +1,102 @@
+!> The load programme: the onset of growth is found where linearity says, and never stepped over.
+program test_mechanics_simulation
+   use base_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: rk
+   use base_timers, only: timers_t
+   use mechanics_simulation, only: simulation_t
+   use scene_types, only: fracture_t, restraint_t, scene_t
+   implicit none(type, external)
+   real(rk), parameter :: exact = 1.0e-8_rk  !< of a factor found from linear responses
+   type(checks_t) :: checks
+
+   call check_onset("open", -1.0_rk)
+   call check_onset("open", 1.0_rk)
+   call check_onset("frictionless", -1.0_rk)
+   call check_growth()
+   call checks%finish()
+
+contains
+
+   !> A plate of 2 m with a crack of 0.4 m at 30 degrees, pulled or pressed in y.
+   function plate(law, traction) result(scene)
+      character(len=*), intent(in) :: law
+      real(rk), intent(in) :: traction  !< on the top and bottom [Pa]
+      type(scene_t) :: scene
+
+      scene%domain%x_min = -1.0_rk
+      scene%domain%x_max = 1.0_rk
+      scene%domain%y_min = -1.0_rk
+      scene%domain%y_max = 1.0_rk
+      scene%material%young = 1.0e9_rk
+      scene%material%poisson = 0.25_rk
+      scene%material%toughness = 2.0_rk
+      allocate (scene%fractures(1), scene%point_loads(0))
+      scene%fractures(1) = fracture_t(name="f", law=law, x=0.2_rk*cos(0.5236_rk)*[-1, 1], &
+                                      y=0.2_rk*sin(0.5236_rk)*[-1, 1])
+      scene%restraints = [restraint_t(x=-1.0_rk, y=-1.0_rk, displacement_given=[.true., .true.]), &
+                          restraint_t(x=1.0_rk, y=-1.0_rk, displacement_given=[.false., .true.])]
+      scene%sides(3)%traction = [0.0_rk, -traction]
+      scene%sides(4)%traction = [0.0_rk, traction]
+      scene%discretization%size_fracture = 0.04_rk
+      scene%discretization%size_boundary = 0.3_rk
+      scene%growth%enabled = .true.
+      scene%growth%intensities = .true.
+      scene%load%to = 100.0_rk
+   end function plate
+
+   !> K_eq is proportional to the factor: its onset follows from any other factor.
+   subroutine check_onset(law, traction)
+      character(len=*), intent(in) :: law
+      real(rk), intent(in) :: traction
+      type(simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      logical :: has_onset
+      real(rk) :: per_factor, expected
+
+      call timers%begin()
+      call simulation%begin(plate(law, traction), timers, error)
+      call checks%no_error(error, law//": begin")
+      if (allocated(error)) return
+      call simulation%rise(0.1_rk, has_onset, timers, error)
+      call checks%no_error(error, law//": a small load")
+      if (allocated(error)) return
+      call checks%is_true(.not. has_onset, law//": a small load does not make it grow")
+      call checks%is_close(simulation%factor, 0.1_rk, 0.0_rk, law//": the load is reached")
+      per_factor = maxval(simulation%tip%drive%intensity)/0.1_rk
+      expected = simulation%scene%material%toughness/per_factor
+      call simulation%rise(0.999_rk*expected, has_onset, timers, error)
+      call checks%is_true(.not. has_onset, law//": no onset below the onset")
+      call simulation%rise(10.0_rk*expected, has_onset, timers, error)
+      call checks%no_error(error, law//": onset")
+      call checks%is_true(has_onset, law//": the onset is found on the way")
+      call checks%is_close(simulation%factor/expected, 1.0_rk, exact, law//": where it is")
+   end subroutine check_onset
+
+   !> Both tips grow together, at a load that does not change, and the next rise starts there.
+   subroutine check_growth()
+      type(simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      logical :: has_onset, any_grew
+      real(rk) :: factor
+
+      call timers%begin()
+      call simulation%begin(plate("open", 1.0_rk), timers, error)
+      call simulation%rise(100.0_rk, has_onset, timers, error)
+      factor = simulation%factor
+      call simulation%grow(0.04_rk, any_grew, timers, error)
+      call checks%no_error(error, "growth")
+      if (allocated(error)) return
+      call checks%is_true(any_grew .and. all(simulation%tip%advance > 0.039_rk), "both tips grow")
+      call checks%is_close(simulation%factor, factor, 0.0_rk, "at the same load")
+      call checks%is_close(norm2(sum(reshape([simulation%tip(1)%xy, simulation%tip(2)%xy], &
+                                             [2, 2]), dim=2)), 0.0_rk, 1.0e-3_rk, &
+                           "the wings mirror each other")
+      call simulation%rise(100.0_rk, has_onset, timers, error)
+      call checks%is_true(has_onset, "in tension growth goes on")
+      call checks%is_close(simulation%factor, factor, 0.0_rk, "without more load")
+   end subroutine check_growth
+
+end program test_mechanics_simulation
