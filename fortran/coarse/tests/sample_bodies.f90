@@ -3,18 +3,20 @@ module sample_bodies
    use base_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
    use contact_law, only: contact_law_t
    use coarse_matrix, only: matrix_t
+   use coarse_model, only: coarse_model_t, new_state
    use coarse_regions, only: face_length
-   use coarse_state, only: fracture_cells_t
+   use coarse_state, only: fracture_cells_t, state_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: boxes, cell_centre, dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body
-   public :: scattered, shake, straight_network, uniform_cells
+   public :: boxes, cell_centre, cut_square, dense_matrix, linear_unknowns, load_sides, mesh_square
+   public :: porous_body, scattered, shake, straight_network, uniform_cells
 
 contains
 
@@ -232,5 +234,28 @@ contains
          end do
       end do
    end function dense_matrix
+
+   !> The square with one straight fracture, on cells of irregular shape, before anything happens.
+   subroutine cut_square(checks, scene, line, law, aperture, mesh, model, state)
+      type(checks_t), intent(inout) :: checks
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: line(2, 2)  !< ends of the fracture [m]
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(mesh_t), intent(out) :: mesh
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
+      type(mesher_t) :: mesher
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, &
+                       mesher, mesh)
+      call shake(mesh)
+      model%cells = uniform_cells(mesh, law, aperture)
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization")
+      call new_state(mesh, model%cells, scene%initial%pressure, model, state)
+   end subroutine cut_square
 
 end module sample_bodies

@@ -76,6 +76,10 @@ contains
                            "from its start")
       call checks%is_close(simulation%rate(1_ik, 29.0_rk, 1.0_rk), 1.0e-6_rk, 0.0_rk, "to its end")
       call checks%is_close(simulation%rate(1_ik, 30.0_rk, 1.0_rk), 0.0_rk, 0.0_rk, "after its end")
+      call checks%is_close(simulation%rate(1_ik, 0.0_rk, 10.000000001_rk), 0.0_rk, 0.0_rk, &
+                           "a step that ends at its start but for rounding")
+      call checks%is_close(simulation%rate(1_ik, 29.999999999_rk, 5.0_rk), 0.0_rk, 0.0_rk, &
+                           "a step that begins at its end but for rounding")
       call checks%is_close(simulation%rate(2_ik, 1.0e9_rk, 1.0_rk), 2.0e-6_rk, 0.0_rk, &
                            "without end")
       call switches_at(simulation, 0.0_rk, 10.0_rk)
