@@ -22,30 +22,36 @@ contains
          length = total_length(network_of_scene(scene))
          fracture_cells = 0
          if (length > 0.0_rk) fracture_cells = nint(length/d%size_fracture, ik)
-         write (unit, '(2a)') "scene:        ", trim(scene%name)
-         if (len_trim(scene%title) > 0) write (unit, '(2a)') "title:        ", trim(scene%title)
-         write (unit, '(a,2(es10.3,a))') "body:        ", body%x_max - body%x_min, " x", &
-            body%y_max - body%y_min, " m, "//trim(merge("poroelastic", "elastic    ", scene%has_fluid()))
-         write (unit, '(a,i0,a,es10.3,a)') "fractures:    ", size(scene%fractures), ", together", length, " m"
-         if (scene%has_fluid()) write (unit, '(a,i0)') "wells:        ", size(scene%injections)
-         write (unit, '(a,i0)') "probes:       ", size(scene%probes)
+         write (unit, "(2a)") "scene:        ", trim(scene%name)
+         if (len_trim(scene%title) > 0) write (unit, "(2a)") "title:        ", trim(scene%title)
+         write (unit, "(a,2(es10.3,a))") "body:        ", body%x_max - body%x_min, " x", &
+            body%y_max - body%y_min, " m, "//trim(merge("poroelastic", "elastic    ", &
+                                                        scene%has_fluid()))
+         write (unit, "(a,i0,a,es10.3,a)") "fractures:    ", size(scene%fractures), ", together", &
+            length, " m"
+         if (scene%has_fluid()) write (unit, "(a,i0)") "wells:        ", size(scene%injections)
+         write (unit, "(a,i0)") "probes:       ", size(scene%probes)
          if (scene%has_fluid()) then
-            write (unit, '(a,es10.3,a,i0,a)') "time:        ", scene%time%end, " s in ", &
+            write (unit, "(a,es10.3,a,i0,a)") "time:        ", scene%time%end, " s in ", &
                ceiling(scene%time%end/scene%time%step), " regular steps"
          else
-            write (unit, '(2(a,es10.3),a,i0,a)') "load factor: ", scene%load%from, " to", scene%load%to, &
-               " in ", scene%load%steps, " steps"
-            write (unit, '(a)') "left out:     pressure, flow, coarse level"
+            write (unit, "(2(a,es10.3),a,i0,a)") "load factor: ", scene%load%from, " to", &
+               scene%load%to, " in ", scene%load%steps, " steps"
+            write (unit, "(a)") "left out:     pressure, flow, coarse level"
          end if
-         write (unit, '(2a)') "tips:         ", trim(merge("growth     ", merge("intensities", "left out   ", &
-            scene%growth%intensities), scene%growth%enabled))
-         write (unit, '(2a)') "VTU files:    ", trim(merge("yes     ", "left out", scene%output%vtu))
-         write (unit, '(a,i0,a,i0,a)') "about:        ", estimated_cells(scene), " cells, ", fracture_cells, &
-            " fracture cells"
+         write (unit, "(2a)") "tips:         ", trim(merge("growth     ", &
+                                                           merge("intensities", "left out   ", &
+                                                                 scene%growth%intensities), &
+                                                           scene%growth%enabled))
+         write (unit, "(2a)") "VTU files:    ", trim(merge("yes     ", "left out", &
+                                                           scene%output%vtu))
+         write (unit, "(a,i0,a,i0,a)") "about:        ", estimated_cells(scene), " cells, ", &
+            fracture_cells, " fracture cells"
       end associate
    end subroutine describe_scene
 
-   !> Number of cells by integrating 1/area over the body, cell size linear in the distance from the middle.
+   !> Number of cells by integrating 1/area over the body, cell size linear in the distance from the
+   !! middle.
    pure function estimated_cells(scene) result(n)
       type(scene_t), intent(in) :: scene
       integer(ik) :: n
@@ -65,7 +71,7 @@ contains
                distance = max(0.0_rk, hypot(x, y) - 0.25_rk*length)
                size_here = d%size_boundary
                if (length > 0.0_rk) size_here = min(size_here, d%size_fracture + (d%size_boundary &
-                  - d%size_fracture)*distance/norm2(half))
+                                                            - d%size_fracture)*distance/norm2(half))
                count = count + 1.0_rk/size_here**2
             end do
          end do

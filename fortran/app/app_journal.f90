@@ -7,12 +7,13 @@ module app_journal
    use coarse_fields, only: cell_stresses
    use coarse_state, only: step_report_t
    use mesh_builder, only: locate
-   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, matrix_fields_t, &
-      tip_row_t
+   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
+                            matrix_fields_t, tip_row_t
    use output_progress, only: progress_t, progress_values_t
    use output_record, only: run_record_t
    use output_run, only: run_output_t
-   use output_tables, only: event_arrest, event_growth, event_opening, event_remesh, event_slip_onset
+   use output_tables, only: event_arrest, event_growth, event_opening, event_remesh, &
+                            event_slip_onset
    use tips_growth, only: growth_drive_t
    use tips_types, only: intensity_t
    use tips_network, only: total_length
@@ -58,7 +59,8 @@ contains
       call self%files%network_step(simulation%state%time, simulation%network, simulation%mesh)
    end subroutine open_journal
 
-   !> An accepted step (dt = 0: the initial state): history, probes, events, and fields where they are due.
+   !> An accepted step (dt = 0: the initial state): history, probes, events, and fields where they
+   !! are due.
    subroutine step_done(self, simulation, dt, slip_before, report, timers, error)
       class(journal_t), intent(inout) :: self
       type(simulation_t), intent(inout) :: simulation
@@ -80,15 +82,16 @@ contains
       if (fields_due .or. size(simulation%scene%probes) > 0) then
          allocate (stresses(3, simulation%mesh%n_cells))
          call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, &
-            stresses)
+                            stresses)
          if (size(simulation%scene%probes) > 0) call write_probes(self, simulation, stresses, error)
-         if (fields_due .and. .not. allocated(error)) &
+         if (fields_due .and. .not. allocated(error)) then
             call write_fields(self, simulation, stresses, error)
+         end if
       end if
       if (.not. allocated(error)) call self%files%tick(error)
       call self%progress%show(progress_values_t(time=row%time, time_end=simulation%scene%time%end, &
-         step=self%record%steps, newton_iterations=row%newton_iterations, n_stick=row%n_stick, &
-         n_slip=row%n_slip, n_open=row%n_open, fracture_length=row%fracture_length))
+             step=self%record%steps, newton_iterations=row%newton_iterations, n_stick=row%n_stick, &
+                         n_slip=row%n_slip, n_open=row%n_open, fracture_length=row%fracture_length))
       call timers%stop(phase_output)
    end subroutine step_done
 
@@ -126,11 +129,11 @@ contains
                   row%n_stick = row%n_stick + 1
                case (state_slip)
                   row%n_slip = row%n_slip + 1
-               case (state_open)
+               case default
                   row%n_open = row%n_open + 1
                end select
-               self%seismic_moment = self%seismic_moment + simulation%model%rock%shear*0.5_rk*length(i) &
-                  *sum(abs(state%jump(2, :, i) - slip_before(:, i)))
+               self%seismic_moment = self%seismic_moment + simulation%model%rock%shear*0.5_rk &
+                                     *length(i)*sum(abs(state%jump(2, :, i) - slip_before(:, i)))
             end do
          end if
          row%seismic_moment = self%seismic_moment
@@ -138,7 +141,8 @@ contains
          if (.not. fluid > 0.0_rk) fluid = max(sum(abs(state%content)), tiny(1.0_rk))
          row%mass_error_relative = abs(self%mass_error)/fluid
       end associate
-      self%record%mass_error_relative = max(self%record%mass_error_relative, row%mass_error_relative)
+      self%record%mass_error_relative = max(self%record%mass_error_relative, &
+                                            row%mass_error_relative)
       self%record%contact_residual = max(self%record%contact_residual, report%contact_residual)
       self%record%condition_estimate = max(self%record%condition_estimate, report%condition)
       self%record%forward_error_bound = max(self%record%forward_error_bound, report%error_bound)
@@ -172,10 +176,12 @@ contains
             centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), dim=2)
             if (state == state_slip .and. .not. self%has_slipped(f)) then
                self%has_slipped(f) = .true.
-               call self%files%event_row(simulation%state%time, event_slip_onset, "first slip", f, centre)
+               call self%files%event_row(simulation%state%time, event_slip_onset, "first slip", f, &
+                                         centre)
             else if (state == state_open .and. .not. self%has_opened(f)) then
                self%has_opened(f) = .true.
-               call self%files%event_row(simulation%state%time, event_opening, "first opening", f, centre)
+               call self%files%event_row(simulation%state%time, event_opening, "first opening", f, &
+                                         centre)
             end if
          end do
       end associate
@@ -205,7 +211,8 @@ contains
             values(:, i) = matmul(simulation%level%nodal(:, nodes), weight)
          end associate
       end do
-      call self%files%probe_row(simulation%state%time, values(:2, :), stresses(:, cells), values(3, :))
+      call self%files%probe_row(simulation%state%time, values(:2, :), stresses(:, cells), &
+                                values(3, :))
    end subroutine write_probes
 
    !> Barycentric coordinates.
@@ -216,7 +223,8 @@ contains
       integer :: i
 
       do i = 1, 3
-         associate (a => corners(:, mod(i, 3) + 1) - point, b => corners(:, mod(i + 1, 3) + 1) - point)
+         associate (a => corners(:, mod(i, 3) + 1) - point, b => corners(:, mod(i + 1, 3) + 1) &
+                    - point)
             weight(i) = a(1)*b(2) - a(2)*b(1)
          end associate
       end do
@@ -266,7 +274,8 @@ contains
       if (size(simulation%state%unknowns, 2) /= simulation%model%regions%n_blocks) return
       call timers%start(phase_output)
       allocate (stresses(3, simulation%mesh%n_cells))
-      call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, stresses)
+      call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, &
+                         stresses)
       call write_fields(self, simulation, stresses, error)
       call timers%stop(phase_output)
    end subroutine write_last_state
@@ -283,7 +292,8 @@ contains
       do i = 1, size(simulation%tips%tip)
          associate (tip => simulation%tips%tip(i))
             if (tip%advance > 0.0_rk) then
-               call add_row(tip%origin, tip%intensity_before, tip%drive_before, tip%kink, tip%advance)
+               call add_row(tip%origin, tip%intensity_before, tip%drive_before, tip%kink, &
+                            tip%advance)
             else
                call add_row(tip%xy, tip%intensity, tip%drive, tip%drive%angle, 0.0_rk)
             end if
@@ -300,9 +310,9 @@ contains
          real(rk), intent(in) :: angle, advance
 
          call self%files%tip_row(tip_row_t(time=simulation%state%time, tip=i, &
-            fracture=simulation%tips%tip(i)%fracture, xy=xy, k1=intensity%k1, k2=intensity%k2, &
-            k1_dc=intensity%k1_dc, k2_dc=intensity%k2_dc, keq=drive%intensity, g=drive%energy, &
-            angle=angle, advance=advance))
+                fracture=simulation%tips%tip(i)%fracture, xy=xy, k1=intensity%k1, k2=intensity%k2, &
+                k1_dc=intensity%k1_dc, k2_dc=intensity%k2_dc, keq=drive%intensity, g=drive%energy, &
+                                           angle=angle, advance=advance))
       end subroutine add_row
 
    end subroutine tips_done
@@ -317,7 +327,7 @@ contains
       integer(ik) :: i
 
       if (is_coarse) then
-         write (detail, '(i0,a,i0,a)') simulation%mesh%n_cells, " cells, ", &
+         write (detail, "(i0,a,i0,a)") simulation%mesh%n_cells, " cells, ", &
             simulation%mesh%fracture%n_cells, " fracture cells"
          call self%files%event_row(simulation%state%time, event_remesh, trim(detail))
          call self%files%network_step(simulation%state%time, simulation%network, simulation%mesh)
@@ -326,15 +336,16 @@ contains
       do i = 1, size(simulation%tips%tip)
          associate (tip => simulation%tips%tip(i))
             if (tip%advance > 0.0_rk) then
-               write (detail, '(a,es10.3,a,f7.2,a)') "advance ", tip%advance, " m, kink ", &
+               write (detail, "(a,es10.3,a,f7.2,a)") "advance ", tip%advance, " m, kink ", &
                   tip%kink*45.0_rk/atan(1.0_rk), " deg"
-               call self%files%event_row(simulation%state%time, event_growth, trim(detail), tip%fracture, &
-                  tip%xy)
+               call self%files%event_row(simulation%state%time, event_growth, trim(detail), &
+                                         tip%fracture, tip%xy)
             else if (allocated(tip%arrest_reason)) then
-               call self%record%warn("fracture "//trim(simulation%scene%fractures(tip%fracture)%name) &
-                  //" stopped growing "//tip%arrest_reason)
+               call self%record%warn("fracture "// &
+                                     trim(simulation%scene%fractures(tip%fracture)%name)// &
+                                     " stopped growing "//tip%arrest_reason)
                call self%files%event_row(simulation%state%time, event_arrest, tip%arrest_reason, &
-                  tip%fracture, tip%xy)
+                                         tip%fracture, tip%xy)
             end if
          end associate
       end do
@@ -358,7 +369,7 @@ contains
       n_fine = 0
       do i = 1, size(simulation%tips%window)
          if (simulation%tips%built(i)) n_fine = n_fine &
-            + simulation%tips%window(i)%model%constraints%n_dofs
+                                                + simulation%tips%window(i)%model%constraints%n_dofs
       end do
       call self%record%count_dofs("windows", n_fine)
    end subroutine count_unknowns

@@ -98,6 +98,7 @@ contains
          self%record%fracture_cells = body%mesh%fracture%n_cells
          call self%record%count_dofs("displacement", body%model%constraints%n_dofs)
       end associate
+      call log_error(self, simulation)
       call write_probes(self, simulation, error)
       if (.not. allocated(error)) call self%files%tick(error)
       call self%progress%show(progress_values_t(time=row%time, time_end=1.0_rk, &
@@ -105,6 +106,19 @@ contains
                                                 fracture_length=row%fracture_length))
       call timers%stop(phase_output)
    end subroutine step_done
+
+   !> The estimated error of an adaptive mesh, into the log.
+   subroutine log_error(self, simulation)
+      class(load_journal_t), intent(inout) :: self
+      type(simulation_t), intent(in) :: simulation
+      character(len=120) :: line
+
+      if (.not. simulation%scene%adaptive%enabled) return
+      write (line, "(a,es13.6,a,es9.2,a,i0,a)") "load factor ", simulation%factor, &
+         ": estimated error in the energy norm ", simulation%body%estimate%relative, ", ", &
+         simulation%body%mesh%n_cells, " elements"
+      call self%files%log(trim(line))
+   end subroutine log_error
 
    !> Displacement and stress at the probes.
    subroutine write_probes(self, simulation, error)

@@ -16,7 +16,8 @@ module app_run
 
    public :: run_scene
 
-   real(rk), parameter :: settled = 0.01_rk  !< relative change of pressure at new tips in a short step
+   !> relative change of pressure at new tips in a short step
+   real(rk), parameter :: settled = 0.01_rk
 
    !> How the time step is chosen.
    type :: stepping_t
@@ -89,8 +90,9 @@ contains
          if (scene%initial%fracture_pressure == "equilibrated") then
             slip_before = simulation%state%jump(2, :, :)
             call simulation%equilibrate(timers, report, error)
-            if (.not. allocated(error) .and. .not. report%converged) &
+            if (.not. allocated(error) .and. .not. report%converged) then
                call raise_error(error, "", "the initial state was not found: "//report%reason)
+            end if
             if (allocated(error)) return
             report%mass_error = 0.0_rk
             call journal%step_done(simulation, 0.0_rk, slip_before, report, timers, error)
@@ -119,10 +121,12 @@ contains
             if (is_done) exit
          end do
          if (.not. stepping%short) return
-         ! The last growth changed the coarse mesh: find the state on it, so that the fields show it.
+         ! The last growth changed the coarse mesh: find the state on it, so that the fields show
+         ! it.
          call take_step(simulation, journal, stepping, timers, dt, slip_before, report, error)
-         if (.not. allocated(error)) &
+         if (.not. allocated(error)) then
             call journal%step_done(simulation, dt, slip_before, report, timers, error)
+         end if
          if (.not. allocated(error)) call simulation%evaluate_tips(timers, error)
          if (allocated(error)) return
          simulation%tips%tip%advance = 0.0_rk
@@ -154,21 +158,22 @@ contains
          if (allocated(error)) return
          if (report%converged) return
          dt = 0.5_rk*dt
-         write (number, '(es10.3)') dt
+         write (number, "(es10.3)") dt
          journal%record%step_cuts = journal%record%step_cuts + 1
          journal%record%newton_total = journal%record%newton_total + report%iterations
          call journal%files%event_row(simulation%state%time, event_step_cut, "step cut to " &
-            //trim(adjustl(number))//" s: "//report%reason)
+                                      //trim(adjustl(number))//" s: "//report%reason)
          if (dt < simulation%scene%time%smallest_factor*simulation%scene%time%step) then
             call raise_error(error, "", report%reason//", even with a time step of " &
-               //trim(adjustl(number))//" s")
+                             //trim(adjustl(number))//" s")
             return
          end if
          stepping%next = dt
       end do
    end subroutine take_step
 
-   !> The next step: short ones until the pressure at new tips has settled, and back from cuts by doubling.
+   !> The next step: short ones until the pressure at new tips has settled, and back from cuts by
+   !! doubling.
    subroutine choose_step(simulation, stepping)
       type(simulation_t), intent(in) :: simulation
       type(stepping_t), intent(inout) :: stepping
@@ -183,7 +188,8 @@ contains
                   maxval(abs(pressure - stepping%pressure)) > settled*maxval(abs(pressure))
             end if
             stepping%pressure = pressure
-            stepping%next = merge(simulation%scene%time%growth_factor*regular, regular, stepping%short)
+            stepping%next = merge(simulation%scene%time%growth_factor*regular, regular, &
+                                  stepping%short)
          else
             stepping%next = min(2.0_rk*stepping%next, regular)
          end if
@@ -206,7 +212,7 @@ contains
       associate (scene => simulation%scene)
          increment = scene%growth%increment
          if (.not. increment > 0.0_rk) increment = scene%discretization%fine_ratio &
-            *scene%discretization%size_fracture
+                                                   *scene%discretization%size_fracture
          call simulation%evaluate_tips(timers, error)
          do
             if (allocated(error)) return
@@ -243,10 +249,10 @@ contains
       do i = 1, size(simulation%tips%tip)
          associate (tip => simulation%tips%tip(i))
             if (end_gain(simulation%tips%network, simulation%start, tip%fracture, tip%end) &
-               < simulation%scene%growth%stop_gain) cycle
+                < simulation%scene%growth%stop_gain) cycle
             is_done = .true.
             journal%record%reason = "fracture " &
-               //trim(simulation%scene%fractures(tip%fracture)%name)//" has gained stop_gain"
+                      //trim(simulation%scene%fractures(tip%fracture)%name)//" has gained stop_gain"
          end associate
       end do
    end subroutine check_gain
@@ -258,14 +264,16 @@ contains
       type(simulation_t), intent(in) :: simulation
 
       call journal%record%use_feature("poroelastic rock")
-      call note(simulation%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", "no fractures")
-      call note(any(scene%fractures%dilation > 0.0_rk), "shear dilation", "dilation: psi = 0 everywhere")
+      call note(simulation%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", &
+                "no fractures")
+      call note(any(scene%fractures%dilation > 0.0_rk), "shear dilation", &
+                "dilation: psi = 0 everywhere")
       call note(size(scene%injections) > 0, "injection", "no injection")
       call note(scene%growth%intensities, "stress intensity factors", "no windows: intensities off")
       call note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
       call note(scene%output%vtu, "VTU files", "VTU files: not asked for")
       call note(any(scene%sides%pressure_given), "flow across the outer boundary", &
-         "boundary flow: the body is sealed")
+                "boundary flow: the body is sealed")
       call journal%record%leave_out_feature("intersections: fractures do not meet")
 
    contains

@@ -32,12 +32,13 @@ contains
             last%fracture(at) = fine%fracture%cell_fracture(i)
             last%s(at) = fine%face_s(k, i)
             last%jump(:, at) = displacement(:, fine%face_nodes(k, 2, i)) &
-               - displacement(:, fine%face_nodes(k, 1, i))
+                               - displacement(:, fine%face_nodes(k, 1, i))
          end do
       end do
    end subroutine record_jumps
 
-   !> The recorded jump at a point, linear between its neighbours; found = .false. beyond the record.
+   !> The recorded jump at a point, linear between its neighbours; found = .false. beyond the
+   !! record.
    pure subroutine recall_jump(last, fracture, s, jump, found)
       type(jump_record_t), intent(in) :: last
       integer(ik), intent(in) :: fracture
@@ -57,7 +58,8 @@ contains
       found = below > 0 .and. above > 0
       if (.not. found) return
       t = 0.0_rk
-      if (last%s(above) - last%s(below) > slack) t = (s - last%s(below))/(last%s(above) - last%s(below))
+      if (last%s(above) - last%s(below) > slack) t = (s - last%s(below)) &
+                                                     /(last%s(above) - last%s(below))
       jump = (1.0_rk - t)*last%jump(:, below) + t*last%jump(:, above)
    end subroutine recall_jump
 

@@ -65,9 +65,10 @@ contains
       self%scene = scene
       self%start = network_of_scene(scene)
       self%network = self%start
-      spec = mesh_spec_t(x_min=scene%domain%x_min, x_max=scene%domain%x_max, y_min=scene%domain%y_min, &
-         y_max=scene%domain%y_max, size_fracture=scene%discretization%size_fracture, &
-         size_boundary=scene%discretization%size_boundary)
+      spec = mesh_spec_t(x_min=scene%domain%x_min, x_max=scene%domain%x_max, &
+                         y_min=scene%domain%y_min, y_max=scene%domain%y_max, &
+                         size_fracture=scene%discretization%size_fracture, &
+                         size_boundary=scene%discretization%size_boundary)
       if (size(self%start%first) == 1) spec%size_fracture = spec%size_boundary
       call timers%start(phase_mesh)
       call build_mesh(spec, self%network, self%mesher, self%mesh, error)
@@ -94,9 +95,10 @@ contains
 
       do i = 1, mesh%fracture%n_points
          if (any(mesh%fracture%point_kind(i) == [point_interior, point_tip, point_boundary])) cycle
-         write (text, '(a,es12.5,a,es12.5,a)') "fractures meet at (", mesh%fracture%point_xy(1, i), ",", &
-            mesh%fracture%point_xy(2, i), "); this version"
-         call raise_error(error, "", trim(text)//" simulates only fractures that do not touch each other")
+         write (text, "(a,es12.5,a,es12.5,a)") "fractures meet at (", &
+            mesh%fracture%point_xy(1, i), ",", mesh%fracture%point_xy(2, i), "); this version"
+         call raise_error(error, "", trim(text)//" simulates only fractures that do not touch "// &
+                          "each other")
          return
       end do
    end subroutine refuse_joints
@@ -136,8 +138,8 @@ contains
                   distance(i) = huge(1.0_rk)
                   if (fracture%cell_fracture(i) /= well%fracture) cycle
                   self%share(i, w) = fracture%cell_s(2, i) - fracture%cell_s(1, i)
-                  distance(i) = norm2(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), dim=2) &
-                     - [well%x, well%y])
+                  distance(i) = norm2(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), &
+                                                 dim=2) - [well%x, well%y])
                end do
                if (well%at_point) then
                   self%share(:, w) = 0.0_rk
@@ -149,7 +151,8 @@ contains
       end associate
    end subroutine first_wells
 
-   !> Undrained response to the load with fractures in equilibrium with the rock (model.md section 9).
+   !> Undrained response to the load with fractures in equilibrium with the rock (model.md section
+   !! 9).
    subroutine equilibrate(self, timers, report, error)
       class(simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -158,8 +161,8 @@ contains
 
       self%level_is_current = .false.
       self%undrained = .true.
-      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, timers, &
-         report, error)
+      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, &
+                                  timers, report, error)
    end subroutine equilibrate
 
    !> One step of the coarse level. Nothing changes unless it converges.
@@ -175,15 +178,16 @@ contains
       self%model%cells%injection = 0.0_rk
       do w = 1, size(self%share, 2)
          self%model%cells%injection = self%model%cells%injection + self%share(:, w)*self%rate(w, &
-            self%state%time, dt)
+                                                                                self%state%time, dt)
       end do
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
       self%level_is_current = .false.
       self%undrained = .false.
       self%injected = self%injected + dt*sum(self%model%cells%injection)
-      if (self%mesh%fracture%n_cells > 0) &
+      if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
+      end if
    end subroutine step
 
    !> Rate of a well in the step that begins at a time; steps do not straddle its start or end.
@@ -225,7 +229,7 @@ contains
       if (allocated(self%level%nodal)) deallocate (self%level%nodal)
       allocate (self%level%nodal(3, self%mesh%n_nodes))
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
-         self%state%tractions, self%level%nodal)
+                        self%state%tractions, self%level%nodal)
       self%level%dilation = self%model%cells%law%dilation
       self%level_is_current = .true.
    end subroutine update_level
@@ -239,7 +243,7 @@ contains
       call timers%start(phase_tips)
       call self%update_level()
       call self%tips%evaluate(self%scene, self%mesher, self%mesh, self%level, self%state, &
-         self%undrained, error)
+                              self%undrained, error)
       call timers%stop(phase_tips)
    end subroutine evaluate_tips
 
@@ -290,15 +294,16 @@ contains
          grew = size(centres, 2) > 0
          if (.not. grew) return
          call timers%start(phase_remesh)
-         call remesh(self%mesher, self%network, centres, max(5.0_rk*increment, 3.0_rk*size_fracture), &
-            size_fracture, mesher, mesh, map, error)
+         call remesh(self%mesher, self%network, centres, max(5.0_rk*increment, &
+                                                             3.0_rk*size_fracture), size_fracture, &
+                     mesher, mesh, map, error)
          call timers%stop(phase_remesh)
       end associate
       if (allocated(error)) return
       call timers%start(phase_transfer)
       call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, cells)
-      call transfer_state(map, self%mesh, mesh, cells, self%scene%growth%new_volume == "prefilled", &
-         self%state, state, prefilled)
+      call transfer_state(map, self%mesh, mesh, cells, &
+                          self%scene%growth%new_volume == "prefilled", self%state, state, prefilled)
       allocate (share(mesh%fracture%n_cells, size(self%share, 2)), source=0.0_rk)
       do i = 1, mesh%fracture%n_cells
          if (map%fracture_cell_old(i) > 0) share(i, :) = self%share(map%fracture_cell_old(i), :)

@@ -17,7 +17,8 @@ module twolevel_tips
 
    public :: find_tips, tip_t, tips_t
 
-   real(rk), parameter :: intensity_error = 0.01_rk  !< relative; the two methods differ by about as much
+   !> relative; the two methods differ by about as much
+   real(rk), parameter :: intensity_error = 0.01_rk
 
    !> A free tip; its place is that on the fine level.
    type, extends(path_t) :: tip_t
@@ -69,7 +70,8 @@ contains
       end do
    end subroutine find_tips
 
-   !> Stress intensity factors and growth drive of every tip, in the present state of the coarse level.
+   !> Stress intensity factors and growth drive of every tip, in the present state of the coarse
+   !! level.
    subroutine evaluate(self, scene, mesher, mesh, level, state, undrained, error)
       class(tips_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -102,7 +104,7 @@ contains
             call window%intensity(scene, mesh, level, state, tip%intensity, error)
             if (allocated(error)) return
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
-               window%model%elasticity%crack_modulus())
+                                     window%model%elasticity%crack_modulus())
          end associate
       end do
    end subroutine evaluate
@@ -122,20 +124,21 @@ contains
       do i = 1, size(self%tip)
          self%tip(i)%advance = 0.0_rk
          grows(i) = self%tip(i)%drive%intensity >= scene%material%toughness .and. &
-            .not. self%tip(i)%arrested
+                    .not. self%tip(i)%arrested
       end do
       if (.not. any(grows)) return
-      ! Where one tip grows, those that the error of their intensities does not tell from it grow too: wings
-      ! of equal rank would otherwise drift apart by chance.
+      ! Where one tip grows, those that the error of their intensities does not tell from it grow
+      ! too: wings of equal rank would otherwise drift apart by chance.
       do i = 1, size(self%tip)
          grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - intensity_error) &
-            *scene%material%toughness .and. .not. self%tip(i)%arrested
+                    *scene%material%toughness .and. .not. self%tip(i)%arrested
       end do
       wanted = advances(self%tip%drive%energy, grows, increment, scene%growth%exponent)
       do i = 1, size(self%tip)
          if (.not. grows(i)) cycle
          associate (tip => self%tip(i), window => self%window(i))
-            call carry_over(wanted(i), tip%carried, window%mesh%fracture%tip_radius(window%tip), applied, left)
+            call carry_over(wanted(i), tip%carried, window%mesh%fracture%tip_radius(window%tip), &
+                            applied, left)
             tip%carried = left
             if (.not. applied > 0.0_rk) cycle
             to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
@@ -170,7 +173,7 @@ contains
             call tip%correct(tip%drive%angle, has_turned)
             if (.not. has_turned) cycle
             at = merge(self%network%first(tip%fracture), self%network%first(tip%fracture + 1) - 1, &
-               tip%end == 1)
+                       tip%end == 1)
             call forget_windows(self, tip%origin, before)
             call forget_windows(self, tip%origin, tip%xy)
             self%network%xy(:, at) = tip%xy
@@ -179,7 +182,8 @@ contains
       end do
    end subroutine correct_tips
 
-   !> A tip that comes nearer to another fracture or to the boundary than the coarse cells can resolve stops.
+   !> A tip that comes nearer to another fracture or to the boundary than the coarse cells can
+   !! resolve stops.
    subroutine find_obstacle(network, scene, tip, to)
       type(network_t), intent(in) :: network
       type(scene_t), intent(in) :: scene
@@ -195,7 +199,7 @@ contains
             tip%arrested = .true.
             tip%arrest_reason = "next to fracture "//trim(scene%fractures(nearest)%name)
          else if (min(to(1) - domain%x_min, domain%x_max - to(1), to(2) - domain%y_min, &
-            domain%y_max - to(2)) < reach) then
+                      domain%y_max - to(2)) < reach) then
             tip%arrested = .true.
             tip%arrest_reason = "next to the outer boundary"
          end if
@@ -212,7 +216,7 @@ contains
       do i = 1, size(self%window)
          if (.not. self%built(i)) cycle
          if (all(min(from, to) <= self%window(i)%upper) .and. &
-            all(max(from, to) >= self%window(i)%lower)) self%built(i) = .false.
+             all(max(from, to) >= self%window(i)%lower)) self%built(i) = .false.
       end do
    end subroutine forget_windows
 
@@ -223,13 +227,14 @@ contains
       self%projected = .false.
    end subroutine coarse_changed
 
-   !> Give the coarse network what has grown, each tip's growth as one straight segment, once some tip's
-   !! reaches the threshold. Tips with at least half of it go along.
+   !> Give the coarse network what has grown, each tip's growth as one straight segment, once some
+   !! tip's reaches the threshold. Tips with at least half of it go along.
    subroutine hand_over(self, threshold, network, centres)
       class(tips_t), intent(inout) :: self
       real(rk), intent(in) :: threshold  !< eps_p dH [m]
       type(network_t), intent(inout) :: network  !< the coarse one
-      real(rk), allocatable, intent(out) :: centres(:, :)  !< (2, n) where it has changed [m]; n may be 0
+      !> (2, n) where it has changed [m]; n may be 0
+      real(rk), allocatable, intent(out) :: centres(:, :)
 
       integer(ik) :: i
 
@@ -270,7 +275,7 @@ contains
             straight%s_start(f) = self%network%s_start(f) - norm2(kept(:, from + 1) - kept(:, from))
             do last = from, from + dropped
                straight%s_start(f) = straight%s_start(f) &
-                  + norm2(self%network%xy(:, last + 1) - self%network%xy(:, last))
+                                    + norm2(self%network%xy(:, last + 1) - self%network%xy(:, last))
             end do
          else
             before = to - dropped

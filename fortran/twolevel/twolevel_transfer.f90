@@ -1,9 +1,10 @@
 !> From the coarse mesh before growth to the one after it.
 !!
-!! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or lost; old
-!! fracture cells keep their state as it is. A new fracture cell is closed, without slip, at the pressure of
-!! the cell that it grew from, and either empty ("conserved": the fluid that fills its residual aperture
-!! comes from the cells it is connected to, in the next step's balance) or "prefilled".
+!! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or
+!! lost; old fracture cells keep their state as it is. A new fracture cell is closed, without slip,
+!! at the pressure of the cell that it grew from, and either empty ("conserved": the fluid that
+!! fills its residual aperture comes from the cells it is connected to, in the next step's balance)
+!! or "prefilled".
 module twolevel_transfer
    use base_kinds, only: ik, rk
    use coarse_matrix, only: cell_area
@@ -68,8 +69,9 @@ contains
          do k = map%overlap_first(c), map%overlap_first(c + 1) - 1
             old = map%overlap_cell(k)
             after%content(c) = after%content(c) + before%content(old)*map%overlap_area(k) &
-               /cell_area(mesh_before, old)
-            after%unknowns(:, c) = after%unknowns(:, c) + before%unknowns(:, old)*map%overlap_area(k)/area
+                               /cell_area(mesh_before, old)
+            after%unknowns(:, c) = after%unknowns(:, c) + before%unknowns(:, old) &
+                                   *map%overlap_area(k)/area
          end do
       end do
 
@@ -95,7 +97,7 @@ contains
             if (is_prefilled) then
                after%aperture(i) = cells%residual_aperture(i)
                prefilled = prefilled + after%aperture(i)*(mesh%fracture%cell_s(2, i) &
-                  - mesh%fracture%cell_s(1, i))
+                                                          - mesh%fracture%cell_s(1, i))
             end if
          end if
       end do

@@ -1,13 +1,15 @@
 !> A window around a tip: a piece of the network on a fine mesh, loaded by the coarse level.
 !!
-!! The outer edge takes the coarse displacement, the rock the coarse pressure as initial stress. On fracture faces
-!! that the coarse level knows, the condition is one of
-!!   "contact"   the coarse level's contact state: open faces carry fluid pressure alone, slipping ones
+!! The outer edge takes the coarse displacement, the rock the coarse pressure as initial stress. On
+!! fracture faces that the coarse level knows, the condition is one of
+!!   "contact"   the coarse level's contact state: open faces carry fluid pressure alone, slipping
+!!   ones
 !!               their friction with the opening tied to the slip, sticking ones keep the jump that
 !!               the window found last (the coarse one if it has found none yet);
 !!   "jump"      the coarse jump (Paper C);
 !!   "traction"  the coarse contact traction.
-!! Faces that only the fine level knows are open and carry the pressure of the coarse cell they grew from.
+!! Faces that only the fine level knows are open and carry the pressure of the coarse cell they grew
+!! from.
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -29,7 +31,8 @@ module twolevel_window
 
    public :: coarse_level_t, window_t
 
-   real(rk), parameter :: grading = 0.2_rk  !< growth of element size with distance from the fractures
+   !> growth of element size with distance from the fractures
+   real(rk), parameter :: grading = 0.2_rk
 
    !> What a window needs of the coarse level.
    type :: coarse_level_t
@@ -51,7 +54,8 @@ module twolevel_window
       logical :: undrained = .false.  !< the model's constants are the undrained ones
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
-      integer(ik), allocatable :: coarse_face(:)  !< (fracture cells) coarse fracture cell; negative: grown from it
+      !> (fracture cells) coarse fracture cell; negative: grown from it
+      integer(ik), allocatable :: coarse_face(:)
       integer(ik), allocatable :: coarse_end(:)  !< (fracture cells) its nearer end
    contains
       procedure :: build
@@ -81,7 +85,7 @@ contains
       self%lower = tip - half
       self%upper = tip + half
       call clear_edges(network, 0.3_rk*scene%discretization%fine_ratio &
-         *scene%discretization%size_fracture, self%lower, self%upper)
+                       *scene%discretization%size_fracture, self%lower, self%upper)
       self%lower = max(self%lower, [scene%domain%x_min, scene%domain%y_min])
       self%upper = min(self%upper, [scene%domain%x_max, scene%domain%y_max])
       spec%x_min = self%lower(1)
@@ -98,11 +102,12 @@ contains
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
       self%tip = findloc(self%mesh%fracture%tip_fracture == fracture .and. &
-         self%mesh%fracture%tip_end == end, .true., dim=1)
+                         self%mesh%fracture%tip_end == end, .true., dim=1)
       self%loads = no_loads(self%model%mesh)
    end subroutine build
 
-   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits between.
+   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
+   !! between.
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
@@ -122,9 +127,9 @@ contains
       end do
    end subroutine clear_edges
 
-   !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves. There the
-   !! pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the tip's own
-   !! singularity, which no pressure handed down from the coarse level could show.
+   !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves.
+   !! There the pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the
+   !! tip's own singularity, which no pressure handed down from the coarse level could show.
    subroutine set_rock(self, scene, undrained, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -136,7 +141,7 @@ contains
       real(rk) :: lame
 
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-         biot=scene%material%biot, plane_stress=scene%material%plane_stress)
+                                biot=scene%material%biot, plane_stress=scene%material%plane_stress)
       if (undrained) then
          rock = new_rock(scene%material, scene%fluid)
          lame = rock%lame + rock%biot**2/rock%storage
@@ -161,26 +166,29 @@ contains
 
       associate (fine => self%model%mesh)
          if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
-         allocate (inside(2, fine%n_nodes), self%weight(3, fine%n_nodes), self%coarse_cell(fine%n_nodes))
+         allocate (inside(2, fine%n_nodes), self%weight(3, fine%n_nodes), &
+                   self%coarse_cell(fine%n_nodes))
          ! A point on a fracture belongs to the side of the element that it is looked at from.
          do c = 1, fine%n_cells
             do k = 1, 6
                v = fine%cell_nodes(k, c)
                inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) &
-                  + inwards*sum(fine%xy(:, fine%cell_nodes(:3, c)), dim=2)/3.0_rk
+                              + inwards*sum(fine%xy(:, fine%cell_nodes(:3, c)), dim=2)/3.0_rk
             end do
          end do
          call locate(mesher, inside, self%coarse_cell, error)
          if (allocated(error)) return
          do v = 1, fine%n_nodes
-            self%weight(:, v) = barycentric(coarse%xy(:, coarse%cell_nodes(:, self%coarse_cell(v))), &
-               fine%xy(:, v))
+            self%weight(:, v) = barycentric(coarse%xy(:, &
+                                                      coarse%cell_nodes(:, self%coarse_cell(v))), &
+                                            fine%xy(:, v))
          end do
       end associate
       call match_faces(self, coarse)
    end subroutine project
 
-   !> Which coarse fracture cell, and which of its ends, lies nearest to each fracture cell of the window.
+   !> Which coarse fracture cell, and which of its ends, lies nearest to each fracture cell of the
+   !! window.
    subroutine match_faces(self, coarse)
       class(window_t), intent(inout) :: self
       type(mesh_t), intent(in) :: coarse
@@ -223,9 +231,10 @@ contains
          do v = 1, fine%n_nodes
             if (v > fine%n_vertices .and. .not. fine%on_boundary(v)) cycle
             associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               self%loads%boundary_displacement(:, v) = matmul(level%nodal(1:2, nodes), self%weight(:, v))
-               if (v <= fine%n_vertices) &
-                  self%loads%pore_pressure(v) = dot_product(level%nodal(3, nodes), self%weight(:, v))
+               self%loads%boundary_displacement(:, v) = matmul(level%nodal(1:2, nodes), &
+                                                               self%weight(:, v))
+               if (v <= fine%n_vertices) self%loads%pore_pressure(v) = dot_product(level%nodal(3, &
+                                                                          nodes), self%weight(:, v))
             end associate
          end do
       end associate
@@ -274,6 +283,8 @@ contains
          case ("jump")
             conditions%condition(i) = face_jump
             call interpolate_jump(self, coarse, state, i, j)
+         case default  ! "traction": loaded, as all faces are to begin with
+            conditions%condition(i) = face_loaded
          end select
       end do
    end subroutine load_faces
@@ -291,7 +302,7 @@ contains
 
       do k = 1, 3
          call recall_jump(self%last_jump, self%mesh%fracture%cell_fracture(i), &
-            self%model%mesh%face_s(k, i), jump, found)
+                          self%model%mesh%face_s(k, i), jump, found)
          if (.not. found) then
             call interpolate_jump(self, coarse, state, i, j)
             return
@@ -316,7 +327,8 @@ contains
          do k = 1, 3
             ! Jumps are known at the third points.
             t = 3.0_rk*(s(k) - ends(1))/(ends(2) - ends(1)) - 1.0_rk
-            self%loads%jump(:, k, i) = (1.0_rk - t)*state%jump(2:1:-1, 1, j) + t*state%jump(2:1:-1, 2, j)
+            self%loads%jump(:, k, i) = (1.0_rk - t)*state%jump(2:1:-1, 1, j) &
+                                       + t*state%jump(2:1:-1, 2, j)
          end do
       end associate
    end subroutine interpolate_jump

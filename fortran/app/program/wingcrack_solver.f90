@@ -13,8 +13,9 @@ program wingcrack_solver
    implicit none(type, external)
 
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_interrupted = 130
-   character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] [--quiet] | " &
-      //"check SCENE.nml | name SCENE.nml | --describe-input | --version"
+   character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
+                                  "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
+                                  "--describe-input | --version"
 
    select case (argument(1))
    case ("run")
@@ -26,9 +27,9 @@ program wingcrack_solver
    case ("--describe-input")
       call describe_input(output_unit)
    case ("--version")
-      write (output_unit, '(2a)') "wingcrack ", version
+      write (output_unit, "(2a)") "wingcrack ", version
    case ("--help")
-      write (output_unit, '(a)') usage
+      write (output_unit, "(a)") usage
    case default
       call leave(usage, exit_usage)
    end select
@@ -74,15 +75,17 @@ contains
          if (refused) call leave(argument(2)//": "//error%message, exit_usage)
          call leave(error%message, exit_failed)
       end if
-      if (was_interrupted) call leave("interrupted; the last state is in "//directory, exit_interrupted)
-      if (.not. quiet) write (output_unit, '(2a)') "results in ", directory
+      if (was_interrupted) call leave("interrupted; the last state is in "//directory, &
+                                      exit_interrupted)
+      if (.not. quiet) write (output_unit, "(2a)") "results in ", directory
    end subroutine run
 
    subroutine check()
       type(scene_t) :: scene
       type(error_t), allocatable :: error
 
-      if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
+      if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, &
+                                                   exit_usage)
       call read_scene(argument(2), scene, error)
       if (allocated(error)) call leave(error%message, exit_usage)
       call describe_scene(scene, output_unit)
@@ -95,7 +98,7 @@ contains
 
       call read_scene(argument(2), scene, error)
       if (allocated(error)) call leave(error%message, exit_usage)
-      write (output_unit, '(a)') trim(scene%name)
+      write (output_unit, "(a)") trim(scene%name)
    end subroutine print_name
 
    !> A command-line argument; empty where there is none.
@@ -118,8 +121,8 @@ contains
       character(len=*), intent(in) :: reason
       integer, intent(in) :: status
 
-      write (error_unit, '(2a)') "wingcrack: ", reason
-      stop status, quiet=.true.
+      write (error_unit, "(2a)") "wingcrack: ", reason
+      stop status, quiet = .true.
    end subroutine leave
 
 end program wingcrack_solver
