@@ -50,7 +50,8 @@ contains
       longer(:, :at - 1) = network%xy(:, :at - 1)
       longer(:, at) = xy
       longer(:, at + 1:) = network%xy(:, at:)
-      if (end == 1) network%s_start(fracture) = network%s_start(fracture) - norm2(network%xy(:, at) - xy)
+      if (end == 1) network%s_start(fracture) = network%s_start(fracture) &
+                                                - norm2(network%xy(:, at) - xy)
       call move_alloc(longer, network%xy)
       network%first(fracture + 1:) = network%first(fracture + 1:) + 1
    end subroutine extend
@@ -85,7 +86,8 @@ contains
       real(rk) :: gain
 
       gain = -network%s_start(fracture)
-      if (end == 2) gain = fracture_length(network, fracture) - fracture_length(start, fracture) - gain
+      if (end == 2) gain = fracture_length(network, fracture) - fracture_length(start, fracture) &
+                           - gain
    end function end_gain
 
    !> Length of one fracture [m].
@@ -133,11 +135,11 @@ contains
       real(rk) :: distance
 
       if (cross(b - a, c - a)*cross(b - a, d - a) < 0.0_rk .and. &
-         cross(d - c, a - c)*cross(d - c, b - c) < 0.0_rk) then
+          cross(d - c, a - c)*cross(d - c, b - c) < 0.0_rk) then
          distance = 0.0_rk
       else
          distance = min(point_distance(a, c, d), point_distance(b, c, d), point_distance(c, a, b), &
-            point_distance(d, a, b))
+                        point_distance(d, a, b))
       end if
    end function segment_distance
 

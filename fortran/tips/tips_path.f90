@@ -82,8 +82,10 @@ contains
       if (self%is_bracketed .and. abs(self%tried_kink(2) - self%tried_kink(1)) < narrow) return
       ! A drive that does not fall with the kink tells nothing: then turn as the criterion says.
       slope = -1.0_rk
-      if (abs(self%tried_kink(2) - self%tried_kink(1)) > 0.0_rk) &
-         slope = (self%tried_drive(2) - self%tried_drive(1))/(self%tried_kink(2) - self%tried_kink(1))
+      if (abs(self%tried_kink(2) - self%tried_kink(1)) > 0.0_rk) slope = (self%tried_drive(2) &
+                                                                          - self%tried_drive(1)) &
+                                                                         /(self%tried_kink(2) &
+                                                                           - self%tried_kink(1))
       if (.not. slope < -0.1_rk) slope = -1.0_rk
       kink = self%kink - max(-longest, min(longest, drive_angle/slope))
       kink = min(largest, max(-largest, kink))

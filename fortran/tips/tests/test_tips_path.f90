@@ -48,8 +48,9 @@ contains
       call checks%is_true(.not. has_turned, "the first kink is the criterion's")
    end subroutine keeps_the_first_kink
 
-   !> The drive at the new end answers to the kink like slope*(kink - right), at most by pure sliding:
-   !! the search must end within two degrees of zero drive or half a degree of the right kink.
+   !> The drive at the new end answers to the kink like slope*(kink - right), at most by pure
+   !! sliding: the search must end within two degrees of zero drive or half a degree of the right
+   !! kink.
    subroutine finds_direction(slope, name)
       real(rk), intent(in) :: slope  !< d drive / d kink [-]
       character(len=*), intent(in) :: name
@@ -66,8 +67,8 @@ contains
          if (.not. has_turned) exit
       end do
       call checks%is_true(tries <= 8, name//": found in eight tries")
-      call checks%is_true(abs(drive) <= 2.01_rk*degree .or. abs(path%kink - right) <= 0.5_rk*degree, &
-                          name//": goes on straight")
+      call checks%is_true(abs(drive) <= 2.01_rk*degree .or. abs(path%kink - right) <= 0.5_rk &
+                          *degree, name//": goes on straight")
       call checks%is_close(norm2(path%xy - path%origin), 0.1_rk, 1.0e-14_rk, name//": length kept")
    end subroutine finds_direction
 
