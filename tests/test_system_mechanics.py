@@ -51,6 +51,43 @@ def test_edge_crack_in_tension(tmp_path: Path) -> None:
     assert numbers(out / "history.csv", "load_factor") == [1.0]
 
 
+def test_meshes_follow_the_error(tmp_path: Path) -> None:
+    """From a coarse mesh to K_I within 0.02 % on at most 7500 unknowns, sparser than uniform."""
+    exact = 2.825457622e6 * math.sqrt(math.pi * 0.5)
+    coarse = (
+        ("size_fracture = 0.03", "size_fracture = 0.125"),
+        ("size_boundary = 0.125", "size_boundary = 0.25"),
+    )
+    adaptive = ("&growth", "&adaptive enabled = .true., tolerance = 0.01, passes = 8 /\n&growth")
+    errors, unknowns = [], []
+    for name, changes in (("coarse", coarse), ("fine", (*coarse, adaptive))):
+        place = tmp_path / name
+        place.mkdir()
+        out = run_input(place, "paper_b/edge_mode1.nml", *changes)
+        (k1,) = numbers(out / "tips.csv", "k1_pa_sqrtm")
+        errors.append(abs(k1 / exact - 1))
+        dofs = record(out)["dofs"]
+        assert isinstance(dofs, dict)
+        unknowns.append(dofs["displacement"])
+    assert errors[0] > 1e-3
+    assert errors[1] < 2e-4
+    assert unknowns[1] < 7500
+    log = (tmp_path / "fine" / "out" / "run.log").read_text()
+    estimated = float(log.split("energy norm")[1].split(",")[0])
+    assert estimated < 0.01
+
+
+@pytest.mark.parametrize(("element", "bound"), [("collapsed", 2e-3), ("plain", 3e-2)])
+def test_other_tip_elements(tmp_path: Path, element: str, bound: float) -> None:
+    """Collapsed quadrilaterals do as well as quarter-point triangles, plain ones worse."""
+    change = ("size_boundary = 0.125", f"size_boundary = 0.125, element = '{element}'")
+    out = run_input(tmp_path, "paper_b/edge_mode1.nml", change)
+    (k1,) = numbers(out / "tips.csv", "k1_pa_sqrtm")
+    error = abs(k1 / (2.825457622e6 * math.sqrt(math.pi * 0.5)) - 1)
+    assert error < bound
+    assert (error > 1e-3) == (element == "plain")
+
+
 def test_edge_crack_in_shear(tmp_path: Path) -> None:
     """Catalogue 1.11, lower end clamped: both intensities and the strain energy."""
     out = run_input(tmp_path, "paper_b/edge_mode2.nml")

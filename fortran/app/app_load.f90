@@ -159,7 +159,8 @@ contains
       call note(size(scene%fractures) > 0, "fractures", "no fractures")
       call note(scene%growth%intensities, "stress intensity factors", "intensities off")
       call note(scene%growth%enabled, "growth", "remeshing: growth off")
-      call note(scene%adaptive%enabled, "meshes that follow the error", "error estimates: not asked for")
+      call note(scene%adaptive%enabled, "meshes that follow the error", &
+                "error estimates: not asked for")
       call note(scene%output%vtu, "VTU files", "VTU files: not asked for")
 
    contains

@@ -2,18 +2,20 @@
 module mechanics_body
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_assemble, phase_factorize, phase_solve, phase_tips, &
-                          phase_transfer, timers_t
+   use base_timers, only: phase_assemble, phase_factorize, phase_remesh, phase_solve, &
+                          phase_tips, phase_transfer, timers_t
    use fine_boundary, only: add_point_force, add_side_traction, fine_boundary_t, free_boundary, &
                             hold_side, nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
    use fine_loads, only: fine_loads_t, no_loads
-   use fine_mesh, only: fine_mesh_t
+   use fine_error, only: energy_error_t, estimate_error, wanted_sizes
+   use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
+   use fine_recovery, only: recover_by_patches, recovery_t
    use mechanics_faces, only: face_conditions, given_slip, transfer_contact
    use mechanics_outline, only: outline_of_scene, outline_t
-   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_builder, only: build_mesh, build_mesh_sized, mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use tips_intensity, only: tip_intensity
@@ -34,8 +36,11 @@ module mechanics_body
       !> (tau n, start end mid, fracture cell) jump that the scene gives at load factor 1 [m]
       real(rk), allocatable :: given_jump(:, :, :)
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
+      type(energy_error_t) :: estimate  !< of the error; on adaptive meshes only
    contains
       procedure :: build
+      procedure :: refine
+      procedure :: estimate_body
       procedure :: respond
    end type body_t
 
@@ -50,6 +55,68 @@ contains
       integer, intent(in) :: mesh_phase  !< of the timers: the first mesh or a later one
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+
+      call timers%start(mesh_phase)
+      call build_mesh(body_spec(scene, network), network, self%mesher, self%mesh, error)
+      call timers%stop(mesh_phase)
+      if (.not. allocated(error)) call set_up(self, scene, start, network, timers, error)
+   end subroutine build
+
+   !> A mesh whose elements have the sizes that make the error of the present state, where they
+   !! lie, as small as the scene wants.
+   subroutine refine(self, scene, start, network, timers, error)
+      class(body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(mesh_spec_t) :: spec
+      type(mesher_t) :: mesher
+      type(mesh_t) :: mesh
+      real(rk), allocatable :: sizes(:)
+
+      call timers%start(phase_remesh)
+      sizes = wanted_sizes(self%model%mesh, self%estimate, scene%adaptive%tolerance)
+      spec = body_spec(scene, network)
+      call fit_rosettes(self%mesh, sizes, spec)
+      call build_mesh_sized(spec, network, self%mesher, sizes, mesher, mesh, error)
+      call timers%stop(phase_remesh)
+      if (allocated(error)) return
+      call transfer_mesher(mesher, self%mesher)
+      self%mesh = mesh
+      call set_up(self, scene, start, network, timers, error)
+   end subroutine refine
+
+   !> Rosettes as small as the sizes that are wanted around the tips.
+   pure subroutine fit_rosettes(mesh, sizes, spec)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: sizes(:)  !< (n_cells) [m]
+      type(mesh_spec_t), intent(inout) :: spec
+      real(rk) :: wanted
+      integer(ik) :: cell, n_cells, tip
+
+      do tip = 1, mesh%fracture%n_tips
+         wanted = 0.0_rk
+         n_cells = 0
+         do cell = 1, mesh%n_cells
+            if (.not. any(mesh%cell_nodes(:, cell) == mesh%fracture%tip_node(tip))) cycle
+            wanted = wanted + sizes(cell)
+            n_cells = n_cells + 1
+         end do
+         associate (radius => spec%end_radius(mesh%fracture%tip_end(tip), &
+                                              mesh%fracture%tip_fracture(tip)))
+            radius = min(radius, wanted/n_cells)
+         end associate
+      end do
+   end subroutine fit_rosettes
+
+   !> Elements, contact, conditions and factors on the present mesh.
+   subroutine set_up(self, scene, start, network, timers, error)
+      class(body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start, network
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
       type(elasticity_t) :: elasticity
       type(fine_mesh_t) :: fine_before
       type(contact_t) :: contact_before
@@ -61,14 +128,11 @@ contains
          fine_before = self%model%mesh
          contact_before = self%contact
       end if
-      call timers%start(mesh_phase)
-      call build_mesh(body_spec(scene, network), network, self%mesher, self%mesh, error)
-      call timers%stop(mesh_phase)
-      if (allocated(error)) return
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
                                 plane_stress=scene%material%plane_stress)
       call timers%start(phase_assemble)
-      call self%model%set_mesh(self%mesh, elasticity, error)
+      call self%model%set_mesh(self%mesh, elasticity, error, &
+                               tip_element(scene%discretization%element))
       call timers%stop(phase_assemble)
       if (allocated(error)) return
       associate (fine => self%model%mesh)
@@ -86,7 +150,33 @@ contains
                                  held_boundary(scene, fine))
          call timers%stop(phase_factorize)
       end associate
-   end subroutine build
+   end subroutine set_up
+
+   !> The element around the tips by its name.
+   pure integer(ik) function tip_element(name)
+      character(len=*), intent(in) :: name
+
+      select case (name)
+      case ("collapsed")
+         tip_element = tip_collapsed
+      case ("plain")
+         tip_element = tip_plain
+      case default
+         tip_element = tip_quarter
+      end select
+   end function tip_element
+
+   !> Estimate the error of the present state.
+   subroutine estimate_body(self, timers)
+      class(body_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(recovery_t) :: recovery
+
+      call timers%start(phase_remesh)
+      call recover_by_patches(self%model, self%displacement, recovery)
+      call estimate_error(self%model, self%displacement, recovery, self%estimate)
+      call timers%stop(phase_remesh)
+   end subroutine estimate_body
 
    !> What to mesh.
    pure function body_spec(scene, network) result(spec)

@@ -142,6 +142,8 @@ contains
       has_onset = .false.
       low = self%factor
       if (.not. allocated(self%body%displacement)) then
+         call adapt(self, target, timers, error)
+         if (allocated(error)) return
          call self%respond(low, timers, error)
          if (allocated(error)) return
       end if
@@ -265,6 +267,26 @@ contains
       where (self%tip%advance > 0.0_rk) self%tip%has_wing = .true.
    end subroutine grow
 
+   !> Let the mesh follow the error at a load, if the scene wants it.
+   subroutine adapt(self, factor, timers, error)
+      type(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: factor  !< of the load [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: pass
+
+      if (.not. self%scene%adaptive%enabled) return
+      do pass = 0, self%scene%adaptive%passes
+         call self%respond(factor, timers, error)
+         if (allocated(error)) return
+         call self%body%estimate_body(timers)
+         if (self%body%estimate%relative <= self%scene%adaptive%tolerance) return
+         if (pass == self%scene%adaptive%passes) return
+         call self%body%refine(self%scene, self%start, self%network, timers, error)
+         if (allocated(error)) return
+      end do
+   end subroutine adapt
+
    !> The state on a new mesh of the present network, at the same load.
    subroutine rebuild(self, timers, error)
       type(simulation_t), intent(inout) :: self
@@ -273,6 +295,7 @@ contains
 
       call self%body%build(self%scene, self%start, self%network, phase_remesh, timers, error)
       if (.not. allocated(error)) call self%respond(self%factor, timers, error)
+      if (.not. allocated(error)) call adapt(self, self%factor, timers, error)
       if (allocated(error)) self%is_cut = cuts_through(self%body%mesh%fracture)
    end subroutine rebuild
 

@@ -188,6 +188,10 @@ contains
          call exchange(record, "step", scene%time%step, reading)
          call exchange(record, "growth_factor", scene%time%growth_factor, reading)
          call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
+      case ("adaptive")
+         call exchange(record, "enabled", scene%adaptive%enabled, reading)
+         call exchange(record, "tolerance", scene%adaptive%tolerance, reading)
+         call exchange(record, "passes", scene%adaptive%passes, reading)
       case ("in_situ")
          call exchange(record, "sxx", scene%in_situ(1), reading)
          call exchange(record, "syy", scene%in_situ(2), reading)
@@ -358,6 +362,7 @@ contains
          call exchange(record, "rosette_radius", discretization%rosette_radius, reading, &
                        nothing=0.0_rk)
          call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
+         call exchange(record, "element", discretization%element, reading)
       case default  ! fine
          call exchange(record, "window", discretization%window, reading, nothing=0.0_rk)
          call exchange(record, "size_ratio", discretization%fine_ratio, reading)

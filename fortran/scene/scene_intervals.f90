@@ -10,6 +10,7 @@ module scene_intervals
    public :: holds, in_words
    public :: at_least_zero, biot_range, dilation_range, newton_range, poisson_range, porosity_range
    public :: positive, rosette_range, share, steps_range, tolerance_range
+   public :: passes_range
 
    !> Values between two bounds; a bound at +-huge is none, for every value is finite.
    type :: interval_t
@@ -30,6 +31,7 @@ module scene_intervals
    !> With fewer than 6 sectors an element at the tip spans more than 60 degrees.
    type(interval_t), parameter :: rosette_range = interval_t(6.0_rk, 64.0_rk)
    type(interval_t), parameter :: steps_range = interval_t(1.0_rk, 100000.0_rk)
+   type(interval_t), parameter :: passes_range = interval_t(1.0_rk, 20.0_rk)
    type(interval_t), parameter :: newton_range = interval_t(1.0_rk, 1000.0_rk)
 
    !> Round-off ends below it; no step with a larger residual is ever accepted.

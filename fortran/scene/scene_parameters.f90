@@ -5,8 +5,8 @@
 module scene_parameters
    use base_kinds, only: rk
    use scene_intervals, only: at_least_zero, biot_range, dilation_range, interval_t, newton_range, &
-                              poisson_range, porosity_range, positive, rosette_range, share, &
-                              steps_range, tolerance_range
+                              passes_range, poisson_range, porosity_range, positive, &
+                              rosette_range, share, steps_range, tolerance_range
    implicit none(type, external)
    private
 
@@ -113,6 +113,9 @@ module scene_parameters
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
               "quarter-point elements around the fracture tips."), &
+      group_t("adaptive", implied=.true., scenes=in_mechanics, &
+              meaning="Meshes that follow the estimated error of the stresses (Zienkiewicz and "// &
+              "Zhu): after the first mesh of the body and after every growth."), &
       group_t("coarse", implied=.true., scenes=in_fluid, &
               meaning="The coarse level: finite volumes on the whole body."), &
       group_t("fine", implied=.true., scenes=in_fluid, &
@@ -183,7 +186,8 @@ module scene_parameters
       parameter_t("fracture", "x", kind_reals, "m", need_always, &
                   meaning="x of the vertices, from one end to the other"), &
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
-      parameter_t("fracture", "law", kind_choice, default="'friction'", choices="friction|frictionless|slip|open", &
+      parameter_t("fracture", "law", kind_choice, default="'friction'", &
+                  choices="friction|frictionless|slip|open", &
                   meaning="What the faces do; all but friction only in mechanics-only scenes. "// &
                   "Slip: contact with a given slip; open: free of traction, free to overlap"), &
       parameter_t("fracture", "slip", unit="m", need=need_slip, absent="not given", &
@@ -272,6 +276,16 @@ module scene_parameters
                   meaning="Size of the elements around a tip, less where something is near"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
                   meaning="Quarter-point elements around a tip"), &
+      parameter_t("fe", "element", kind_choice, default="'quarter_point'", &
+                  choices="quarter_point|collapsed|plain", &
+                  meaning="Around a tip: triangles with quarter points, collapsed "// &
+                  "quadrilaterals with quarter points, or triangles like all others"), &
+      parameter_t("adaptive", "enabled", kind_logical, default=".false.", &
+                  meaning="The mesh follows the error"), &
+      parameter_t("adaptive", "tolerance", default="0.01", range=share, &
+                  meaning="Wanted error of the stresses in the energy norm, over the norm"), &
+      parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
+                  meaning="Meshes after the first at most"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
                   meaning="Cell size dH at the fractures, at most size_boundary and the "// &

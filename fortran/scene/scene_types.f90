@@ -4,7 +4,8 @@ module scene_types
    implicit none(type, external)
    private
 
-   public :: boundary_side_t, discretization_t, domain_t, fluid_t, fracture_t, growth_t, initial_t
+   public :: adaptive_t, boundary_side_t, discretization_t, domain_t, fluid_t, fracture_t, growth_t
+   public :: initial_t
    public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, restraint_t, scene_t
    public :: time_t
    public :: name_length
@@ -45,7 +46,8 @@ module scene_types
       real(rk), allocatable :: x(:), y(:)  !< vertices [m]
       character(len=name_length) :: law = "friction"  !< or "frictionless", "slip", "open"
       real(rk) :: slip = 0.0_rk  !< of the law "slip", at load factor 1 [m]
-      real(rk) :: slip_taper = 0.0_rk  !< over which it rises from a free end; 0: half its length [m]
+      !> Over which the slip rises from a free end; 0: half the fracture's length [m]
+      real(rk) :: slip_taper = 0.0_rk
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
@@ -72,6 +74,13 @@ module scene_types
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
       real(rk) :: force(2) = 0.0_rk  !< [N/m]
    end type point_load_t
+
+   !> Meshes that follow the error.
+   type :: adaptive_t
+      logical :: enabled = .false.
+      real(rk) :: tolerance = 0.01_rk  !< error in the energy norm over the norm [-]
+      integer(ik) :: passes = 4  !< meshes at most after the first
+   end type adaptive_t
 
    !> How the load of a mechanics-only scene rises.
    type :: load_t
@@ -111,6 +120,7 @@ module scene_types
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
       integer(ik) :: rosette_sectors = 12  !< elements around a tip
       real(rk) :: rosette_radius = 0.0_rk  !< 0: size_fracture; mechanics only [m]
+      character(len=name_length) :: element = "quarter_point"  !< at tips; or "collapsed", "plain"
       character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
@@ -152,6 +162,7 @@ module scene_types
       type(restraint_t), allocatable :: restraints(:)
       type(point_load_t), allocatable :: point_loads(:)
       type(load_t) :: load
+      type(adaptive_t) :: adaptive
       real(rk) :: in_situ(3) = 0.0_rk  !< stress before the load: xx, yy, xy; mechanics only [Pa]
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial

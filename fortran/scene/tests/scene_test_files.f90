@@ -109,6 +109,10 @@ contains
       integer :: i
 
       same_loading = .false.
+      if (a%adaptive%enabled .neqv. b%adaptive%enabled) return
+      if (.not. same(a%adaptive%tolerance, b%adaptive%tolerance)) return
+      if (a%adaptive%passes /= b%adaptive%passes) return
+      if (a%discretization%element /= b%discretization%element) return
       if (.not. same(a%in_situ, b%in_situ)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return

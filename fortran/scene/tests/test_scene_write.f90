@@ -81,11 +81,13 @@ contains
                             "&fracture name='g' x=0.4 0.6 y=2*0.8 law='slip' slip=0.1 /", &
                             "&fracture name='h' x=0.4 0.6 y=2*0.2 friction=0.1 /", &
                             "&in_situ sxx=-1.1e7 sxy=2 /", &
+                            "&adaptive enabled=.true. tolerance=0.03 passes=2 /", &
                             "&restraint x=0 y=0 x_displacement=0 y_displacement=-0.1 /", &
                             "&restraint x=1 y=0 y_displacement=1e-3 /", &
                             "&point_load x=0 y=1 x_force=2 /", "&growth enabled=.true. /", &
                             "&load from=0.1 to=2.1 steps=3 /", &
-                            "&fe size_fracture=0.1 size_boundary=0.2 rosette_radius=0.03 /"])
+                            "&fe size_fracture=0.1 size_boundary=0.2 rosette_radius=0.03 "// &
+                            "element='plain' /"])
       call round_trip(path)
       call put_lines(path, [character(len=100) :: "&domain shape='disc' x_centre=0.1 "// &
                             "y_centre=-3 radius=0.3 /", "&material young=1e9 poisson=0.2 /", &
