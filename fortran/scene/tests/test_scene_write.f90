@@ -81,7 +81,6 @@ contains
                             "&fracture name='g' x=0.4 0.6 y=2*0.8 law='slip' slip=0.1 /", &
                             "&fracture name='h' x=0.4 0.6 y=2*0.2 friction=0.1 /", &
                             "&in_situ sxx=-1.1e7 sxy=2 /", &
-                            "&adaptive enabled=.true. tolerance=0.03 passes=2 /", &
                             "&restraint x=0 y=0 x_displacement=0 y_displacement=-0.1 /", &
                             "&restraint x=1 y=0 y_displacement=1e-3 /", &
                             "&point_load x=0 y=1 x_force=2 /", "&growth enabled=.true. /", &
@@ -92,7 +91,9 @@ contains
       call put_lines(path, [character(len=100) :: "&domain shape='disc' x_centre=0.1 "// &
                             "y_centre=-3 radius=0.3 /", "&material young=1e9 poisson=0.2 /", &
                             "&restraint x=0 y=-3 x_displacement=0 y_displacement=0 /", &
-                            "&restraint x=0.2 y=-3 y_displacement=0 /", "&fe size_boundary=0.2 /"])
+                            "&restraint x=0.2 y=-3 y_displacement=0 /", &
+                            "&adaptive enabled=.true. tolerance=0.03 passes=2 /", &
+                            "&fe size_boundary=0.2 /"])
       call round_trip(path)
    end subroutine check_odd_numbers
 
