@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -22,6 +23,7 @@ WIDTH, HEIGHT = 4.3, 3.1  # [inch]: at this width the letters keep their size on
 MARKERS = "osD^vP*X<>"
 MOST_PROFILES = 4  # in one figure
 PNG_DPI = 200
+LABEL_LETTERS = 36  # that stand beside an axis of this height
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
             label=item.run.name,
         )
     axes.set_xlabel(report.check.x_label or "value")
-    axes.set_ylabel(f"{report.check.quantity} [{report.check.unit}]")
+    axes.set_ylabel(_wrapped(f"{report.check.quantity} [{report.check.unit}]"))
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
 
@@ -235,6 +237,11 @@ def map_drawing(report: MapReport) -> Drawing:
         chart.title,
         f"{done} of {len(report.cells)} converged; x: did not; cut: steps that were shortened.",
     )
+
+
+def _wrapped(label: str) -> str:
+    """Label in lines that fit beside an axis."""
+    return textwrap.fill(label, LABEL_LETTERS)
 
 
 def _new() -> tuple[Figure, Axes]:
