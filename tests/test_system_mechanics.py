@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import struct
 from pathlib import Path
 
 import pytest
@@ -290,6 +292,36 @@ def test_given_slip(tmp_path: Path) -> None:
     for tip in rows(out / "tips.csv"):
         assert abs(float(tip["k2_pa_sqrtm"])) == pytest.approx(exact, rel=5e-3)
     assert numbers(out / "history.csv", "max_slip_m")[0] == pytest.approx(1.0e-5, rel=1e-2)
+
+
+def test_fields_hold_the_elements(tmp_path: Path) -> None:
+    """The VTU file has six-node triangles, and displacements at their nodes."""
+    out = run_input(
+        tmp_path,
+        "paper_b/edge_mode1.nml",
+        ("&growth", "&probe name = 'corner', x = 0.0, y = 1.0 /\n&growth"),
+    )
+    content = (out / "vtu" / "matrix_000000.vtu").read_bytes()
+    header, raw = content.split(b'encoding="raw">\n   _', 1)
+    text = header.decode()
+    assert "<PointData>" in text
+
+    def values(name: str, letter: str, size: int) -> tuple[float, ...]:
+        found = re.search(f'Name="{name}".*offset="([0-9]+)"', text)
+        assert found is not None, name
+        start = int(found.group(1))
+        (n_bytes,) = struct.unpack_from("<Q", raw, start)
+        return struct.unpack_from(f"<{n_bytes // size}{letter}", raw, start + 8)
+
+    points = values("Points", "d", 8)
+    displacement = values("nodal_displacement", "d", 8)
+    assert len(displacement) == len(points)
+    assert set(values("types", "B", 1)) == {22}
+    assert len(values("connectivity", "i", 4)) == 6 * len(values("types", "B", 1))
+    corner = next(i for i in range(0, len(points), 3) if points[i : i + 2] == (0.0, 1.0))
+    (probe,) = rows(out / "probes.csv")
+    expected = [float(probe["corner_ux_m"]), float(probe["corner_uy_m"]), 0.0]
+    assert displacement[corner : corner + 3] == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

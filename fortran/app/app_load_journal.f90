@@ -158,6 +158,9 @@ contains
       call timers%start(phase_output)
       associate (body => simulation%body)
          matrix%displacement = cell_displacement(body)
+         matrix%node_xy = body%model%mesh%xy
+         matrix%cell_nodes = body%model%mesh%cell_nodes
+         matrix%node_displacement = body%displacement
          matrix%stress = cell_stress(body)
          pairs = fracture_jump(body)
          fracture%jump_n = pairs(1, :)

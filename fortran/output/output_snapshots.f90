@@ -7,7 +7,7 @@ module output_snapshots
       & matrix_fields_t, permeability_tensor, stress_tensor, tensor_components
    use output_files, only: make_directory, remove_file
    use output_pvd, only: collection_t
-   use output_vtu, only: vtk_line, vtk_triangle, vtk_vertex, vtu_grid_t
+   use output_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
    use scene_types, only: material_t, scene_t
    implicit none(type, external)
    private
@@ -108,7 +108,13 @@ contains
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
 
-      call grid%begin(mesh%xy, mesh%cell_nodes, vtk_triangle, time)
+      if (allocated(fields%cell_nodes)) then
+         call grid%begin(fields%node_xy, fields%cell_nodes, vtk_quadratic_triangle, time)
+         call grid%add_at_points("nodal_displacement", displacement_3d(fields%node_displacement), &
+                                 ["X", "Y", "Z"])
+      else
+         call grid%begin(mesh%xy, mesh%cell_nodes, vtk_triangle, time)
+      end if
       if (allocated(fields%displacement)) then
          call grid%add("displacement", displacement_3d(fields%displacement), ["X", "Y", "Z"])
       end if

@@ -14,17 +14,20 @@ module output_vtu
    implicit none(type, external)
    private
 
-   public :: vtk_line, vtk_triangle, vtk_vertex, vtu_grid_t
+   public :: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
 
    integer(int8), parameter :: vtk_vertex = 1_int8  !< one node
    integer(int8), parameter :: vtk_line = 3_int8  !< two nodes
    integer(int8), parameter :: vtk_triangle = 5_int8  !< three nodes, counter-clockwise
+   !> six nodes: corners counter-clockwise, then those on the edges from each to the next
+   integer(int8), parameter :: vtk_quadratic_triangle = 22_int8
 
-   !> A field with a value, or several components, in each cell.
+   !> A field with a value, or several components, in each cell or at each point.
    type :: vtu_field_t
       character(len=:), allocatable :: name
       character(len=:), allocatable :: components  !< XML attributes that name them; may be empty
       integer :: n_components = 1
+      logical :: at_points = .false.
       real(rk), allocatable :: reals(:)  !< component by component, cell by cell
       integer(ik), allocatable :: integers(:)  !< or these
    end type vtu_field_t
@@ -46,6 +49,7 @@ module output_vtu
       procedure, private :: add_vector
       procedure, private :: add_integer
       generic :: add => add_scalar, add_vector, add_integer
+      procedure :: add_at_points
       procedure :: write => write_grid
    end type vtu_grid_t
 
@@ -56,7 +60,7 @@ contains
       class(vtu_grid_t), intent(out) :: self
       real(rk), intent(in) :: xy(:, :)  !< (2, n_points) [m]
       integer(ik), intent(in) :: cells(:, :)  !< (nodes per cell, n_cells) from 1
-      integer(int8), intent(in) :: cell_type  !< vtk_vertex, vtk_line or vtk_triangle
+      integer(int8), intent(in) :: cell_type  !< vtk_vertex .. vtk_quadratic_triangle
       real(rk), intent(in) :: time  !< [s]
       integer :: i
 
@@ -101,6 +105,17 @@ contains
       end associate
    end subroutine add_vector
 
+   !> Several numbers at each point.
+   subroutine add_at_points(self, name, values, components)
+      class(vtu_grid_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: values(:, :)  !< (n_components, n_points)
+      character(len=*), intent(in) :: components(:)  !< their names, in order
+
+      call self%add(name, values, components)
+      self%fields(self%n_fields)%at_points = .true.
+   end subroutine add_at_points
+
    !> An integer in each cell.
    subroutine add_integer(self, name, values)
       class(vtu_grid_t), intent(inout) :: self
@@ -127,16 +142,28 @@ contains
       call put_integers(file, [(i*self%nodes_per_cell, i=1, self%n_cells)])
       call file%put(int(self%n_cells, int64))
       call file%put(spread(self%cell_type, 1, int(self%n_cells)))
-      do i = 1, int(self%n_fields, ik)
+      call put_fields(file, self, .true.)
+      call put_fields(file, self, .false.)
+      call file%put(newline//"  </AppendedData>"//newline//"</VTKFile>"//newline)
+      call file%commit(error)
+   end subroutine write_grid
+
+   !> The values of the fields at points, or of those in cells.
+   subroutine put_fields(file, self, at_points)
+      type(whole_file_t), intent(inout) :: file
+      type(vtu_grid_t), intent(in) :: self
+      logical, intent(in) :: at_points
+      integer :: i
+
+      do i = 1, self%n_fields
+         if (self%fields(i)%at_points .neqv. at_points) cycle
          if (allocated(self%fields(i)%reals)) then
             call put_reals(file, self%fields(i)%reals)
          else
             call put_integers(file, self%fields(i)%integers)
          end if
       end do
-      call file%put(newline//"  </AppendedData>"//newline//"</VTKFile>"//newline)
-      call file%commit(error)
-   end subroutine write_grid
+   end subroutine put_fields
 
    !> The XML before the raw arrays, which says where each of them begins.
    function header(self) result(xml)
@@ -145,7 +172,6 @@ contains
 
       type(text_buffer_t) :: buffer
       integer(int64) :: offset
-      integer :: i
 
       offset = 0_int64
       call line('<?xml version="1.0"?>')
@@ -164,18 +190,11 @@ contains
       call array("Int32", "offsets", "", 4*int(self%n_cells))
       call array("UInt8", "types", "", int(self%n_cells))
       call line("      </Cells>")
+      call line("      <PointData>")
+      call fields(.true.)
+      call line("      </PointData>")
       call line("      <CellData>")
-      do i = 1, self%n_fields
-         associate (field => self%fields(i))
-            if (allocated(field%reals)) then
-               call array("Float64", field%name, ' NumberOfComponents="'// &
-                  & integer_text(int(field%n_components, ik))//'"'//field%components, &
-                  & 8*size(field%reals))
-            else
-               call array("Int32", field%name, "", 4*size(field%integers))
-            end if
-         end associate
-      end do
+      call fields(.false.)
       call line("      </CellData>")
       call line("    </Piece>")
       call line("  </UnstructuredGrid>")
@@ -189,6 +208,25 @@ contains
 
          call buffer%append(text//newline)
       end subroutine line
+
+      !> The fields at points, or those in cells, in the order of put_fields.
+      subroutine fields(at_points)
+         logical, intent(in) :: at_points
+         integer :: i
+
+         do i = 1, self%n_fields
+            associate (field => self%fields(i))
+               if (field%at_points .neqv. at_points) cycle
+               if (allocated(field%reals)) then
+                  call array("Float64", field%name, ' NumberOfComponents="'// &
+                     & integer_text(int(field%n_components, ik))//'"'//field%components, &
+                     & 8*size(field%reals))
+               else
+                  call array("Int32", field%name, "", 4*size(field%integers))
+               end if
+            end associate
+         end do
+      end subroutine fields
 
       subroutine array(type_name, name, attributes, n_bytes)
          character(len=*), intent(in) :: type_name, name, attributes

@@ -18,7 +18,7 @@ from wingcrack_post.table import FloatArray
 
 IntArray = npt.NDArray[np.int64]
 
-_LINE, _TRIANGLE = 3, 5  # VTK cell types
+_LINE, _TRIANGLE, _QUADRATIC_TRIANGLE = 3, 5, 22  # VTK cell types
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,12 @@ def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
 
 
 def read_matrix(path: Path) -> MatrixField:
-    """Read a file of the matrix series, which holds triangles only."""
+    """Read a file of the matrix series: triangles, of six-node ones the corners."""
     mesh = read_grid(path)
-    triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
+    if mesh.n_cells > 0 and mesh.celltypes[0] == _QUADRATIC_TRIANGLE:
+        triangles = _cells(mesh, path, _QUADRATIC_TRIANGLE, 6, "six-node triangles")[:, :3]
+    else:
+        triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
     cell = {name: np.asarray(array, dtype=float) for name, array in mesh.cell_data.items()}
     return MatrixField(np.asarray(mesh.points, dtype=float)[:, :2], triangles, cell)
 
