@@ -48,6 +48,10 @@ def test_edge_crack_in_tension(tmp_path: Path) -> None:
     assert float(tip["k1_pa_sqrtm"]) == pytest.approx(exact, rel=1e-3)
     assert abs(float(tip["k2_pa_sqrtm"])) < 1e-4 * exact
     assert float(tip["k1_dc_pa_sqrtm"]) == pytest.approx(exact, rel=2e-2)
+    assert (
+        abs(float(tip["k1_pa_sqrtm"]) - exact) < 3 * float(tip["k1_error_pa_sqrtm"]) < 2e-2 * exact
+    )
+    assert float(tip["g_ahead_j_m2"]) == pytest.approx(exact**2 / 70.0e9, rel=5e-3)
     (energy,) = numbers(out / "history.csv", "strain_energy_j")
     assert energy == pytest.approx(2.5270144e12 / 70.0e9, rel=1e-3)
     assert numbers(out / "history.csv", "load_factor") == [1.0]

@@ -48,6 +48,9 @@ TIPS = [
     "g_j_m2",
     "angle_deg",
     "advance_m",
+    "k1_error_pa_sqrtm",
+    "k2_error_pa_sqrtm",
+    "g_ahead_j_m2",
 ]
 FRACTURES = [
     "time_s",

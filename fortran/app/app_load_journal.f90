@@ -211,7 +211,9 @@ contains
                                            k1=intensity%k1, k2=intensity%k2, &
                                            k1_dc=intensity%k1_dc, k2_dc=intensity%k2_dc, &
                                            keq=drive%intensity, g=drive%energy, angle=angle, &
-                                           advance=advance))
+                                           advance=advance, k1_error=intensity%k1_error, &
+                                           k2_error=intensity%k2_error, &
+                                           g_domain=intensity%g_domain))
       end subroutine add_row
 
    end subroutine tips_done

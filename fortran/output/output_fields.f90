@@ -82,6 +82,8 @@ module output_fields
       real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
       real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
       real(rk) :: advance = 0.0_rk  !< length grown [m]
+      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
+      real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
    end type tip_row_t
 
 contains
