@@ -264,6 +264,28 @@ def test_closed_frictional_crack(tmp_path: Path) -> None:
     assert math.sqrt(errors / sizes) < 1e-2
 
 
+def test_frictional_crack_grows(tmp_path: Path) -> None:
+    """Onset at 1.1547 K_II = K_IC; its slip is an ellipse, and so is its seismic moment."""
+    text = CLOSED.replace("poisson = 0.2", "poisson = 0.2, toughness = 1.0e6")
+    text = text.replace("&growth intensities = .true. /", "&load to = 2.0, steps = 4 /")
+    out = run_text(
+        tmp_path, text + "&growth enabled = .true., increment = 0.01, stop_gain = 0.04 /"
+    )
+    history = rows(out / "history.csv")
+    exact = 1.0e6 / (1.1547005 * 3.5e6 * math.sqrt(math.pi * 0.1))
+    assert float(history[0]["load_factor"]) == pytest.approx(exact, rel=5e-3)
+    shear_modulus = 40.0e9 / 2.4
+    moment = shear_modulus * math.pi / 4 * 0.2 * float(history[0]["max_slip_m"])
+    assert float(history[0]["seismic_moment_nm"]) == pytest.approx(moment, rel=1e-2)
+    moments = [float(row["seismic_moment_nm"]) for row in history]
+    assert moments == sorted(moments)
+    kinds = [event["kind"] for event in rows(out / "events.csv")]
+    assert kinds[0] == "slip_onset"
+    assert "opening" in kinds
+    reason = record(out)["reason"]
+    assert reason == "fracture crack has gained stop_gain"
+
+
 def test_crack_below_its_friction_sticks(tmp_path: Path) -> None:
     """With mu above tan(45 degrees) nothing moves, to round-off."""
     out = run_text(tmp_path, CLOSED.replace("friction = 0.3", "friction = 1.01"))

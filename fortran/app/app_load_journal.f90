@@ -14,7 +14,7 @@ module app_load_journal
    use output_record, only: run_record_t
    use output_run, only: run_output_t
    use mesh_types, only: point_boundary, point_interior, point_tip
-   use output_tables, only: event_growth, event_joint, event_remesh
+   use output_tables, only: event_growth, event_joint, event_opening, event_remesh, event_slip_onset
    use tips_growth, only: growth_drive_t
    use tips_network, only: total_length
    use tips_types, only: intensity_t
@@ -30,6 +30,7 @@ module app_load_journal
       type(progress_t) :: progress
       real(rk) :: time = 0.0_rk  !< of the last row of history.csv [s]
       real(rk) :: fields_time = -1.0_rk  !< when fields were last written [s]
+      logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures)
    contains
       procedure :: open => open_journal
       procedure :: step_done
@@ -51,6 +52,8 @@ contains
       call self%files%open(directory, simulation%scene, error, has_fluid=.false.)
       if (allocated(error)) return
       call self%progress%begin(quiet)
+      allocate (self%has_slipped(size(simulation%scene%fractures)), source=.false.)
+      allocate (self%has_opened(size(simulation%scene%fractures)), source=.false.)
       call self%files%network_step(simulation%time(), simulation%network, simulation%body%mesh)
    end subroutine open_journal
 
@@ -72,7 +75,7 @@ contains
          row%load_factor = simulation%factor
          row%strain_energy = body%model%strain_energy(body%displacement)
          row%fracture_length = total_length(simulation%network)
-         row%seismic_moment = simulation%seismic_moment
+         row%seismic_moment = simulation%seismic_moment()
          row%n_tips = body%mesh%fracture%n_tips
          row%n_intersections = count([(all(body%mesh%fracture%point_kind(i) /= &
                                            [point_interior, point_tip, point_boundary]), &
@@ -98,6 +101,7 @@ contains
          self%record%fracture_cells = body%mesh%fracture%n_cells
          call self%record%count_dofs("displacement", body%model%constraints%n_dofs)
       end associate
+      call note_events(self, simulation)
       call log_error(self, simulation)
       call write_probes(self, simulation, error)
       if (.not. allocated(error)) call self%files%tick(error)
@@ -106,6 +110,33 @@ contains
                                                 fracture_length=row%fracture_length))
       call timers%stop(phase_output)
    end subroutine step_done
+
+   !> First slip against friction, and first opening, of each fracture whose faces touch.
+   subroutine note_events(self, simulation)
+      class(load_journal_t), intent(inout) :: self
+      type(simulation_t), intent(in) :: simulation
+      real(rk) :: centre(2)
+      integer(ik) :: cell, f
+
+      associate (fracture => simulation%body%mesh%fracture, &
+                 state => simulation%body%contact%state(3, :))
+         do cell = 1, fracture%n_cells
+            f = fracture%cell_fracture(cell)
+            if (simulation%scene%fractures(f)%law == "open") cycle
+            centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+            if (state(cell) == state_slip .and. .not. self%has_slipped(f) .and. &
+                simulation%scene%fractures(f)%friction > 0.0_rk) then
+               self%has_slipped(f) = .true.
+               call self%files%event_row(simulation%time(), event_slip_onset, "first slip", f, &
+                                         centre)
+            else if (state(cell) == state_open .and. .not. self%has_opened(f)) then
+               self%has_opened(f) = .true.
+               call self%files%event_row(simulation%time(), event_opening, "first opening", f, &
+                                         centre)
+            end if
+         end do
+      end associate
+   end subroutine note_events
 
    !> The estimated error of an adaptive mesh, into the log.
    subroutine log_error(self, simulation)

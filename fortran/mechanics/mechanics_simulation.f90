@@ -47,13 +47,14 @@ module mechanics_simulation
       type(body_t) :: body
       type(tip_t), allocatable :: tip(:)
       real(rk) :: factor = 0.0_rk  !< of the load [-]
-      real(rk) :: seismic_moment = 0.0_rk  !< of slip in contact, per metre of thickness [N m]
+      real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
       procedure :: begin
       procedure :: respond
       procedure :: rise
       procedure :: grow
       procedure :: time
+      procedure :: seismic_moment
    end type simulation_t
 
 contains
@@ -183,19 +184,27 @@ contains
    !> What the faces have slipped so far becomes the history of their next slip.
    subroutine accept(self)
       type(simulation_t), intent(inout) :: self
+
+      self%accepted_moment = self%seismic_moment()
+      call self%body%contact%accept()
+   end subroutine accept
+
+   !> Seismic moment of all slip in contact so far, per metre of thickness [N m].
+   pure real(rk) function seismic_moment(self) result(moment)
+      class(simulation_t), intent(in) :: self
       real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! start, end, mid
       integer(ik) :: cell
 
+      moment = self%accepted_moment
       associate (body => self%body)
          do cell = 1, body%mesh%fracture%n_cells
-            self%seismic_moment = self%seismic_moment + body%model%elasticity%shear_modulus() &
-                                  *body%model%mesh%face_length(cell) &
-                                  *dot_product(share, abs(body%contact%jump(1, :, cell) &
-                                                          - body%contact%slip_before(:, cell)))
+            moment = moment + body%model%elasticity%shear_modulus() &
+                     *body%model%mesh%face_length(cell) &
+                     *dot_product(share, abs(body%contact%jump(1, :, cell) &
+                                             - body%contact%slip_before(:, cell)))
          end do
-         call body%contact%accept()
       end associate
-   end subroutine accept
+   end function seismic_moment
 
    !> By how much the tip nearest to growth exceeds the toughness, relative to it.
    pure real(rk) function largest_excess(self)
