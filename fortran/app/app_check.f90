@@ -57,6 +57,8 @@ contains
       integer(ik) :: n
 
       integer, parameter :: samples = 200
+      !> of the farthest distance, where sizes stop growing (size_field.cpp)
+      real(rk), parameter :: reach = 0.5_rk
       real(rk) :: distance, count, half(2), length, size_here, x, y
       integer :: i, j
 
@@ -70,8 +72,9 @@ contains
                y = half(2)*(2.0_rk*real(j, rk) - 1.0_rk - samples)/samples
                distance = max(0.0_rk, hypot(x, y) - 0.25_rk*length)
                size_here = d%size_boundary
-               if (length > 0.0_rk) size_here = min(size_here, d%size_fracture + (d%size_boundary &
-                                                            - d%size_fracture)*distance/norm2(half))
+               if (length > 0.0_rk) size_here = min(size_here, d%size_fracture &
+                                                    + (d%size_boundary - d%size_fracture)*distance &
+                                                    /(reach*norm2(half)))
                count = count + 1.0_rk/size_here**2
             end do
          end do
