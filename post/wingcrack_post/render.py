@@ -115,9 +115,15 @@ def deformed(matrix: Any, path: Path) -> tuple[Any, float]:
 
 
 def displacement_at(points: Any, matrix: Any, body: Any) -> FloatArray:
-    """Displacement of the node that lay nearest to each point before the deformation."""
-    nodes = [matrix.find_closest_point(point) for point in points]
-    return np.asarray(body.point_data["displacement"], dtype=float)[nodes]
+    """Displacement of the body at fracture points: mean of the nodes there, which are split."""
+    displacement = np.asarray(body.point_data["displacement"], dtype=float)
+    places = np.asarray(matrix.points, dtype=float)
+    same = 1.0e-9 * float(np.ptp(places, axis=0).max())
+    means = []
+    for point in np.asarray(points, dtype=float):
+        distance = np.linalg.norm(places - point, axis=1)
+        means.append(displacement[distance <= distance.min() + same].mean(axis=0))
+    return np.array(means)
 
 
 def _draw_panel(plotter: Any, scenery: _Scenery, panel: int) -> None:
