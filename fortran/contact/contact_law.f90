@@ -112,6 +112,8 @@ contains
       worst = max(worst, min(stiffness*abs(slip), abs(abs(traction(2)) - bound)))
       ! Friction must not drive the slip.
       worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))
+      ! max() passes over what is not a number.
+      if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) worst = huge(1.0_rk)
    end function contact_residual
 
 end module contact_law
