@@ -81,7 +81,7 @@ contains
    end subroutine accept
 
    !> Nodal lengths and laws; `condensed` is left to the owner of the matrix. Where cells meet, the
-   !! parameters are means weighted by their lengths.
+   !! parameters are means weighted by their lengths; if some of them cannot part, of these alone.
    pure subroutine set_contact_problem(fine, conditions, constraints, young, problem)
       type(fine_mesh_t), intent(in) :: fine
       type(face_conditions_t), intent(in) :: conditions
@@ -89,6 +89,7 @@ contains
       real(rk), intent(in) :: young  !< [Pa]
       type(contact_problem_t), intent(out) :: problem
       integer(ik), allocatable :: contact_of_pair(:)
+      real(rk), allocatable :: weight(:)
       integer(ik) :: cell, i, k
 
       problem%n = size(constraints%contact_pairs)
@@ -108,19 +109,29 @@ contains
             i = contact_of_pair(constraints%face_pair(k, cell))
             problem%place(k, cell) = i
             if (i == 0) cycle
-            associate (law => problem%law(i), given => conditions%law(cell), &
-                       weight => problem%share(k, cell))
-               problem%length(i) = problem%length(i) + weight
-               law%friction = law%friction + weight*given%contact%friction
-               law%dilation = law%dilation + weight*given%contact%dilation
-               law%bilateral = law%bilateral .or. given%contact%bilateral
+            associate (given => conditions%law(cell))
+               problem%length(i) = problem%length(i) + problem%share(k, cell)
+               problem%law(i)%bilateral = problem%law(i)%bilateral .or. given%contact%bilateral
                problem%slip_given(i) = problem%slip_given(i) .or. given%slip_given
             end associate
          end do
       end do
+      allocate (weight(problem%n), source=0.0_rk)
+      do cell = 1, fine%fracture%n_cells
+         do k = 1, 3
+            i = problem%place(k, cell)
+            if (i == 0) cycle
+            associate (law => problem%law(i), given => conditions%law(cell)%contact)
+               if (law%bilateral .and. .not. given%bilateral) cycle
+               weight(i) = weight(i) + problem%share(k, cell)
+               law%friction = law%friction + problem%share(k, cell)*given%friction
+               law%dilation = law%dilation + problem%share(k, cell)*given%dilation
+            end associate
+         end do
+      end do
       do i = 1, problem%n
-         problem%law(i)%friction = problem%law(i)%friction/problem%length(i)
-         problem%law(i)%dilation = problem%law(i)%dilation/problem%length(i)
+         problem%law(i)%friction = problem%law(i)%friction/weight(i)
+         problem%law(i)%dilation = problem%law(i)%dilation/weight(i)
          if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
       end do
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)

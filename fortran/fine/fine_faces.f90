@@ -231,6 +231,8 @@ contains
    !> The condition of each pair, and the frame of those that may slip. At a kink it is the mean of
    !! the frames of the cells that have the pair's condition, and so is the dilation. In contact the
    !! mean is weighted by the cells' nodal lengths: a uniform pressure then has no shear component.
+   !! Where only some of the cells cannot part, these alone count: the mouth of a wing slides along
+   !! the main fracture.
    pure subroutine combine_conditions(fine, boundary, conditions, constraints, dilation)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -238,6 +240,7 @@ contains
       type(constraints_t), intent(inout) :: constraints
       real(rk), allocatable, intent(out) :: dilation(:)  !< (n_pairs)
       integer(ik), allocatable :: n_alike(:)
+      logical, allocatable :: is_bilateral(:)
       real(rk) :: share(3), tau(2)
       integer(ik) :: cell, k, pair
 
@@ -245,6 +248,7 @@ contains
       allocate (dilation(constraints%n_pairs), source=0.0_rk)
       allocate (n_alike(constraints%n_pairs), source=0_ik)
       allocate (constraints%pair_condition(constraints%n_pairs), source=face_loaded)
+      allocate (is_bilateral(constraints%n_pairs), source=.false.)
       do cell = 1, fine%fracture%n_cells
          do k = 1, 3
             pair = constraints%face_pair(k, cell)
@@ -252,6 +256,9 @@ contains
             associate (strictest => constraints%pair_condition(pair))
                strictest = max(strictest, conditions%condition(cell))
             end associate
+            if (conditions%condition(cell) == face_contact) then
+               is_bilateral(pair) = is_bilateral(pair) .or. conditions%law(cell)%contact%bilateral
+            end if
          end do
       end do
       do pair = 1, constraints%n_pairs
@@ -269,6 +276,7 @@ contains
             tau = fine%face_tangent(:, cell)
             if (constraints%face_flipped(k, cell)) tau = -tau
             if (conditions%condition(cell) == face_contact) then
+               if (is_bilateral(pair) .and. .not. conditions%law(cell)%contact%bilateral) cycle
                share = face_shares(fine%face_tip(cell))
                tau = share(k)*fine%face_length(cell)*tau
             end if

@@ -13,7 +13,7 @@ module mechanics_body
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use mechanics_faces, only: face_conditions, given_slip, transfer_contact
+   use mechanics_faces, only: face_conditions, face_pressure, given_slip, transfer_contact
    use mechanics_outline, only: outline_of_scene, outline_t
    use mesh_builder, only: build_mesh, build_mesh_sized, mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
@@ -249,6 +249,7 @@ contains
             loads%boundary_displacement(axis, nodes) = factor*scene%sides(side)%displacement(axis)
          end do
       end do
+      loads%fluid_pressure = factor*face_pressure(scene, fine)
       call add_in_situ(scene%in_situ, fine, loads)
       do side = 1, size(scene%sides, kind=ik)
          if (.not. any(abs(scene%sides(side)%traction) > 0.0_rk)) cycle

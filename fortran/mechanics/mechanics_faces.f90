@@ -2,7 +2,8 @@
 !! what is kept of contact when the mesh changes.
 !!
 !! New faces, which growth has made, have the law of their fracture; but next to a given slip, which
-!! belongs to the fracture as it was at the start, they touch without friction.
+!! belongs to the fracture as it was at the start, they touch without friction, and they may part
+!! though the fracture is held closed. A pressure on the faces acts on all of them.
 module mechanics_faces
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
@@ -15,7 +16,7 @@ module mechanics_faces
    implicit none(type, external)
    private
 
-   public :: face_conditions, given_slip, transfer_contact
+   public :: face_conditions, face_pressure, given_slip, transfer_contact
 
    real(rk), parameter :: round_off = 1.0e-9_rk  !< of a fracture's length
 
@@ -43,10 +44,21 @@ contains
             case default
                law%contact = contact_law_t()
             end select
+            law%contact%bilateral = scene%fractures(f)%held_closed .and. &
+                                    was_there(start, f, fine%fracture%cell_s(:, cell))
             conditions%condition(cell) = face_contact
          end associate
       end do
    end function face_conditions
+
+   !> The pressure on the faces of every fracture cell at load factor 1 [Pa].
+   pure function face_pressure(scene, fine) result(pressure)
+      type(scene_t), intent(in) :: scene
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk) :: pressure(fine%fracture%n_cells)
+
+      pressure = scene%fractures(fine%fracture%cell_fracture(:fine%fracture%n_cells))%face_pressure
+   end function face_pressure
 
    !> A cell belongs to the fracture as it was at the start.
    pure logical function was_there(start, f, s)

@@ -154,6 +154,10 @@ contains
                call refuse(error, sheet, record, "slip", "or slip_taper is given with the law '"// &
                            trim(fracture%law)//"', which has neither")
                return
+            else if (fracture%law == "open" .and. fracture%held_closed) then
+               call refuse(error, sheet, record, "held_closed", "is .true., but the faces of "// &
+                           "the law 'open' do not touch; give 'friction' or 'frictionless'")
+               return
             end if
          end associate
       end do

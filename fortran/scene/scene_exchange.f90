@@ -105,6 +105,7 @@ contains
             do i = 1, size(source%fractures)
                record = empty_record(group, 0_ik)
                call exchange_fracture(record, source%fractures(i), .false.)
+               call drop_foreign(record, source%has_fluid())
                call add_record(sheet, record)
             end do
          case ("side")
@@ -280,6 +281,8 @@ contains
          call exchange(record, "dilation_deg", dilation_deg, reading)
          fracture%dilation = dilation_deg*radians
       end if
+      call exchange(record, "held_closed", fracture%held_closed, reading)
+      call exchange(record, "face_pressure", fracture%face_pressure, reading)
       call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)
    end subroutine exchange_fracture
 

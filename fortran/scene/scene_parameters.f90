@@ -203,6 +203,13 @@ module scene_parameters
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
+      parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
+                  scenes=in_mechanics, &
+                  meaning="The faces slide but never part, even under tension, where they carry "// &
+                  "no friction: an assumption of reference solutions. Faces that grow may part"), &
+      parameter_t("fracture", "face_pressure", unit="Pa", default="0.0", scenes=in_mechanics, &
+                  meaning="Pressure that pushes the faces apart, those of its wings too, times "// &
+                  "the load factor; contact carries the rest"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
                   meaning="Residual hydraulic aperture a_0 of the closed fracture"), &
       parameter_t("side", "name", kind_choice, need=need_always, choices="left|right|bottom|top", &

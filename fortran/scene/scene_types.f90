@@ -50,6 +50,8 @@ module scene_types
       real(rk) :: slip_taper = 0.0_rk
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
+      logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
+      real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
    end type fracture_t
 

@@ -160,9 +160,10 @@ contains
       same_fracture = a%name == b%name .and. a%law == b%law
       same_fracture = same_fracture .and. same(a%x, b%x) .and. same(a%y, b%y)
       same_fracture = same_fracture .and. same([a%friction, a%dilation, a%aperture, a%slip, &
-                                                a%slip_taper], &
+                                                a%slip_taper, a%face_pressure], &
                                                [b%friction, b%dilation, b%aperture, b%slip, &
-                                                b%slip_taper])
+                                                b%slip_taper, b%face_pressure])
+      same_fracture = same_fracture .and. (a%held_closed .eqv. b%held_closed)
    end function same_fracture
 
    pure logical function same_injection(a, b)

@@ -40,6 +40,12 @@ program test_scene_mechanics
                "'slip' needs, is missing")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=1 slip_taper=0.1 /", &
                "slip or slip_taper is given with the law 'friction', which has neither")
+   call accept("held closed", 3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=1 "// &
+               "held_closed=.true. face_pressure=1e6 /")
+   call accept("a pressure on open faces", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' "// &
+               "face_pressure=1e6 held_closed=.false. /")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' held_closed=.true. /", &
+               ":3: &fracture: held_closed is .true., but the faces of the law 'open' do not touch")
    call refuse(5, "&restraint x=0 y=1 x_displacement=0 /", "", accepted=.true.)
    call refuse(5, "&restraint x=2 y=0 x_displacement=0 /", "the body can rotate")
    call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "no side has an x_displacement")

@@ -77,9 +77,11 @@ contains
       call round_trip(path)
       call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                             "&material young=1e9 poisson=0.2 toughness=1e6 /", &
-                            "&fracture name='f' x=0.4 0.6 y=2*0.5 law='open' /", &
+                            "&fracture name='f' x=0.4 0.6 y=2*0.5 law='open' "// &
+                            "face_pressure=-1.25e6 /", &
                             "&fracture name='g' x=0.4 0.6 y=2*0.8 law='slip' slip=0.1 /", &
-                            "&fracture name='h' x=0.4 0.6 y=2*0.2 friction=0.1 /", &
+                            "&fracture name='h' x=0.4 0.6 y=2*0.2 friction=0.1 "// &
+                            "held_closed=.true. /", &
                             "&in_situ sxx=-1.1e7 sxy=2 /", &
                             "&restraint x=0 y=0 x_displacement=0 y_displacement=-0.1 /", &
                             "&restraint x=1 y=0 y_displacement=1e-3 /", &
