@@ -9,10 +9,9 @@ module mechanics_simulation
    use mechanics_targets, only: cuts_through, find_target, target_boundary, target_none
    use mesh_types, only: network_t
    use scene_types, only: scene_t
-   use tips_growth, only: advances, carry_over, growth_drive, growth_drive_t, new_tip
+   use tips_growth, only: advances, carry_over, growth_drive, new_tip
    use tips_network, only: extend, network_of_scene
-   use tips_path, only: path_t
-   use tips_types, only: intensity_t
+   use tips_state, only: tip_state_t
    implicit none(type, external)
    private
 
@@ -24,16 +23,8 @@ module mechanics_simulation
    !! the intensities, so that equal tips stay equal.
    real(rk), parameter :: together = 2.0e-3_rk
 
-   !> A free tip.
-   type, extends(path_t) :: tip_t
-      integer(ik) :: fracture = 0  !< in the network
-      integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
-      logical :: arrested = .false.  !< joined to something
-      character(len=:), allocatable :: joint  !< to what, for events; allocated once
-      type(intensity_t) :: intensity  !< at the present tip
-      type(growth_drive_t) :: drive
-      type(intensity_t) :: intensity_before  !< before the last increment of any tip
-      type(growth_drive_t) :: drive_before
+   !> A free tip of the body.
+   type, extends(tip_state_t) :: tip_t
       real(rk) :: rosette_radius = 0.0_rk  !< [m]
    end type tip_t
 

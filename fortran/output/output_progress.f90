@@ -23,6 +23,9 @@ module output_progress
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0
       real(rk) :: fracture_length = 0.0_rk  !< [m]
+      logical :: is_load = .false.  !< mechanics only: the load factor and the tips are shown
+      real(rk) :: load_factor = 0.0_rk  !< [-]
+      integer(ik) :: n_tips = 0
    end type progress_values_t
 
    !> The line and when it was last renewed.
@@ -92,14 +95,21 @@ contains
    pure function progress_line(values) result(line)
       type(progress_values_t), intent(in) :: values
       character(len=line_width) :: line
+      character(len=:), allocatable :: place, more
       real(rk) :: share
 
       share = 0.0_rk
       if (values%time_end > 0.0_rk) share = 100.0_rk*min(values%time/values%time_end, 1.0_rk)
-      line = integer_text(int(share, ik))//"%  t "//brief_text(values%time, 5)//" s  step "// &
-         & integer_text(values%step)//"  Newton "//integer_text(values%newton_iterations)// &
-         & "  stick "//integer_text(values%n_stick)//" slip "//integer_text(values%n_slip)// &
-        & " open "//integer_text(values%n_open)//"  L "//brief_text(values%fracture_length, 4)//" m"
+      place = "t "//brief_text(values%time, 5)//" s"
+      more = "Newton "//integer_text(values%newton_iterations)
+      if (values%is_load) then
+         place = "load "//brief_text(values%load_factor, 5)
+         more = "tips "//integer_text(values%n_tips)
+      end if
+      line = integer_text(int(share, ik))//"%  "//place//"  step "//integer_text(values%step)// &
+         & "  "//more//"  stick "//integer_text(values%n_stick)//" slip "// &
+         & integer_text(values%n_slip)//" open "//integer_text(values%n_open)//"  L "// &
+         & brief_text(values%fracture_length, 4)//" m"
    end function progress_line
 
 end module output_progress

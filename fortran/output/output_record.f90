@@ -46,6 +46,7 @@ module output_record
       procedure :: count_dofs
       procedure :: use_feature
       procedure :: leave_out_feature
+      procedure :: note => note_feature
       procedure :: warn
       procedure :: write => write_record
    end type run_record_t
@@ -90,6 +91,20 @@ contains
 
       call add_once(self%left_out, feature)
    end subroutine leave_out_feature
+
+   !> Note a feature that the run uses or else leaves out.
+   subroutine note_feature(self, is_used, used, left_out)
+      class(run_record_t), intent(inout) :: self
+      logical, intent(in) :: is_used
+      character(len=*), intent(in) :: used  !< in words, if it is used
+      character(len=*), intent(in) :: left_out  !< and if it is not
+
+      if (is_used) then
+         call self%use_feature(used)
+      else
+         call self%leave_out_feature(left_out)
+      end if
+   end subroutine note_feature
 
    !> Note a warning; the same words are kept once.
    subroutine warn(self, warning)

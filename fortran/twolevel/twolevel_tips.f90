@@ -7,10 +7,9 @@ module twolevel_tips
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use tips_growth, only: advances, carry_over, growth_drive, growth_drive_t, new_tip
+   use tips_growth, only: advances, carry_over, growth_drive, new_tip
    use tips_network, only: extend, other_distance
-   use tips_path, only: path_t
-   use tips_types, only: intensity_t
+   use tips_state, only: tip_state_t
    use twolevel_window, only: coarse_level_t, window_t
    implicit none(type, external)
    private
@@ -21,17 +20,9 @@ module twolevel_tips
    real(rk), parameter :: intensity_error = 0.01_rk
 
    !> A free tip; its place is that on the fine level.
-   type, extends(path_t) :: tip_t
-      integer(ik) :: fracture = 0  !< in the network
-      integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
+   type, extends(tip_state_t) :: tip_t
       real(rk) :: pending = 0.0_rk  !< growth that the coarse level does not know yet [m]
       integer(ik) :: pending_vertices = 0
-      logical :: arrested = .false.
-      character(len=:), allocatable :: arrest_reason
-      type(intensity_t) :: intensity  !< at the present tip
-      type(growth_drive_t) :: drive
-      type(intensity_t) :: intensity_before  !< what made it grow
-      type(growth_drive_t) :: drive_before
    end type tip_t
 
    !> The tips and the network on the fine level, which is ahead of the coarse one.
@@ -123,6 +114,8 @@ contains
       any_grew = .false.
       do i = 1, size(self%tip)
          self%tip(i)%advance = 0.0_rk
+         self%tip(i)%intensity_before = self%tip(i)%intensity
+         self%tip(i)%drive_before = self%tip(i)%drive
          grows(i) = self%tip(i)%drive%intensity >= scene%material%toughness .and. &
                     .not. self%tip(i)%arrested
       end do
@@ -147,8 +140,6 @@ contains
             call extend(self%network, tip%fracture, tip%end, to)
             call forget_windows(self, tip%xy, to)
             call tip%move(to, tip%drive%angle)
-            tip%intensity_before = tip%intensity
-            tip%drive_before = tip%drive
             tip%pending = tip%pending + applied
             tip%pending_vertices = tip%pending_vertices + 1
             any_grew = .true.

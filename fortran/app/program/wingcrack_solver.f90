@@ -1,7 +1,6 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
    use app_check, only: describe_scene
-   use app_load, only: run_load
    use app_process, only: catch_interrupts, keep_heap, use_one_blas_thread
    use app_run, only: run_scene
    use app_version, only: version
@@ -66,11 +65,7 @@ contains
       call keep_heap()
       call use_one_blas_thread()
       call catch_interrupts()
-      if (scene%has_fluid()) then
-         call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
-      else
-         call run_load(scene, directory, version, quiet, refused, was_interrupted, error)
-      end if
+      call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
       if (allocated(error)) then
          if (refused) call leave(argument(2)//": "//error%message, exit_usage)
          call leave(error%message, exit_failed)

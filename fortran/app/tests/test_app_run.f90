@@ -1,8 +1,8 @@
 !> Runs from start to end: steps that meet the wells' times, steps that are cut, runs that fail with
 !! their reason and the last good state on disk.
 program test_app_run
-   use app_journal, only: cell_state
    use app_run, only: run_scene
+   use app_twolevel_fields, only: cell_state
    use base_check_files, only: file_exists, file_text
    use base_checks, only: checks_t
    use base_errors, only: error_t

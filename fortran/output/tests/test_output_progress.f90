@@ -20,6 +20,12 @@ program test_output_progress
    values%time = 5000.0_rk
    call checks%is_true(index(progress_line(values), "100%  t 5000 s") == 1, "done")
 
+   values%is_load = .true.
+   values%load_factor = 0.74512_rk
+   values%n_tips = 6
+   call checks%is_true(trim(progress_line(values)) == "100%  load 0.74512  step 12  tips 6  "// &
+      & "stick 60 slip 30 open 10  L 1.235 m", "mechanics only: "//progress_line(values))
+
    ! A quiet run shows nothing, on a terminal too.
    call progress%begin(quiet=.true.)
    call progress%show(values)
