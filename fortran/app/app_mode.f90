@@ -57,8 +57,8 @@ module app_mode
          type(error_t), allocatable, intent(out) :: error
       end subroutine go_on
 
-      !> tell_state: tell the files of an accepted state. tell_end: write the fields of the last good
-      !! state, however the run has ended, unless they have just been written.
+      !> tell_state: tell the files of an accepted state. tell_end: write the fields of the last
+      !! good state, however the run has ended, unless they have just been written.
       subroutine tell(self, journal, error)
          import :: error_t, journal_t, mode_t
          implicit none(type, external)
