@@ -9,7 +9,8 @@ module fine_boundary
    implicit none(type, external)
    private
 
-   public :: add_point_force, add_side_pressure, add_side_traction, check_boundary, check_support
+   public :: add_point_force, add_side_pressure, add_side_stress, add_side_traction
+   public :: check_boundary, check_support
    public :: clamped_boundary, fine_boundary_t, free_boundary, hold_side, nearest_node
 
    !> What is given on the outer boundary, or anywhere else; the values belong to the loads.
@@ -90,16 +91,29 @@ contains
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
       real(rk), intent(in) :: pressure  !< [Pa]
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-      real(rk) :: chord(2)
+
+      call add_side_stress(fine, side, -pressure, 0.0_rk, force)
+   end subroutine add_side_pressure
+
+   !> Uniform tractions along the outward normal of a side and along the side itself, in the
+   !! direction that has the body on its left.
+   pure subroutine add_side_stress(fine, side, normal, shear, force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      real(rk), intent(in) :: normal, shear  !< [Pa]
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk) :: tangent(2)
       integer(ik) :: face
 
       do face = 1, size(fine%boundary_sides)
          if (fine%boundary_sides(face) /= side) cycle
          ! The body lies on the left of its faces, so the outward normal is on their right.
-         chord = fine%xy(:, fine%boundary_faces(2, face)) - fine%xy(:, fine%boundary_faces(1, face))
-         call add_face_traction(fine, face, -pressure*[chord(2), -chord(1)]/norm2(chord), force)
+         tangent = fine%xy(:, fine%boundary_faces(2, face)) &
+                   - fine%xy(:, fine%boundary_faces(1, face))
+         tangent = tangent/norm2(tangent)
+         call add_face_traction(fine, face, normal*[tangent(2), -tangent(1)] + shear*tangent, force)
       end do
-   end subroutine add_side_pressure
+   end subroutine add_side_stress
 
    !> Shares 1/6, 1/6 and 4/6 of a uniform traction's resultant for the ends and the middle of a
    !! face: exact integrals of the shape functions.

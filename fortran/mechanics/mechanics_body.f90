@@ -4,16 +4,15 @@ module mechanics_body
    use base_kinds, only: ik, rk
    use base_timers, only: phase_assemble, phase_factorize, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
-   use fine_boundary, only: add_point_force, add_side_traction, fine_boundary_t, free_boundary, &
-                            hold_side, nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
-   use fine_loads, only: fine_loads_t, no_loads
+   use fine_loads, only: fine_loads_t
    use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
    use mechanics_faces, only: face_conditions, face_pressure, given_slip, transfer_contact
+   use mechanics_loads, only: body_loads, held_boundary
    use mechanics_outline, only: outline_of_scene, outline_t
    use mesh_builder, only: build_mesh, build_mesh_sized, mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
@@ -207,91 +206,6 @@ contains
       end do
       spec%end_radius = min(spec%rosette_radius, 0.5_rk*spec%end_radius)
    end function body_spec
-
-   !> Which displacements are given.
-   pure function held_boundary(scene, fine) result(boundary)
-      type(scene_t), intent(in) :: scene
-      type(fine_mesh_t), intent(in) :: fine
-      type(fine_boundary_t) :: boundary
-      integer(ik) :: side, axis, i, node
-
-      boundary = free_boundary(fine)
-      do side = 1, size(scene%sides, kind=ik)
-         do axis = 1, 2
-            if (scene%sides(side)%displacement_given(axis)) then
-               call hold_side(fine, side, axis, boundary)
-            end if
-         end do
-      end do
-      do i = 1, size(scene%restraints)
-         associate (point => scene%restraints(i))
-            node = nearest_node(fine, [point%x, point%y])
-            boundary%prescribed(:, node) = boundary%prescribed(:, node) .or. &
-                                           point%displacement_given
-         end associate
-      end do
-   end function held_boundary
-
-   !> The loads of a scene at a load factor.
-   pure function body_loads(scene, fine, factor) result(loads)
-      type(scene_t), intent(in) :: scene
-      type(fine_mesh_t), intent(in) :: fine
-      real(rk), intent(in) :: factor  !< [-]
-      type(fine_loads_t) :: loads
-      integer(ik) :: face, side, axis, i, node, nodes(3)
-
-      loads = no_loads(fine)
-      do face = 1, size(fine%boundary_sides, kind=ik)
-         side = fine%boundary_sides(face)
-         nodes = [fine%boundary_faces(:, face), fine%boundary_middles(face)]
-         do axis = 1, 2
-            if (.not. scene%sides(side)%displacement_given(axis)) cycle
-            loads%boundary_displacement(axis, nodes) = factor*scene%sides(side)%displacement(axis)
-         end do
-      end do
-      loads%fluid_pressure = factor*face_pressure(scene, fine)
-      call add_in_situ(scene%in_situ, fine, loads)
-      do side = 1, size(scene%sides, kind=ik)
-         if (.not. any(abs(scene%sides(side)%traction) > 0.0_rk)) cycle
-         call add_side_traction(fine, side, factor*scene%sides(side)%traction, loads%force)
-      end do
-      do i = 1, size(scene%restraints)
-         associate (point => scene%restraints(i))
-            node = nearest_node(fine, [point%x, point%y])
-            where (point%displacement_given)
-               loads%boundary_displacement(:, node) = factor*point%displacement
-            end where
-         end associate
-      end do
-      do i = 1, size(scene%point_loads)
-         associate (point => scene%point_loads(i))
-            call add_point_force(fine, [point%x, point%y], factor*point%force, loads%force)
-         end associate
-      end do
-   end function body_loads
-
-   !> The stress in situ, and the tractions on the outer boundary that hold it in equilibrium.
-   pure subroutine add_in_situ(in_situ, fine, loads)
-      real(rk), intent(in) :: in_situ(3)  !< xx, yy, xy [Pa]
-      type(fine_mesh_t), intent(in) :: fine
-      type(fine_loads_t), intent(inout) :: loads
-      real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! ends, middle
-      real(rk) :: chord(2), resultant(2)
-      integer(ik) :: face, k, nodes(3)
-
-      if (.not. any(abs(in_situ) > 0.0_rk)) return
-      loads%initial_stress = spread(in_situ, 2, fine%n_vertices)
-      do face = 1, size(fine%boundary_sides, kind=ik)
-         nodes = [fine%boundary_faces(:, face), fine%boundary_middles(face)]
-         ! The body is on the left: the outward normal times the length is the chord turned right.
-         chord = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
-         resultant = [in_situ(1)*chord(2) - in_situ(3)*chord(1), &
-                      in_situ(3)*chord(2) - in_situ(2)*chord(1)]
-         do k = 1, 3
-            loads%force(:, nodes(k)) = loads%force(:, nodes(k)) + share(k)*resultant
-         end do
-      end do
-   end subroutine add_in_situ
 
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.
    subroutine respond(self, scene, factor, timers, error)

@@ -1,16 +1,20 @@
 !> The outer boundary of the body as a closed polygon.
 module mechanics_outline
    use base_kinds, only: ik, rk
-   use scene_types, only: scene_t
+   use scene_polygon, only: signed_area
+   use scene_types, only: boundary_part_t, boundary_side_t, scene_t
    implicit none(type, external)
    private
 
-   public :: outline_of_scene, outline_t
+   public :: outline_of_scene, outline_t, sides_of_scene
+
+   real(rk), parameter :: pi = acos(-1.0_rk)
 
    !> Counter-clockwise polygon.
    type :: outline_t
       real(rk), allocatable :: corners(:, :)  !< (2, n) [m]
-      integer(ik), allocatable :: edge_side(:)  !< (n) side from each corner to the next
+      !> (n) side from each corner to the next, as sides_of_scene numbers them
+      integer(ik), allocatable :: edge_side(:)
       real(rk), allocatable :: fixed_points(:, :)  !< (2, n) places that must be nodes [m]
    end type outline_t
 
@@ -27,26 +31,98 @@ contains
       outline%fixed_points(1, :) = [scene%restraints%x, scene%point_loads%x]
       outline%fixed_points(2, :) = [scene%restraints%y, scene%point_loads%y]
       associate (d => scene%domain)
-         if (d%shape == "disc") then
+         select case (d%shape)
+         case ("disc")
             outline%corners = circle(scene, outline%fixed_points)
-            allocate (outline%edge_side(size(outline%corners, 2)), source=1_ik)
-         else
+            outline%edge_side = rim_sides(scene, outline%corners)
+         case ("polygon")
+            outline%corners = transpose(reshape([d%x, d%y], [size(d%x), 2]))
+            outline%edge_side = polygon_sides(scene)
+            if (signed_area(d%x, d%y) < 0.0_rk) then  ! edge k ends where k + 1 began
+               outline%corners = outline%corners(:, size(d%x):1:-1)
+               outline%edge_side = cshift(outline%edge_side(size(d%x):1:-1), 1)
+            end if
+         case default
             outline%corners = reshape([d%x_min, d%y_min, d%x_max, d%y_min, d%x_max, d%y_max, &
                                        d%x_min, d%y_max], [2, 4])
             outline%edge_side = [3_ik, 2_ik, 4_ik, 1_ik]
-         end if
+         end select
       end associate
    end function outline_of_scene
 
-   !> Points on a circle: equally spaced ones, of which those next to a given point or to the end
-   !! of a fracture on the circle give way to it.
+   !> What is prescribed on each side of the body, by its number; the last one of a polygon or disc
+   !! is all that the scene does not speak of, free of traction.
+   pure function sides_of_scene(scene) result(sides)
+      type(scene_t), intent(in) :: scene
+      type(boundary_side_t), allocatable :: sides(:)
+      integer :: i, n
+
+      if (scene%domain%shape == "rectangle") then
+         sides = scene%sides
+         return
+      end if
+      n = n_parts(scene)
+      allocate (sides(n + 1))
+      do i = 1, n
+         sides(i) = scene%parts(i)%boundary_side_t
+      end do
+   end function sides_of_scene
+
+   pure integer function n_parts(scene)
+      type(scene_t), intent(in) :: scene
+
+      n_parts = 0
+      if (allocated(scene%parts)) n_parts = size(scene%parts)
+   end function n_parts
+
+   !> Sides of a polygon's edges, in the scene's order.
+   pure function polygon_sides(scene) result(edge_side)
+      type(scene_t), intent(in) :: scene
+      integer(ik), allocatable :: edge_side(:)
+      integer(ik) :: i
+
+      allocate (edge_side(size(scene%domain%x)), source=int(n_parts(scene) + 1, ik))
+      do i = 1, n_parts(scene)
+         edge_side(scene%parts(i)%edges) = i
+      end do
+   end function polygon_sides
+
+   !> Sides of the edges between points on a circle.
+   pure function rim_sides(scene, corners) result(edge_side)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) [m]
+      integer(ik), allocatable :: edge_side(:)
+      real(rk) :: arm(2), angle
+      integer(ik) :: i, k, n
+
+      n = size(corners, 2, kind=ik)
+      allocate (edge_side(n), source=int(n_parts(scene) + 1, ik))
+      do k = 1, n
+         arm = 0.5_rk*(corners(:, k) + corners(:, mod(k, n) + 1)) &
+               - [scene%domain%x_centre, scene%domain%y_centre]
+         angle = atan2(arm(2), arm(1))
+         do i = 1, n_parts(scene)
+            if (holds_angle(scene%parts(i), angle)) edge_side(k) = i
+         end do
+      end do
+   end function rim_sides
+
+   pure logical function holds_angle(part, angle)
+      type(boundary_part_t), intent(in) :: part
+      real(rk), intent(in) :: angle  !< [rad]
+
+      holds_angle = part%whole_rim .or. &
+                    modulo(angle - part%arc(1), 2.0_rk*pi) < part%arc(2) - part%arc(1)
+   end function holds_angle
+
+   !> Points on a circle: equally spaced ones, of which those next to a given point, to the end of
+   !! an arc or to the end of a fracture on the circle give way to it.
    !!
    !! A polygon of n corners on the circle lacks 2/3 (pi/n)**2 of its area: 1e-4 with 256.
    pure function circle(scene, given) result(corners)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: given(:, :)  !< (2, n) of which some lie on the circle [m]
       real(rk), allocatable :: corners(:, :)
-      real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk), parameter :: on_circle = 1.0e-6_rk  ! distance over the radius
       integer, parameter :: fewest = 256
       real(rk), allocatable :: angle(:), fixed(:)
@@ -61,6 +137,15 @@ contains
          do i = 1, size(scene%fractures)
             do k = 1, size(scene%fractures(i)%x)
                call keep([scene%fractures(i)%x(k), scene%fractures(i)%y(k)], fixed)
+            end do
+         end do
+         do i = 1, n_parts(scene)
+            if (scene%parts(i)%whole_rim) cycle
+            do k = 1, 2
+               associate (place => scene%parts(i)%arc(k))
+                  call keep([d%x_centre + d%radius*cos(place), d%y_centre + d%radius*sin(place)], &
+                            fixed)
+               end associate
             end do
          end do
          n = max(fewest, ceiling(2.0_rk*pi*d%radius/size_boundary))

@@ -316,7 +316,9 @@ contains
       to = at
       tip%arrested = .true.
       tip%joint = "joins the outer boundary"
-      if (target /= target_boundary) then
+      if (target == tip%fracture) then
+         tip%joint = "joins its own fracture"
+      else if (target /= target_boundary) then
          tip%joint = "joins fracture "//trim(self%scene%fractures(target)%name)
       end if
    end subroutine meet_target

@@ -17,6 +17,9 @@ module mechanics_targets
 contains
 
    !> What a new segment at the end of a fracture crosses first, or else what its end comes near.
+   !!
+   !! The fracture itself is a target where the new segment turns back to it: not the segments that
+   !! end where the new one begins, nor those that it leaves behind.
    pure subroutine find_target(network, outline, fracture, from, to, reach, target, at)
       type(network_t), intent(in) :: network
       type(outline_t), intent(in) :: outline
@@ -32,8 +35,8 @@ contains
       at = to
       best = huge(1.0_rk)
       do f = 1, size(network%first, kind=ik) - 1
-         if (f == fracture) cycle
          do v = network%first(f), network%first(f + 1) - 2
+            if (f == fracture .and. is_behind(from, to, network%xy(:, v:v + 1))) cycle
             call try(from, to, network%xy(:, v:v + 1), reach, f, best, target, at)
          end do
       end do
@@ -44,6 +47,57 @@ contains
       end do
    end subroutine find_target
 
+   !> A segment of the growing fracture from which a new one starts or which it leaves behind.
+   pure logical function is_behind(from, to, ends)
+      real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
+      real(rk), intent(in) :: ends(2, 2)  !< of the old one [m]
+      real(rk), parameter :: same = 1.0e-9_rk  ! of the new segment's length
+      real(rk) :: before, after
+
+      before = norm2(nearest_place(from, ends) - from)
+      after = norm2(nearest_place(to, ends) - to)
+      is_behind = before <= same*norm2(to - from) .or. &
+                  (after >= before .and. .not. crosses(from, to, ends))
+   end function is_behind
+
+   !> Two segments cross.
+   pure logical function crosses(from, to, ends)
+      real(rk), intent(in) :: from(2), to(2), ends(2, 2)  !< [m]
+      real(rk) :: share(2)
+
+      share = meeting(from, to, ends)
+      crosses = all(share >= 0.0_rk .and. share <= 1.0_rk)
+   end function crosses
+
+   !> Where the lines through two segments meet, as shares of both; never within parallel ones.
+   pure function meeting(from, to, ends) result(share)
+      real(rk), intent(in) :: from(2), to(2), ends(2, 2)  !< [m]
+      real(rk) :: share(2)
+      real(rk) :: along(2), side(2), determinant
+
+      along = to - from
+      side = ends(:, 2) - ends(:, 1)
+      determinant = along(1)*side(2) - along(2)*side(1)
+      share = -1.0_rk
+      if (abs(determinant) > 0.0_rk) then
+         associate (between => ends(:, 1) - from)
+            share = [between(1)*side(2) - between(2)*side(1), &
+                     between(1)*along(2) - between(2)*along(1)]/determinant
+         end associate
+      end if
+   end function meeting
+
+   !> The place on a segment nearest to a point [m].
+   pure function nearest_place(point, ends) result(place)
+      real(rk), intent(in) :: point(2), ends(2, 2)  !< [m]
+      real(rk) :: place(2)
+
+      associate (side => ends(:, 2) - ends(:, 1))
+         place = ends(:, 1) + side*min(1.0_rk, max(0.0_rk, dot_product(point - ends(:, 1), side) &
+                                                   /dot_product(side, side)))
+      end associate
+   end function nearest_place
+
    !> Keep the candidate if it comes first. Crossings rank by their share of the segment, below 1;
    !! nearness follows after all of them.
    pure subroutine try(from, to, ends, reach, candidate, best, target, at)
@@ -52,28 +106,16 @@ contains
       real(rk), intent(inout) :: best
       integer(ik), intent(inout) :: target
       real(rk), intent(inout) :: at(2)
-      real(rk) :: along(2), side(2), place(2), determinant, share(2), rank
+      real(rk) :: place(2), share(2), rank
       integer :: k
 
-      along = to - from
-      side = ends(:, 2) - ends(:, 1)
-      determinant = along(1)*side(2) - along(2)*side(1)
       rank = huge(1.0_rk)
-      place = to
-      if (abs(determinant) > 0.0_rk) then
-         associate (between => ends(:, 1) - from)
-            share = [between(1)*side(2) - between(2)*side(1), &
-                     between(1)*along(2) - between(2)*along(1)]/determinant
-         end associate
-         if (all(share >= 0.0_rk .and. share <= 1.0_rk)) then
-            rank = share(1)
-            place = ends(:, 1) + share(2)*side
-         end if
-      end if
-      if (rank > 1.0_rk) then
-         share(2) = min(1.0_rk, max(0.0_rk, dot_product(to - ends(:, 1), side) &
-                                    /dot_product(side, side)))
-         place = ends(:, 1) + share(2)*side
+      share = meeting(from, to, ends)
+      if (all(share >= 0.0_rk .and. share <= 1.0_rk)) then
+         rank = share(1)
+         place = ends(:, 1) + share(2)*(ends(:, 2) - ends(:, 1))
+      else
+         place = nearest_place(to, ends)
          if (norm2(place - to) < reach) rank = 1.0_rk + norm2(place - to)/reach
       end if
       if (.not. rank < best) return

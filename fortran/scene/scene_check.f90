@@ -5,7 +5,9 @@ module scene_check
    use base_kinds, only: rk
    use base_number, only: integer_text
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
-   use scene_check_mechanics, only: check_laws, check_load, check_points, check_support
+   use scene_check_mechanics, only: check_laws, check_load, check_points, check_support, &
+                                    check_weight
+   use scene_check_sides, only: check_parts, check_sides
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
@@ -37,11 +39,13 @@ contains
 
       call check_domain(sheet, scene, error)
       if (.not. allocated(error)) call check_material(sheet, scene, error)
+      if (.not. allocated(error)) call check_parts(sheet, scene, error)
       if (.not. allocated(error)) call check_support(sheet, scene, error)
       if (scene%has_fluid()) then
          if (.not. allocated(error)) call check_times(sheet, scene, error)
       else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
+         if (.not. allocated(error)) call check_weight(sheet, scene, error)
          if (.not. allocated(error)) call check_points(sheet, scene, error)
       end if
       if (.not. allocated(error)) call check_laws(sheet, scene, error)
@@ -99,26 +103,6 @@ contains
                      "is missing")
       end if
    end subroutine check_permeability
-
-   !> Per component displacement or traction, not both.
-   pure subroutine check_sides(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      character(len=1), parameter :: axes(2) = ["x", "y"]
-      integer :: i, axis
-
-      do i = 1, sheet%length
-         if (groups(sheet%records(i)%group)%name /= "side") cycle
-         do axis = 1, 2
-            if (sheet%records(i)%is_given(axes(axis)//"_displacement") .and. &
-                sheet%records(i)%is_given(axes(axis)//"_traction")) then
-               call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
-                           axes(axis)//"_displacement but only one of them can be prescribed")
-               return
-            end if
-         end do
-      end do
-   end subroutine check_sides
 
    !> Wells belong to a fracture, and have both coordinates or none.
    pure subroutine check_injections(sheet, error)

@@ -3,6 +3,7 @@ module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use scene_polygon, only: holds_point, leaves, lies_on, polygon_fault
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: real_text, rounded_text
@@ -52,35 +53,59 @@ contains
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      character(len=8), parameter :: of_rectangle(4) = ["x_min   ", "x_max   ", "y_min   ", &
-                                                        "y_max   "]
-      character(len=8), parameter :: of_disc(3) = ["x_centre", "y_centre", "radius  "]
-      logical :: is_disc
-      integer :: i, record
+      character(len=8), parameter :: names(9) = ["x_min   ", "x_max   ", "y_min   ", "y_max   ", &
+                                                 "x_centre", "y_centre", "radius  ", "x       ", &
+                                                 "y       "]
+      character(len=9), parameter :: shapes(3) = ["rectangle", "disc     ", "polygon  "]
+      character(len=21), parameter :: wanted(3) = ["four sides           ", &
+                                                   "a centre and a radius", &
+                                                   "corners x and y      "]
+      integer, parameter :: owner(9) = [1, 1, 1, 1, 2, 2, 2, 3, 3]
+      integer :: i, record, own
 
-      is_disc = scene%domain%shape == "disc"
+      own = findloc(shapes == scene%domain%shape, .true., dim=1)
       record = sheet%find("domain")
-      if (is_disc .and. scene%has_fluid()) then
-         call refuse(error, sheet, record, "shape", "is 'disc' but must be 'rectangle' in a "// &
-                     "scene with &fluid")
-         return
-      else if (is_disc .and. sheet%has("side")) then
-         call refuse(error, sheet, sheet%find("side"), "", "is given, but a disc has no sides")
+      if (own /= 1 .and. scene%has_fluid()) then
+         call refuse(error, sheet, record, "shape", "is '"//trim(shapes(own))//"' but must be "// &
+                     "'rectangle' in a scene with &fluid")
          return
       end if
-      do i = 1, merge(size(of_rectangle), size(of_disc), is_disc)
-         if (is_disc) then
-            if (.not. sheet%records(record)%is_given(trim(of_rectangle(i)))) cycle
-            call refuse(error, sheet, record, trim(of_rectangle(i)), "is given for a disc, "// &
-                        "which has a centre and a radius instead")
-         else
-            if (.not. sheet%records(record)%is_given(trim(of_disc(i)))) cycle
-            call refuse(error, sheet, record, trim(of_disc(i)), "is given for a rectangle, "// &
-                        "which has four sides instead")
-         end if
+      do i = 1, size(names)
+         if (owner(i) == own .or. .not. sheet%records(record)%is_given(trim(names(i)))) cycle
+         call refuse(error, sheet, record, trim(names(i)), "is given for a "// &
+                     trim(shapes(own))//", which has "//trim(wanted(own))//" instead")
          return
       end do
+      if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
    end subroutine check_shape
+
+   !> The corners of a polygon bound a body.
+   pure subroutine check_corners(sheet, domain, error)
+      type(sheet_t), intent(in) :: sheet
+      type(domain_t), intent(in) :: domain
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: most_corners = 2000  ! every pair of edges is compared
+      character(len=:), allocatable :: reason
+      integer(ik) :: n
+      integer :: record
+
+      record = sheet%find("domain")
+      n = size(domain%x, kind=ik)
+      if (size(domain%y) /= n) then
+         call refuse(error, sheet, record, "y", "has "// &
+                     integer_text(size(domain%y, kind=ik))//" values but must have as many as "// &
+                     "x, "//integer_text(n))
+      else if (n < 3) then
+         call refuse(error, sheet, record, "x", "has "//integer_text(n)//" values but must "// &
+                     "have at least 3, the corners of the polygon")
+      else if (n > most_corners) then
+         call refuse(error, sheet, record, "x", "has "//integer_text(n)//" values but must "// &
+                     "have at most 2000")
+      else
+         reason = polygon_fault(domain%x, domain%y)
+         if (reason /= "") call refuse(error, sheet, record, "x", "and y "//reason)
+      end if
+   end subroutine check_corners
 
    !> The group that tells the cell sizes.
    pure integer function mesh_record(sheet)
@@ -152,6 +177,11 @@ contains
                         point_text(fracture%x(k), fracture%y(k))//" but must touch it with "// &
                         "the ends only")
             return
+         else if (crosses_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
+            call refuse(error, sheet, record, "x", "and y "//whose//"leave the domain on the "// &
+                        "way to "//point_text(fracture%x(k), fracture%y(k))//" but must stay "// &
+                        "within it")
+            return
          else if (k < n .and. on_boundary(domain, fracture%x(k), fracture%y(k))) then
             call refuse(error, sheet, record, "x", "and y "//whose//"give the inner vertex "// &
                         point_text(fracture%x(k), fracture%y(k))//" on the boundary but must "// &
@@ -206,6 +236,10 @@ contains
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x, y
 
+      if (domain%shape == "polygon") then
+         contains_point = holds_point(domain%x, domain%y, [x, y])
+         return
+      end if
       contains_point = x >= domain%x_min .and. x <= domain%x_max .and. &
                        y >= domain%y_min .and. y <= domain%y_max
       if (domain%shape == "disc") then
@@ -218,8 +252,14 @@ contains
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x, y
 
+      integer(ik) :: edge
+
       if (domain%shape == "disc") then
          on_boundary = from_centre(domain, x, y) >= domain%radius*(1.0_rk - round_off)
+         return
+      else if (domain%shape == "polygon") then
+         on_boundary = any([(lies_on(domain%x, domain%y, edge, [x, y]), &
+                             edge=1, size(domain%x, kind=ik))])
          return
       end if
       on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. &
@@ -238,12 +278,31 @@ contains
    pure logical function along_boundary(domain, x, y)
       type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: x(2), y(2)
+      integer(ik) :: edge
 
       along_boundary = .false.
       if (domain%shape == "disc") return
+      if (domain%shape == "polygon") then
+         do edge = 1, size(domain%x, kind=ik)
+            if (lies_on(domain%x, domain%y, edge, [x(1), y(1)]) .and. &
+                lies_on(domain%x, domain%y, edge, [x(2), y(2)])) along_boundary = .true.
+         end do
+         return
+      end if
       along_boundary = all(x <= domain%x_min) .or. all(x >= domain%x_max) .or. &
                        all(y <= domain%y_min) .or. all(y >= domain%y_max)
    end function along_boundary
+
+   !> A segment between two points of the domain leaves it in between: of a polygon only.
+   pure logical function crosses_boundary(domain, x, y)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: x(2), y(2)
+
+      crosses_boundary = .false.
+      if (domain%shape == "polygon") then
+         crosses_boundary = leaves(domain%x, domain%y, [x(1), y(1)], [x(2), y(2)])
+      end if
+   end function crosses_boundary
 
    pure real(rk) function total_length(fracture) result(length)
       type(fracture_t), intent(in) :: fracture

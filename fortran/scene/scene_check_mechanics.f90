@@ -4,12 +4,12 @@ module scene_check_mechanics
    use base_kinds, only: rk
    use scene_check_geometry, only: contains_point, point_text
    use scene_sheet, only: refuse, sheet_t
-   use scene_types, only: scene_t
-   use scene_words, only: real_text
+   use scene_types, only: boundary_part_t, scene_t
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
-   public :: check_laws, check_load, check_points, check_support
+   public :: check_laws, check_load, check_points, check_support, check_weight
 
 contains
 
@@ -31,11 +31,16 @@ contains
                         [2, 2, 4])
       end associate
       held = 0.0_rk
-      do side = 1, merge(0, 4, scene%domain%shape == "disc")
+      do side = 1, merge(4, 0, scene%domain%shape == "rectangle")
          do k = 1, 2
             call hold(ends(:, k, side), scene%sides(side)%displacement_given, held)
          end do
       end do
+      if (allocated(scene%parts)) then
+         do side = 1, size(scene%parts)
+            call hold_part(scene%parts(side), held)
+         end do
+      end if
       do k = 1, size(scene%restraints)
          associate (point => scene%restraints(k))
             call hold([point%x, point%y], point%displacement_given, held)
@@ -58,6 +63,35 @@ contains
       end if
 
    contains
+
+      !> The ends of a polygon's edges, or three points of an arc.
+      pure subroutine hold_part(part, sums)
+         type(boundary_part_t), intent(in) :: part
+         real(rk), intent(inout) :: sums(3, 3)
+         real(rk) :: arc(2), angle
+         integer :: i, n
+
+         if (.not. any(part%displacement_given)) return
+         associate (d => scene%domain)
+            if (allocated(part%edges)) then
+               n = size(d%x)
+               do i = 1, size(part%edges)
+                  associate (first => part%edges(i), next => mod(part%edges(i), n) + 1)
+                     call hold([d%x(first), d%y(first)], part%displacement_given, sums)
+                     call hold([d%x(next), d%y(next)], part%displacement_given, sums)
+                  end associate
+               end do
+               return
+            end if
+            arc = part%arc
+            if (part%whole_rim) arc = [0.0_rk, 4.0_rk]
+            do i = 0, 2
+               angle = arc(1) + 0.5_rk*real(i, rk)*(arc(2) - arc(1))
+               call hold([d%x_centre + d%radius*cos(angle), d%y_centre + d%radius*sin(angle)], &
+                         part%displacement_given, sums)
+            end do
+         end associate
+      end subroutine hold_part
 
       !> Add the products of what a, b and w do to the held components of a point.
       pure subroutine hold(xy, given, sums)
@@ -98,6 +132,34 @@ contains
          end if
       end associate
    end subroutine check_load
+
+   !> Gravity has a density, and an in-situ stress that changes with y carries the weight.
+   pure subroutine check_weight(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: balance = 1.0e-3_rk  ! of the weight, as a user rounds it
+      real(rk) :: weight
+
+      associate (gravity => scene%gravity, per_y => scene%in_situ%per_y)
+         if (any(abs(gravity) > 0.0_rk) .and. .not. scene%material%density > 0.0_rk) then
+            call refuse(error, sheet, sheet%find("gravity"), "", "is given, but the material "// &
+                        "has no density")
+            return
+         end if
+         if (.not. any(abs(per_y) > 0.0_rk)) return
+         weight = scene%material%density*gravity(2)
+         if (abs(gravity(1)) > 0.0_rk) then
+            call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
+                        " but must be 0, for an in-situ stress that changes with y alone "// &
+                        "carries no weight in x")
+         else if (.not. abs(per_y(2) + weight) <= balance*abs(weight)) then
+            call refuse(error, sheet, sheet%find("in_situ"), "syy_per_y", "is "// &
+                        real_text(per_y(2))//" but must carry the weight: density times "// &
+                        "gravity asks for "//rounded_text(-weight)//" Pa/m")
+         end if
+      end associate
+   end subroutine check_weight
 
    !> Restraints and point loads are points of the body, and do something.
    pure subroutine check_points(sheet, scene, error)

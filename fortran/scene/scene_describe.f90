@@ -2,9 +2,10 @@
 module scene_describe
    use scene_intervals, only: in_words
    use scene_parameters, only: group_t, groups, in_fluid, in_mechanics, kind_choice, kind_integer
-   use scene_parameters, only: kind_logical, need_disc, need_friction, need_rectangle, need_slip
+   use scene_parameters, only: kind_logical, need_disc, need_friction, need_polygon, need_rectangle
    use scene_parameters, only: kind_name, kind_real, kind_reals, need_always, need_fluid
-   use scene_parameters, only: need_fracture, need_growth, need_tips, parameter_t, parameters
+   use scene_parameters, only: kind_wholes, need_fracture, need_growth, need_slip, need_tips
+   use scene_parameters, only: parameter_t, parameters
    implicit none(type, external)
    private
 
@@ -109,6 +110,8 @@ contains
          words = "list of numbers"
       case (kind_integer)
          words = "whole number"
+      case (kind_wholes)
+         words = "list of whole numbers"
       case (kind_logical)
          words = "logical"
       case default
@@ -141,6 +144,8 @@ contains
          words = "required for a rectangle"
       case (need_disc)
          words = "required for a disc"
+      case (need_polygon)
+         words = "required for a polygon"
       case (need_friction)
          words = "required with the law 'friction'"
       case default
@@ -167,8 +172,8 @@ contains
          words = "`.true.`, `.false.`"
       case (kind_name)
          words = "at most 64 letters, digits, `_`, `-`, `.`"
-      case (kind_integer, kind_real, kind_reals)
-         words = in_words(parameter%range, whole=parameter%kind == kind_integer)
+      case (kind_integer, kind_real, kind_reals, kind_wholes)
+         words = in_words(parameter%range, whole=any(parameter%kind == [kind_integer, kind_wholes]))
          if (words == "") words = "any finite"
       case default
          words = "at most 256 bytes of UTF-8"

@@ -3,12 +3,13 @@
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
    use base_kinds, only: ik, rk
+   use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
+                                      exchange_side
    use scene_exchange_values, only: exchange, radians, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: boundary_side_t, discretization_t, domain_t, fracture_t, growth_t
-   use scene_types, only: injection_t, material_t, name_length, point_load_t, probe_t, restraint_t
-   use scene_types, only: scene_t
+   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t
+   use scene_types, only: material_t, name_length, probe_t, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -25,13 +26,19 @@ contains
       type(scene_t), intent(out) :: scene
       type(record_t) :: record
       type(value_t) :: value
-      integer :: i, n_fractures, n_injections, n_point_loads, n_probes, n_restraints, side
+      integer :: i, n_fractures, n_injections, n_parts, n_point_loads, n_probes, n_restraints
+      integer :: side
+      logical :: is_rectangle
 
       allocate (scene%fractures(count_of(sheet, "fracture")))
       allocate (scene%injections(count_of(sheet, "injection")))
       allocate (scene%probes(count_of(sheet, "probe")))
       allocate (scene%restraints(count_of(sheet, "restraint")))
       allocate (scene%point_loads(count_of(sheet, "point_load")))
+      value = sheet%records(sheet%find("domain"))%value("shape")
+      is_rectangle = value%text == "rectangle"
+      allocate (scene%parts(merge(0, count_of(sheet, "side"), is_rectangle)))
+      n_parts = 0
       n_fractures = 0
       n_injections = 0
       n_probes = 0
@@ -44,12 +51,14 @@ contains
             n_fractures = n_fractures + 1
             call exchange_fracture(record, scene%fractures(n_fractures), .true.)
          case ("side")
-            value = record%value("name")
-            side = findloc(side_names == value%text, .true., dim=1)
-            scene%sides(side)%displacement_given = [record%is_set("x_displacement"), &
-                                                    record%is_set("y_displacement")]
-            scene%sides(side)%pressure_given = record%is_set("pressure")
-            call exchange_side(record, scene%sides(side), .true.)
+            if (is_rectangle) then
+               value = record%value("name")
+               side = findloc(side_names == value%text, .true., dim=1)
+               call exchange_side(record, scene%sides(side), .true.)
+            else
+               n_parts = n_parts + 1
+               call exchange_part(record, scene%parts(n_parts), .true.)
+            end if
          case ("restraint")
             n_restraints = n_restraints + 1
             associate (restraint => scene%restraints(n_restraints))
@@ -97,6 +106,7 @@ contains
       source = scene  ! exchange takes what it may write to
       if (.not. allocated(source%restraints)) allocate (source%restraints(0))
       if (.not. allocated(source%point_loads)) allocate (source%point_loads(0))
+      if (.not. allocated(source%parts)) allocate (source%parts(0))
       sheet%path = ""
       do group = 1, size(groups)
          if (.not. applies(groups(group)%scenes, source%has_fluid())) cycle
@@ -109,7 +119,12 @@ contains
                call add_record(sheet, record)
             end do
          case ("side")
-            if (source%domain%shape == "disc") cycle  ! it has none
+            do i = 1, size(source%parts)
+               record = empty_record(group, 0_ik)
+               call exchange_part(record, source%parts(i), .false.)
+               call add_record(sheet, record)
+            end do
+            if (source%domain%shape /= "rectangle") cycle
             do i = 1, size(source%sides)
                record = empty_record(group, 0_ik)
                call set_text(record, "name", trim(side_names(i)))
@@ -194,9 +209,15 @@ contains
          call exchange(record, "tolerance", scene%adaptive%tolerance, reading)
          call exchange(record, "passes", scene%adaptive%passes, reading)
       case ("in_situ")
-         call exchange(record, "sxx", scene%in_situ(1), reading)
-         call exchange(record, "syy", scene%in_situ(2), reading)
-         call exchange(record, "sxy", scene%in_situ(3), reading)
+         call exchange(record, "sxx", scene%in_situ%stress(1), reading)
+         call exchange(record, "syy", scene%in_situ%stress(2), reading)
+         call exchange(record, "sxy", scene%in_situ%stress(3), reading)
+         call exchange(record, "sxx_per_y", scene%in_situ%per_y(1), reading)
+         call exchange(record, "syy_per_y", scene%in_situ%per_y(2), reading)
+         call exchange(record, "y_datum", scene%in_situ%y_datum, reading)
+      case ("gravity")
+         call exchange(record, "x", scene%gravity(1), reading)
+         call exchange(record, "y", scene%gravity(2), reading)
       case ("load")
          call exchange(record, "from", scene%load%from, reading)
          call exchange(record, "to", scene%load%to, reading)
@@ -219,7 +240,8 @@ contains
       logical, intent(in) :: reading
 
       call exchange(record, "shape", domain%shape, reading)
-      if (domain%shape == "disc") then
+      select case (domain%shape)
+      case ("disc")
          call exchange(record, "x_centre", domain%x_centre, reading)
          call exchange(record, "y_centre", domain%y_centre, reading)
          call exchange(record, "radius", domain%radius, reading)
@@ -227,12 +249,19 @@ contains
          domain%x_max = domain%x_centre + domain%radius
          domain%y_min = domain%y_centre - domain%radius
          domain%y_max = domain%y_centre + domain%radius
-      else
+      case ("polygon")
+         call exchange(record, "x", domain%x, reading)
+         call exchange(record, "y", domain%y, reading)
+         domain%x_min = minval(domain%x)
+         domain%x_max = maxval(domain%x)
+         domain%y_min = minval(domain%y)
+         domain%y_max = maxval(domain%y)
+      case default
          call exchange(record, "x_min", domain%x_min, reading)
          call exchange(record, "x_max", domain%x_max, reading)
          call exchange(record, "y_min", domain%y_min, reading)
          call exchange(record, "y_max", domain%y_max, reading)
-      end if
+      end select
    end subroutine exchange_domain
 
    pure subroutine exchange_material(record, material, reading)
@@ -252,6 +281,7 @@ contains
       call exchange(record, "permeability_xx", material%permeability_xx, reading, nothing=0.0_rk)
       call exchange(record, "permeability_yy", material%permeability_yy, reading, nothing=0.0_rk)
       call exchange(record, "permeability_xy", material%permeability_xy, reading, nothing=0.0_rk)
+      call exchange(record, "density", material%density, reading, nothing=0.0_rk)
       call exchange(record, "toughness", material%toughness, reading, nothing=unlimited)
       plane = merge("stress", "strain", material%plane_stress)
       call exchange(record, "plane", plane, reading)
@@ -285,51 +315,6 @@ contains
       call exchange(record, "face_pressure", fracture%face_pressure, reading)
       call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)
    end subroutine exchange_fracture
-
-   !> Without the side's name, which its place in scene_t%sides tells.
-   pure subroutine exchange_side(record, side, reading)
-      type(record_t), intent(inout) :: record
-      type(boundary_side_t), intent(inout) :: side
-      logical, intent(in) :: reading
-
-      if (side%displacement_given(1)) then
-         call exchange(record, "x_displacement", side%displacement(1), reading)
-      else
-         call exchange(record, "x_traction", side%traction(1), reading)
-      end if
-      if (side%displacement_given(2)) then
-         call exchange(record, "y_displacement", side%displacement(2), reading)
-      else
-         call exchange(record, "y_traction", side%traction(2), reading)
-      end if
-      if (side%pressure_given) call exchange(record, "pressure", side%pressure, reading)
-   end subroutine exchange_side
-
-   pure subroutine exchange_restraint(record, restraint, reading)
-      type(record_t), intent(inout) :: record
-      type(restraint_t), intent(inout) :: restraint
-      logical, intent(in) :: reading
-      character(len=1), parameter :: axes(2) = ["x", "y"]
-      integer :: axis
-
-      call exchange(record, "x", restraint%x, reading)
-      call exchange(record, "y", restraint%y, reading)
-      do axis = 1, 2
-         if (.not. restraint%displacement_given(axis)) cycle
-         call exchange(record, axes(axis)//"_displacement", restraint%displacement(axis), reading)
-      end do
-   end subroutine exchange_restraint
-
-   pure subroutine exchange_point_load(record, point_load, reading)
-      type(record_t), intent(inout) :: record
-      type(point_load_t), intent(inout) :: point_load
-      logical, intent(in) :: reading
-
-      call exchange(record, "x", point_load%x, reading)
-      call exchange(record, "y", point_load%y, reading)
-      call exchange(record, "x_force", point_load%force(1), reading)
-      call exchange(record, "y_force", point_load%force(2), reading)
-   end subroutine exchange_point_load
 
    !> Without the fracture, which the scene knows by index and the sheet by name.
    pure subroutine exchange_injection(record, injection, reading)

@@ -13,6 +13,7 @@ module scene_exchange_values
    interface exchange
       module procedure exchange_real
       module procedure exchange_reals
+      module procedure exchange_wholes
       module procedure exchange_integer
       module procedure exchange_logical
       module procedure exchange_text
@@ -55,6 +56,22 @@ contains
          end if
       end associate
    end subroutine exchange_reals
+
+   pure subroutine exchange_wholes(record, name, component, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      integer(ik), allocatable, intent(inout) :: component(:)
+      logical, intent(in) :: reading
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (reading) then
+            if (value%is_set) component = nint(value%reals, ik)
+         else
+            value%is_set = .true.
+            value%reals = real(component, rk)
+         end if
+      end associate
+   end subroutine exchange_wholes
 
    pure subroutine exchange_integer(record, name, component, reading)
       type(record_t), intent(inout) :: record

@@ -4,8 +4,8 @@
 !> A new parameter is one entry here and one line in scene_exchange.
 module scene_parameters
    use base_kinds, only: rk
-   use scene_intervals, only: at_least_zero, biot_range, dilation_range, interval_t, newton_range, &
-                              passes_range, poisson_range, porosity_range, positive, &
+   use scene_intervals, only: at_least_one, at_least_zero, biot_range, dilation_range, &
+                  interval_t, newton_range, passes_range, poisson_range, porosity_range, positive, &
                               rosette_range, share, steps_range, tolerance_range
    implicit none(type, external)
    private
@@ -13,8 +13,9 @@ module scene_parameters
    public :: group_t, parameter_t
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
+   public :: kind_wholes
    public :: need_always, need_fluid, need_fracture, need_friction, need_growth, need_never
-   public :: need_disc, need_rectangle, need_slip, need_tips
+   public :: need_disc, need_polygon, need_rectangle, need_slip, need_tips
    public :: applies, in_all, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
@@ -24,6 +25,7 @@ module scene_parameters
    integer, parameter :: kind_text = 5
    integer, parameter :: kind_name = 6  !< a text that is safe as a file name
    integer, parameter :: kind_choice = 7  !< a text out of `choices`
+   integer, parameter :: kind_wholes = 8  !< a list of whole numbers, kept as reals
 
    integer, parameter :: need_never = 0
    integer, parameter :: need_always = 1  !< in every such group
@@ -35,6 +37,7 @@ module scene_parameters
    integer, parameter :: need_rectangle = 7  !< where the body is a rectangle
    integer, parameter :: need_disc = 8  !< where the body is a disc
    integer, parameter :: need_slip = 9  !< in a fracture with the law 'slip'
+   integer, parameter :: need_polygon = 10  !< where the body is a polygon
 
    ! Scenes that may give a group or a parameter.
    integer, parameter :: in_all = 0
@@ -75,7 +78,8 @@ module scene_parameters
    type(group_t), parameter :: groups(*) = [ &
       group_t("scene", implied=.true., meaning="What the scene is called."), &
       group_t("domain", implied=.true., &
-              meaning="The body: a rectangle or a disc of unit thickness."), &
+         meaning="The body, of unit thickness: a rectangle, or in mechanics-only scenes a disc "// &
+              "or a polygon."), &
       group_t("material", implied=.true., &
               meaning="The rock, linear elastic and porous. The storage coefficient that "// &
               "follows from it must be positive, and `biot` at least `porosity`. Permeability "// &
@@ -88,9 +92,10 @@ module scene_parameters
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary."), &
       group_t("side", repeated=.true., &
-              meaning="A side of the body. Per component either the displacement or the total "// &
-              "traction is prescribed; what is not given is free of traction. The "// &
-              "displacements must hold the body against translation and rotation."), &
+             meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
+              "its edges, of a disc its rim or an arc of it. Per component either the "// &
+              "displacement or the total traction is prescribed; what is not given is free of "// &
+              "traction. The displacements must hold the body against translation and rotation."), &
       group_t("restraint", repeated=.true., scenes=in_mechanics, &
               meaning="A point of the body held in place. It becomes a node of the mesh."), &
       group_t("point_load", repeated=.true., scenes=in_mechanics, &
@@ -105,7 +110,12 @@ module scene_parameters
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., scenes=in_mechanics, &
               meaning="Stress in the body before the load, in equilibrium with tractions on "// &
-              "its sides, which go on acting. The load factor does not scale it."), &
+              "its sides, which go on acting, and with gravity where it changes with y. The "// &
+              "load factor does not scale it."), &
+      group_t("gravity", implied=.true., scenes=in_mechanics, &
+              meaning="Acceleration that gives the rock its weight, density times gravity, "// &
+              "which the load factor does not scale. An in-situ stress that changes with y "// &
+              "carries it from the start; without one it loads the body."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
               meaning="How the load rises: tractions, point loads and displacements are those "// &
               "of the scene times a factor. With growth the factor at which the next tip grows "// &
@@ -132,22 +142,27 @@ module scene_parameters
       parameter_t("scene", "title", kind_text, default="''", &
                   meaning="What the scene shows, in a line"), &
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
-                  choices="rectangle|disc", &
-                  meaning="Rectangle, or disc: in mechanics-only scenes, free of traction"), &
-      parameter_t("domain", "x_min", unit="m", need=need_rectangle, absent="a disc", &
+                  choices="rectangle|disc|polygon", &
+                  meaning="Disc and polygon in mechanics-only scenes"), &
+      parameter_t("domain", "x_min", unit="m", need=need_rectangle, absent="no rectangle", &
                   meaning="Left side"), &
-      parameter_t("domain", "x_max", unit="m", need=need_rectangle, absent="a disc", &
+      parameter_t("domain", "x_max", unit="m", need=need_rectangle, absent="no rectangle", &
                   meaning="Right side, above x_min"), &
-      parameter_t("domain", "y_min", unit="m", need=need_rectangle, absent="a disc", &
+      parameter_t("domain", "y_min", unit="m", need=need_rectangle, absent="no rectangle", &
                   meaning="Bottom side"), &
-      parameter_t("domain", "y_max", unit="m", need=need_rectangle, absent="a disc", &
+      parameter_t("domain", "y_max", unit="m", need=need_rectangle, absent="no rectangle", &
                   meaning="Top side, above y_min"), &
-      parameter_t("domain", "x_centre", unit="m", need=need_disc, absent="a rectangle", &
+      parameter_t("domain", "x_centre", unit="m", need=need_disc, absent="no disc", &
                   meaning="x of the disc's centre"), &
-      parameter_t("domain", "y_centre", unit="m", need=need_disc, absent="a rectangle", &
+      parameter_t("domain", "y_centre", unit="m", need=need_disc, absent="no disc", &
                   meaning="y of the disc's centre"), &
       parameter_t("domain", "radius", unit="m", need=need_disc, range=positive, &
-                  absent="a rectangle", meaning="Radius of the disc"), &
+                  absent="no disc", meaning="Radius of the disc"), &
+      parameter_t("domain", "x", kind_reals, "m", need_polygon, absent="no polygon", &
+                  meaning="x of the corners of a polygon, either way round; edge k runs from "// &
+                  "corner k to the next one, the last to corner 1"), &
+      parameter_t("domain", "y", kind_reals, "m", need_polygon, absent="no polygon", &
+                  meaning="y of the corners"), &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
                   meaning="Young's modulus E"), &
       parameter_t("material", "poisson", need=need_always, range=poisson_range, &
@@ -168,6 +183,8 @@ module scene_parameters
                   meaning="Component yy of the permeability tensor"), &
       parameter_t("material", "permeability_xy", unit="m2", absent="0", &
                   meaning="Component xy of the permeability tensor"), &
+      parameter_t("material", "density", unit="kg/m3", range=positive, absent="no weight", &
+                  scenes=in_mechanics, meaning="Density of the rock, for gravity"), &
       parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, &
                   absent="unlimited", range=positive, &
                   meaning="Fracture toughness K_IC"), &
@@ -205,15 +222,25 @@ module scene_parameters
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
-                  meaning="The faces slide but never part, even under tension, where they carry "// &
+                 meaning="The faces slide but never part, even under tension, where they carry "// &
                   "no friction: an assumption of reference solutions. Faces that grow may part"), &
       parameter_t("fracture", "face_pressure", unit="Pa", default="0.0", scenes=in_mechanics, &
                   meaning="Pressure that pushes the faces apart, those of its wings too, times "// &
                   "the load factor; contact carries the rest"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
                   meaning="Residual hydraulic aperture a_0 of the closed fracture"), &
-      parameter_t("side", "name", kind_choice, need=need_always, choices="left|right|bottom|top", &
-                  meaning="Which side"), &
+      parameter_t("side", "name", kind_name, need=need_always, &
+                  meaning="Of a rectangle `left`, `right`, `bottom` or `top`; else any, "// &
+                  "different from that of every other side"), &
+      parameter_t("side", "edges", kind_wholes, absent="no polygon", range=at_least_one, &
+                  scenes=in_mechanics, &
+                  meaning="Numbers of a polygon's edges, required there"), &
+      parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
+                  scenes=in_mechanics, &
+                meaning="Where an arc of a disc's rim begins, counter-clockwise from the x axis"), &
+      parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
+                  scenes=in_mechanics, &
+                  meaning="Where it ends, above arc_from_deg by at most 360"), &
       parameter_t("side", "x_displacement", unit="m", absent="traction is given", &
                   meaning="Prescribed displacement in x"), &
       parameter_t("side", "y_displacement", unit="m", absent="traction is given", &
@@ -222,6 +249,12 @@ module scene_parameters
                   meaning="Total traction in x: on the right side, compression is negative"), &
       parameter_t("side", "y_traction", unit="Pa", absent="0, or displacement is given", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
+      parameter_t("side", "normal_traction", unit="Pa", absent="0", scenes=in_mechanics, &
+                  meaning="Traction along the outward normal, compression is negative; beside "// &
+                  "neither displacements nor tractions in x and y"), &
+      parameter_t("side", "shear_traction", unit="Pa", absent="0", scenes=in_mechanics, &
+                  meaning="Traction along the side in the direction that has the body on its "// &
+                  "left; as normal_traction"), &
       parameter_t("side", "pressure", unit="Pa", absent="no flow", scenes=in_fluid, &
                   meaning="Prescribed pore pressure"), &
       parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
@@ -264,9 +297,19 @@ module scene_parameters
       parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
                   meaning="Share of the regular step below which a cut step ends the run, at "// &
                   "most growth_factor"), &
-      parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx"), &
-      parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy"), &
+      parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
+      parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &
+      parameter_t("in_situ", "sxx_per_y", unit="Pa/m", default="0.0", &
+                  meaning="Change of stress xx per metre upwards"), &
+      parameter_t("in_situ", "syy_per_y", unit="Pa/m", default="0.0", &
+                  meaning="Change of stress yy per metre upwards; it must carry the weight: "// &
+                  "density times gravity g gives density*g"), &
+      parameter_t("in_situ", "y_datum", unit="m", default="0.0", &
+                  meaning="Where stress xx and yy are those given"), &
+      parameter_t("gravity", "x", unit="m/s2", default="0.0", meaning="Acceleration in x"), &
+      parameter_t("gravity", "y", unit="m/s2", default="0.0", &
+                  meaning="Acceleration in y, on earth -9.81"), &
       parameter_t("load", "from", default="0.0", &
                   meaning="Load factor before the first step; with growth at least 0"), &
       parameter_t("load", "to", default="1.0", meaning="Load factor at the end"), &

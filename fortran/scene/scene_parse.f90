@@ -5,7 +5,7 @@ module scene_parse
    use base_number, only: integer_text
    use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
                                need_disc, need_friction, need_growth, &
-                               need_rectangle, need_slip, need_tips, parameters
+                               need_polygon, need_rectangle, need_slip, need_tips, parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
                           refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
@@ -315,9 +315,13 @@ contains
                needed = has_tips
             case (need_growth)
                needed = has_growth
-            case (need_rectangle, need_disc)
+            case (need_rectangle)
                body_shape = sheet%records(record)%value("shape")
-               needed = (body_shape%text == "disc") .eqv. (parameters(item)%need == need_disc)
+               needed = body_shape%text == "rectangle"
+            case (need_disc, need_polygon)
+               body_shape = sheet%records(record)%value("shape")
+               needed = body_shape%text == merge("disc   ", "polygon", &
+                                                 parameters(item)%need == need_disc)
             case (need_friction, need_slip)
                law = sheet%records(record)%value("law")
                needed = law%text == merge("friction", "slip    ", &
@@ -358,6 +362,8 @@ contains
          words = words//", which a rectangle needs"
       case (need_disc)
          words = words//", which a disc needs"
+      case (need_polygon)
+         words = words//", which a polygon needs"
       case (need_friction)
          words = words//", which the law 'friction' needs"
       case (need_slip)

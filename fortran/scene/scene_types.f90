@@ -4,7 +4,8 @@ module scene_types
    implicit none(type, external)
    private
 
-   public :: adaptive_t, boundary_side_t, discretization_t, domain_t, fluid_t, fracture_t, growth_t
+   public :: adaptive_t, boundary_part_t, boundary_side_t, discretization_t, domain_t, fluid_t
+   public :: fracture_t, growth_t, in_situ_t
    public :: initial_t
    public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, restraint_t, scene_t
    public :: time_t
@@ -12,12 +13,13 @@ module scene_types
 
    integer, parameter :: name_length = 64
 
-   !> The body: a rectangle or a disc, whose square bounds it then.
+   !> The body: a rectangle, or a disc or polygon, which a rectangle bounds then.
    type :: domain_t
-      character(len=name_length) :: shape = "rectangle"  !< or "disc"
+      character(len=name_length) :: shape = "rectangle"  !< or "disc", "polygon"
       real(rk) :: x_min = 0.0_rk, x_max = 0.0_rk  !< [m]
       real(rk) :: y_min = 0.0_rk, y_max = 0.0_rk  !< [m]
       real(rk) :: x_centre = 0.0_rk, y_centre = 0.0_rk, radius = 0.0_rk  !< of a disc [m]
+      real(rk), allocatable :: x(:), y(:)  !< corners of a polygon, either way round [m]
    end type domain_t
 
    !> Rock.
@@ -29,6 +31,7 @@ module scene_types
       real(rk) :: permeability_xx = 0.0_rk  !< [m2]
       real(rk) :: permeability_yy = 0.0_rk  !< [m2]
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
+      real(rk) :: density = 0.0_rk  !< [kg/m3]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       logical :: plane_stress = .false.
       character(len=name_length) :: storage = "thesis"  !< (alpha - phi)/K_dr; or "textbook"
@@ -60,9 +63,20 @@ module scene_types
       logical :: displacement_given(2) = .false.  !< x, y: else traction is given
       real(rk) :: displacement(2) = 0.0_rk  !< [m]
       real(rk) :: traction(2) = 0.0_rk  !< total traction [Pa]
+      !> along the outward normal, and along the boundary with the body on the left [Pa]
+      real(rk) :: normal_traction = 0.0_rk, shear_traction = 0.0_rk
       logical :: pressure_given = .false.  !< else no flow
       real(rk) :: pressure = 0.0_rk  !< [Pa]
    end type boundary_side_t
+
+   !> A part of the boundary of a polygon or a disc.
+   type, extends(boundary_side_t) :: boundary_part_t
+      character(len=name_length) :: name = ""
+      !> of a polygon; edge k runs from corner k to the next one, as the file gives them
+      integer(ik), allocatable :: edges(:)
+      logical :: whole_rim = .false.  !< of a disc: all of it, else an arc
+      real(rk) :: arc(2) = 0.0_rk  !< counter-clockwise from one angle to the other [rad]
+   end type boundary_part_t
 
    !> A point of the body that is held, per component.
    type :: restraint_t
@@ -83,6 +97,13 @@ module scene_types
       real(rk) :: tolerance = 0.01_rk  !< error in the energy norm over the norm [-]
       integer(ik) :: passes = 4  !< meshes at most after the first
    end type adaptive_t
+
+   !> Stress before the load, linear in y.
+   type :: in_situ_t
+      real(rk) :: stress(3) = 0.0_rk  !< xx, yy, xy at the datum [Pa]
+      real(rk) :: per_y(2) = 0.0_rk  !< xx, yy: rise per metre upwards [Pa/m]
+      real(rk) :: y_datum = 0.0_rk  !< [m]
+   end type in_situ_t
 
    !> How the load of a mechanics-only scene rises.
    type :: load_t
@@ -160,12 +181,14 @@ module scene_types
       type(material_t) :: material
       type(fluid_t) :: fluid
       type(fracture_t), allocatable :: fractures(:)
-      type(boundary_side_t) :: sides(4)  !< left, right, bottom, top
+      type(boundary_side_t) :: sides(4)  !< of a rectangle: left, right, bottom, top
+      type(boundary_part_t), allocatable :: parts(:)  !< of the boundary of another body
       type(restraint_t), allocatable :: restraints(:)
       type(point_load_t), allocatable :: point_loads(:)
       type(load_t) :: load
       type(adaptive_t) :: adaptive
-      real(rk) :: in_situ(3) = 0.0_rk  !< stress before the load: xx, yy, xy; mechanics only [Pa]
+      type(in_situ_t) :: in_situ  !< mechanics only
+      real(rk) :: gravity(2) = 0.0_rk  !< acceleration; mechanics only [m/s2]
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
       type(time_t) :: time

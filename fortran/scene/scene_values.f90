@@ -5,7 +5,7 @@ module scene_values
    use base_utf8, only: is_printable
    use scene_intervals, only: holds, in_words
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
-                               kind_reals, kind_text, parameter_t, text_length
+                               kind_reals, kind_text, kind_wholes, parameter_t, text_length
    use scene_tokens, only: token_comma, token_list_t, token_t, token_text, token_word, tokenize, &
                            unquoted
    use scene_types, only: name_length
@@ -57,7 +57,7 @@ contains
          end if
          call read_item(parameter, word, tokens(i)%kind == token_text, value, number, reason)
          if (allocated(reason)) return
-         if (parameter%kind == kind_reals) then
+         if (any(parameter%kind == [kind_reals, kind_wholes])) then
             do while (n + count > size(numbers))
                numbers = [numbers, numbers]
             end do
@@ -65,7 +65,7 @@ contains
          end if
          n = n + count
       end do
-      if (parameter%kind == kind_reals) then
+      if (any(parameter%kind == [kind_reals, kind_wholes])) then
          value%reals = numbers(1:n)
       else if (n > 1) then
          reason = "has "//integer_text(int(n, ik))//" values but must be one "//noun(parameter)
@@ -164,10 +164,11 @@ contains
          if (good) call read_real(word, number, good)
          if (good) good = holds(parameter%range, number)
          if (good) value%reals = [number]
-      case (kind_integer)
+      case (kind_integer, kind_wholes)
          good = .not. is_text
          if (good) call read_integer(word, value%whole, good)
-         if (good) good = holds(parameter%range, real(value%whole, rk))
+         number = real(value%whole, rk)
+         if (good) good = holds(parameter%range, number)
       case (kind_logical)
          good = .not. is_text
          if (good) call read_logical(word, value%flag, good)
@@ -261,7 +262,7 @@ contains
       select case (parameter%kind)
       case (kind_choice)
          words = "'"//with_or(trim(parameter%choices))//"'"
-      case (kind_integer)
+      case (kind_integer, kind_wholes)
          words = "a whole number "//in_words(parameter%range, whole=.true.)
       case (kind_logical)
          words = ".true. or .false."

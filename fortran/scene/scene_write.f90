@@ -1,10 +1,11 @@
 !> Writing of a scene as understood, every default written out.
 module scene_write
    use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
    use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, kind_reals, &
-                               parameter_t, parameters
+                               kind_wholes, parameter_t, parameters
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
@@ -77,11 +78,15 @@ contains
 
          unit_comment = ""
          if (parameter%unit /= "-") unit_comment = "  ! ["//trim(parameter%unit)//"]"
-         if (parameter%kind == kind_reals) then
+         if (any(parameter%kind == [kind_reals, kind_wholes])) then
             call put("  "//trim(parameter%name)//" ="//unit_comment)
             line = "   "
             do k = 1, size(value%reals)
-               line = line//" "//real_text(value%reals(k))
+               if (parameter%kind == kind_reals) then
+                  line = line//" "//real_text(value%reals(k))
+               else
+                  line = line//" "//integer_text(nint(value%reals(k), ik))
+               end if
                if (k == size(value%reals) .or. len(line) > 70) then
                   call put(line)
                   line = "   "

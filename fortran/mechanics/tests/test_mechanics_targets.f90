@@ -29,6 +29,19 @@ program test_mechanics_targets
    call meets([-3.0_rk, 0.0_rk], [-5.0_rk, 0.0_rk], target_boundary, [-4.0_rk, 0.0_rk], &
               "out of the body")
 
+   ! A hook (0, 0), (1, 0), (1, 0.5), (0.5, 0.5) that turns back to its first segment.
+   network%first = [1_ik, 5_ik]
+   network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.5_rk], [2, 4])
+   network%s_start = [0.0_rk]
+   call meets([0.5_rk, 0.5_rk], [0.45_rk, 0.4_rk], target_none, [0.45_rk, 0.4_rk], "a hook")
+   call meets([0.5_rk, 0.5_rk], [0.3_rk, 0.05_rk], 1_ik, [0.3_rk, 0.0_rk], "near itself")
+   call meets([0.5_rk, 0.5_rk], [0.5_rk, -0.1_rk], 1_ik, [0.5_rk, 0.0_rk], "across itself")
+   call meets([0.5_rk, 0.5_rk], [0.47_rk, 0.52_rk], target_none, [0.47_rk, 0.52_rk], &
+              "a short segment behind which it has come")
+   network%xy(:, 4) = [0.97_rk, 0.53_rk]
+   call meets([0.97_rk, 0.53_rk], [0.93_rk, 0.55_rk], target_none, [0.93_rk, 0.55_rk], &
+              "near the segment before the last, which it leaves")
+
    call checks%is_true(.not. cuts_through(chain([point_tip, point_interior, point_tip])), &
                        "a fracture inside does not cut")
    call checks%is_true(.not. cuts_through(chain([point_boundary, point_interior, point_tip])), &

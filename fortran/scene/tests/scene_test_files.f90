@@ -113,7 +113,11 @@ contains
       if (.not. same(a%adaptive%tolerance, b%adaptive%tolerance)) return
       if (a%adaptive%passes /= b%adaptive%passes) return
       if (a%discretization%element /= b%discretization%element) return
-      if (.not. same(a%in_situ, b%in_situ)) return
+      if (.not. same([a%in_situ%stress, a%in_situ%per_y, a%in_situ%y_datum, a%gravity, &
+                      a%material%density], &
+                     [b%in_situ%stress, b%in_situ%per_y, b%in_situ%y_datum, b%gravity, &
+                      b%material%density])) return
+      if (.not. same_outline(a, b)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return
       if (size(a%restraints) /= size(b%restraints)) return
@@ -131,6 +135,37 @@ contains
       end do
       same_loading = .true.
    end function same_loading
+
+   !> Corners of a polygon, parts of the boundary of a polygon or disc, tractions along sides.
+   pure logical function same_outline(a, b)
+      type(scene_t), intent(in) :: a, b
+      integer :: i
+
+      same_outline = .false.
+      if (allocated(a%domain%x) .neqv. allocated(b%domain%x)) return
+      if (allocated(a%domain%x)) then
+         if (.not. (same(a%domain%x, b%domain%x) .and. same(a%domain%y, b%domain%y))) return
+      end if
+      if (.not. same([a%sides%normal_traction, a%sides%shear_traction], &
+                     [b%sides%normal_traction, b%sides%shear_traction])) return
+      if (size(a%parts) /= size(b%parts)) return
+      do i = 1, size(a%parts)
+         associate (p => a%parts(i), q => b%parts(i))
+            if (p%name /= q%name .or. (p%whole_rim .neqv. q%whole_rim)) return
+            if (allocated(p%edges) .neqv. allocated(q%edges)) return
+            if (allocated(p%edges)) then
+               if (size(p%edges) /= size(q%edges)) return
+               if (any(p%edges /= q%edges)) return
+            end if
+            if (any(p%displacement_given .neqv. q%displacement_given)) return
+            if (.not. same([p%arc, p%displacement, p%traction, p%normal_traction, &
+                            p%shear_traction], &
+                           [q%arc, q%displacement, q%traction, q%normal_traction, &
+                            q%shear_traction])) return
+         end associate
+      end do
+      same_outline = .true.
+   end function same_outline
 
    pure logical function same_levels(a, b)
       type(scene_t), intent(in) :: a, b

@@ -71,7 +71,7 @@ program test_scene_mechanics
                "x_centre=1 y_centre=0.5 radius=2 /")
    call refuse(6, "", "radius is given for a rectangle", and_1=trim(good(1) (:len_trim(good(1)) &
                                                                              - 1))//" radius=2 /")
-   call refuse(6, trim(good(6)), "a disc has no sides", and_1="&domain shape='disc' x_centre=1 "// &
+   call refuse(6, trim(good(6)), "", accepted=.true., and_1="&domain shape='disc' x_centre=1 "// &
                "y_centre=0.5 radius=2 /")
    call refuse(6, "", "x and y are (2.0, 0.0) but must lie within", and_1="&domain "// &
                "shape='disc' x_centre=0.5 y_centre=0.5 radius=1.2 /")

@@ -20,6 +20,7 @@ program test_scene_write
    call round_trip(source_path("inputs/paper_c/three_fractures.nml"))
    call round_trip(source_path("inputs/benchmarks/onset_2300.nml"))
    call check_odd_numbers()
+   call check_bodies()
    call check_angles()
    call check_completeness()
    call write_scene("no_such_folder/scene.nml", scene, error)
@@ -98,6 +99,33 @@ contains
                             "&fe size_boundary=0.2 /"])
       call round_trip(path)
    end subroutine check_odd_numbers
+
+   !> Arcs of a disc, edges of a polygon given clockwise, gravity and a stress that grows downwards.
+   subroutine check_bodies()
+      call put_lines(path, [character(len=100) :: "&domain shape='disc' x_centre=0.1 "// &
+                            "y_centre=-3 radius=0.3 /", "&material young=1e9 poisson=0.2 /", &
+                            "&side name='upper' arc_from_deg=80.123456789012345 "// &
+                            "arc_to_deg=100.3 normal_traction=-1e6 /", &
+                            "&side name='lower' arc_from_deg=-100 arc_to_deg=-80", &
+                            "  x_displacement=0 y_displacement=1e-5 /", &
+                            "&fe size_boundary=0.2 /"])
+      call round_trip(path)
+      call put_lines(path, [character(len=100) :: "&domain shape='disc' x_centre=0.1 "// &
+                            "y_centre=-3 radius=0.3 /", "&material young=1e9 poisson=0.2 /", &
+                            "&side name='rim' normal_traction=-0.1 shear_traction=0.3 /", &
+                            "&restraint x=0.1 y=-3 x_displacement=0 y_displacement=0 /", &
+                            "&restraint x=0.2 y=-3 y_displacement=0 /", &
+                            "&fe size_boundary=0.2 /"])
+      call round_trip(path)
+      call put_lines(path, [character(len=100) :: "&domain shape='polygon' x=0, 0, 1, 2.1, 2", &
+                            "  y=0, 1, 0.5, 1, -0.1 /", "&material young=1e9 poisson=0.2 "// &
+                            "density=2.7e3 /", "&gravity y=-9.81 /", &
+                            "&in_situ sxx=-1e6 sxx_per_y=9e3 syy_per_y=2.65e4 y_datum=1.1 /", &
+                            "&side name='floor' edges=5 x_displacement=0 y_displacement=0 /", &
+                            "&side name='lid' edges=2, 3 y_traction=-1e5 /", &
+                            "&fe size_boundary=0.2 /"])
+      call round_trip(path)
+   end subroutine check_bodies
 
    !> Degrees in the file, radians in the scene: no angle is lost on the way.
    subroutine check_angles()

@@ -1,0 +1,163 @@
+!> Checks the sides of the body: which they are, and what is prescribed on each.
+module scene_check_sides
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text
+   use scene_parameters, only: groups, side_names
+   use scene_sheet, only: record_t, refuse, sheet_t
+   use scene_types, only: boundary_part_t, scene_t
+   use scene_values, only: value_t
+   use scene_words, only: real_text
+   implicit none(type, external)
+   private
+
+   public :: check_parts, check_sides
+
+   real(rk), parameter :: turn = 2.0_rk*acos(-1.0_rk)  !< [rad]
+   real(rk), parameter :: round_off = 1.0e-9_rk  !< in angles of arcs that follow each other [rad]
+
+contains
+
+   !> What a side gives goes together, and with the shape of the body.
+   pure subroutine check_sides(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: shape
+      integer :: i
+
+      shape = sheet%records(sheet%find("domain"))%value("shape")
+      do i = 1, sheet%length
+         if (groups(sheet%records(i)%group)%name /= "side") cycle
+         call check_place(sheet, i, shape%text, error)
+         if (.not. allocated(error)) call check_values(sheet, i, error)
+         if (allocated(error)) return
+      end do
+   end subroutine check_sides
+
+   !> Where a side is: sides of a rectangle have names, those of a polygon edges, of a disc arcs.
+   pure subroutine check_place(sheet, i, shape, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: i  !< index of the record
+      character(len=*), intent(in) :: shape
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: name, from, to
+
+      associate (record => sheet%records(i))
+         name = record%value("name")
+         if (shape == "rectangle" .and. .not. any(side_names == name%text)) then
+            call refuse(error, sheet, i, "name", "is '"//name%text//"' but must be 'left', "// &
+                        "'right', 'bottom' or 'top'")
+         else if (shape /= "polygon" .and. record%is_given("edges")) then
+            call refuse(error, sheet, i, "edges", "is given, but only a polygon has edges")
+         else if (shape == "polygon" .and. .not. record%is_given("edges")) then
+            call refuse(error, sheet, i, "edges", "is missing, but a side of a polygon needs "// &
+                        "the numbers of its edges")
+         else if (shape /= "disc" .and. (record%is_given("arc_from_deg") .or. &
+                                         record%is_given("arc_to_deg"))) then
+            call refuse(error, sheet, i, given_of(record, "arc_from_deg", "arc_to_deg"), &
+                        "is given, but only a disc has arcs")
+         else if (record%is_given("arc_from_deg") .neqv. record%is_given("arc_to_deg")) then
+            call refuse(error, sheet, i, trim(merge("arc_to_deg  ", "arc_from_deg", &
+                                                    record%is_given("arc_from_deg"))), &
+                        "is missing but must be given with the other end of the arc")
+         else if (record%is_given("arc_from_deg")) then
+            from = record%value("arc_from_deg")
+            to = record%value("arc_to_deg")
+            if (.not. (to%reals(1) > from%reals(1) .and. to%reals(1) <= from%reals(1) + 360)) then
+               call refuse(error, sheet, i, "arc_to_deg", "is "//real_text(to%reals(1))// &
+                           " but must be above arc_from_deg, "//real_text(from%reals(1))// &
+                           ", by at most 360")
+            end if
+         end if
+      end associate
+   end subroutine check_place
+
+   !> Per component displacement or traction, not both; or tractions along and across the side.
+   pure subroutine check_values(sheet, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: i  !< index of the record
+      type(error_t), allocatable, intent(out) :: error
+      character(len=1), parameter :: axes(2) = ["x", "y"]
+      character(len=14), parameter :: by_axis(4) = [character(len=14) :: "x_displacement", &
+                                                       "y_displacement", "x_traction", "y_traction"]
+      integer :: axis, k
+
+      associate (record => sheet%records(i))
+         do axis = 1, 2
+            if (record%is_given(axes(axis)//"_displacement") .and. &
+                record%is_given(axes(axis)//"_traction")) then
+               call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
+                           axes(axis)//"_displacement but only one of them can be prescribed")
+               return
+            end if
+         end do
+         if (.not. (record%is_given("normal_traction") .or. &
+                    record%is_given("shear_traction"))) return
+         do k = 1, size(by_axis)
+            if (.not. record%is_given(trim(by_axis(k)))) cycle
+            call refuse(error, sheet, i, given_of(record, "normal_traction", "shear_traction"), &
+                       "is given beside "//trim(by_axis(k))//" but a side has either tractions "// &
+                        "along and across it, or values in x and y")
+            return
+         end do
+      end associate
+   end subroutine check_values
+
+   !> The first of two names that is given.
+   pure function given_of(record, first, second) result(name)
+      type(record_t), intent(in) :: record
+      character(len=*), intent(in) :: first, second
+      character(len=:), allocatable :: name
+
+      name = second
+      if (record%is_given(first)) name = first
+   end function given_of
+
+   !> Parts of a boundary exist and do not overlap.
+   pure subroutine check_parts(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: n_edges
+      integer :: i, k
+
+      if (scene%domain%shape == "rectangle") return
+      do i = 1, size(scene%parts)
+         associate (part => scene%parts(i))
+            if (allocated(part%edges)) then
+               n_edges = size(scene%domain%x, kind=ik)
+               if (any(part%edges > n_edges)) then
+                  call refuse(error, sheet, sheet%find("side", i), "edges", "has "// &
+                              integer_text(maxval(part%edges))//" but must be at most "// &
+                              integer_text(n_edges)//", the number of edges")
+                  return
+               end if
+            end if
+            do k = 1, i - 1
+               if (.not. overlap(scene%parts(k), part)) cycle
+               call refuse(error, sheet, sheet%find("side", i), "name", "'"//trim(part%name)// &
+                           "' has a part of the boundary that side '"// &
+                           trim(scene%parts(k)%name)//"' has, but sides must not overlap")
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_parts
+
+   !> Two parts of a boundary share more than their ends.
+   pure logical function overlap(a, b)
+      type(boundary_part_t), intent(in) :: a, b
+      integer :: k
+
+      if (allocated(a%edges)) then
+         overlap = any([(any(a%edges == b%edges(k)), k=1, size(b%edges))])
+      else if (a%whole_rim .or. b%whole_rim) then
+         overlap = .true.
+      else  ! one of them begins within the other
+         overlap = modulo(b%arc(1) - a%arc(1) + round_off, turn) < &
+                   a%arc(2) - a%arc(1) .or. &
+                   modulo(a%arc(1) - b%arc(1) + round_off, turn) < b%arc(2) - b%arc(1)
+      end if
+   end function overlap
+
+end module scene_check_sides
