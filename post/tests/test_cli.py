@@ -125,7 +125,10 @@ def test_missing_directory() -> None:
     [
         ([], "the following arguments are required: plot"),
         (["plot"], "the following arguments are required: DIR"),
-        (["plot", "d", "--only", "map"], "'map' is none of maps, fractures, tips, probes, view"),
+        (
+            ["plot", "d", "--only", "map"],
+            "'map' is none of network, maps, fractures, tips, probes, view",
+        ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),
         (["plot", "d", "--color"], "unrecognized arguments: --color"),

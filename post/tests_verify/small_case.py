@@ -139,6 +139,18 @@ reference = { run_file = "exact.csv", column = "factor*x_m + 5", take = "span" }
 metric = "at_least"
 tolerance = 1.0e-6
 """,
+    "path": """\
+[[check]]
+quantity = "curve"
+unit = "Pa"
+judged = ["fine"]
+result = { file = "profile.csv", column = "p_pa", x = "x_m" }
+reference = { file = "reference.csv", column = "p_pa", x = "x_m" }
+metric = "path"
+tolerance = 0.01
+scale = 1.0
+order = { expected = 2.0, within = 0.1 }
+""",
     "of another run": """\
 [[check]]
 quantity = "profile beside that of a coarser run"

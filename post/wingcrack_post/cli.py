@@ -14,11 +14,12 @@ from wingcrack_post.errors import RunError
 if TYPE_CHECKING:
     from wingcrack_post.figures import Outcome
 
-GROUPS = ("maps", "fractures", "tips", "probes", "view")
+GROUPS = ("network", "maps", "fractures", "tips", "probes", "view")
 FORMATS = ("png", "pdf")
 
 _EPILOG = """\
 groups of figures (--only), written to DIR/figures:
+  network    the fractures at the start and what has grown, coloured by its order
   maps       pore pressure at several times, fractures coloured by stick, slip, open
   fractures  opening, slip, aperture, pressure and tractions along each fracture
   tips       stress intensities; length, well pressure and states; fluid balance

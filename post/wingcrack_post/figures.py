@@ -13,6 +13,7 @@ from wingcrack_post import style
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError
 from wingcrack_post.history import balance, development, intensities
 from wingcrack_post.maps import pressure_maps
+from wingcrack_post.network import network_figure
 from wingcrack_post.probes import probe_histories
 from wingcrack_post.profiles import fracture_profiles
 from wingcrack_post.read import Run
@@ -58,6 +59,7 @@ def _one(
 
 
 _FIGURES = (
+    _Figures("network", "network", _one(network_figure)),
     _Figures("maps", "pressure_maps", _one(pressure_maps, timed=True)),
     _Figures("fractures", "fracture", fracture_profiles),
     _Figures("tips", "intensities", _one(intensities)),

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from wingcrack_post.errors import RunError
+from wingcrack_post.table import FloatArray
 
 # quoted text (a doubled quote stands for one), comment, group, slash, equal sign, plain word
 _TOKEN = re.compile(r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|![^\n]*|&\w+|/|=|[^\s,=/!&'\"]+")
@@ -32,12 +35,15 @@ class Scene:
         K_IC [Pa m^1/2]; None if the scene has none.
     fractures : tuple of FractureLaw
         In the order of the file, which is the order of the numbers in the results.
+    outline : (n, 2) array or None
+        Closed line around the body [m]; None if the scene does not tell it.
     """
 
     name: str
     title: str
     toughness_pa_sqrtm: float | None
     fractures: tuple[FractureLaw, ...]
+    outline: FloatArray | None = None
 
     def fracture(self, label: str) -> FractureLaw | None:
         """The law of a fracture known by its name or by its number from 1."""
@@ -82,16 +88,38 @@ def read_scene(path: Path) -> Scene | None:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
     toughness: float | None = None
     name = title = ""
+    outline: FloatArray | None = None
     fractures = []
     for group, values in read_groups(text):
         if group == "scene":
             name, title = _text(values, "name"), _text(values, "title")
+        elif group == "domain":
+            outline = _outline(path, values)
         elif group == "material":
             toughness = _number(path, group, values, "toughness")
         elif group == "fracture":
             friction = _number(path, group, values, "friction")
             fractures.append(FractureLaw(_text(values, "name"), friction))
-    return Scene(name, title, toughness, tuple(fractures))
+    return Scene(name, title, toughness, tuple(fractures), outline)
+
+
+def _outline(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
+    """Closed line around a rectangle or a disc [m]."""
+    shape = _text(values, "shape") or "rectangle"
+    names: tuple[str, ...] = ("x_min", "x_max", "y_min", "y_max")
+    if shape == "disc":
+        names = ("x_centre", "y_centre", "radius")
+    found = [_number(path, "domain", values, name) for name in names]
+    if shape not in ("rectangle", "disc") or any(value is None for value in found):
+        return None
+    numbers = np.array(found, dtype=np.float64)
+    if shape == "disc":
+        angle = np.linspace(0.0, 2.0 * np.pi, 361)
+        circle = np.column_stack((np.cos(angle), np.sin(angle)))
+        return np.asarray(numbers[:2] + numbers[2] * circle)
+    (left, right), (bottom, top) = numbers[:2], numbers[2:]
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+    return np.array(corners, dtype=np.float64)
 
 
 def _text(values: dict[str, list[str]], key: str) -> str:

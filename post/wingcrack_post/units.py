@@ -38,6 +38,12 @@ def time_unit(end_s: float) -> Unit:
     return next((unit for unit in _TIMES if end_s >= 2.0 * unit.size), _TIMES[-1])
 
 
+def length_unit(*values: npt.ArrayLike) -> Unit:
+    """Unit of the axes of a map: metres, for bodies below half a metre millimetres."""
+    largest = max(float(np.max(np.abs(np.asarray(value, dtype=float)))) for value in values)
+    return METRE if largest >= 0.5 else _SMALL_LENGTHS[1]
+
+
 def displacement_unit(*values: npt.ArrayLike) -> Unit:
     """Unit in which the largest displacement or opening is at least one tenth."""
     return _fitting(_SMALL_LENGTHS, values)

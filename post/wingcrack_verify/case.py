@@ -87,7 +87,7 @@ class Line:
 
 @dataclass(frozen=True)
 class FigureRequest:
-    """A further figure."""
+    """A further figure: of lines, or of the network of a run."""
 
     title: str
     caption: str
@@ -97,6 +97,7 @@ class FigureRequest:
     y_log: bool
     equal_axes: bool
     lines: tuple[Line, ...]
+    network: str | None = None
 
 
 @dataclass(frozen=True)
@@ -287,6 +288,8 @@ def _check_other_run(
 def _check_kind(metric: str, reference: Reference, place: str) -> None:
     if (metric == "range") != (reference.limits is not None):
         raise CaseError(f"{place}: the metric range and a reference {{lower, upper}} go together")
+    if METRICS[metric].is_path and (reference.selection is None or not reference.selection.x):
+        raise CaseError(f"{place}: the metric {metric} takes a selection with 'x'")
     if (metric == "monotonic") != (reference.direction is not None):
         raise CaseError(f"{place}: the metric monotonic and 'rising' or 'falling' go together")
 
@@ -306,6 +309,12 @@ def _read_figure(data: Any, place: str, runs: tuple[Run, ...]) -> FigureRequest:
     fields = Fields(data, place)
     title = fields.text("title")
     fields.place = f"figure '{title}'"
+    if fields.has("network"):
+        network, caption = fields.text("network"), fields.text("caption", "")
+        fields.done()
+        if network not in {item.name for item in runs}:
+            raise CaseError(f"{fields.place}: there is no run '{network}'")
+        return FigureRequest(title, caption, "", "", False, False, True, (), network)
     lines = tuple(
         _read_line(item, f"{fields.place}: line {index}", runs)
         for index, item in enumerate(fields.tables("lines"), start=1)

@@ -14,8 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from wingcrack_post.network import network_figure
+from wingcrack_post.read import read_run
 from wingcrack_post.style import CYCLE, new_figure, styled
-from wingcrack_verify.judge import CheckReport, DrawnFigure
+from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
 from wingcrack_verify.orders import pareto_front
 from wingcrack_verify.stability import MapReport
 
@@ -54,6 +56,8 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
     ][-MOST_PROFILES:]
     if not shown:
         return None
+    if shown[0].pair is not None and shown[0].pair.reference_x is not None:
+        return _path_drawing(report, shown)
     figure, axes = _new()
     sign = -1.0 if report.check.reference.direction == "falling" else 1.0
     for index, item in enumerate(shown):
@@ -75,6 +79,24 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
     axes.set_ylabel(_wrapped(f"{report.check.quantity} [{report.check.unit}]"))
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
+
+
+def _path_drawing(report: CheckReport, shown: Sequence[Measured]) -> Drawing:
+    """Paths over the paths that they are compared with, on equal axes."""
+    figure, axes = _new()
+    for index, item in enumerate(shown):
+        assert item.pair is not None and item.pair.x is not None
+        assert item.pair.reference_x is not None
+        label = "reference" if index == len(shown) - 1 else None
+        axes.plot(item.pair.reference_x, item.pair.reference, color="black", lw=0.8, label=label)
+        axes.plot(
+            item.pair.x, item.pair.result, color=CYCLE[index], ls="--", lw=1.0, label=item.run.name
+        )
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(report.check.x_label)
+    axes.set_ylabel(f"{report.check.result.columns[0]} [{report.check.unit}]")
+    _legend(figure, axes)
+    return _finish(figure, report.check.quantity, "Path and reference.")
 
 
 @styled
@@ -174,6 +196,8 @@ def work_precision_drawing(report: CheckReport) -> Drawing | None:
 def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
     """Draw a figure that a case asks for; None if none of its lines has data."""
     request = drawn.request
+    if drawn.folder is not None:
+        return _finish(network_figure(read_run(drawn.folder)), request.title, request.caption)
     if not drawn.lines:
         return None
     figure, axes = _new()

@@ -12,8 +12,9 @@ from wingcrack_verify.case import Case, Check, FigureRequest, Run
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.expressions import Array, evaluate
-from wingcrack_verify.metrics import Pair, check_tolerance, measure, signal
+from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
+from wingcrack_verify.paths import NETWORK, network_table
 from wingcrack_verify.selection import Selection, Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
@@ -87,6 +88,7 @@ class DrawnFigure:
     request: FigureRequest
     lines: tuple[DrawnLine, ...]
     broken: str
+    folder: Path | None = None  # of the run whose network is drawn
 
 
 @dataclass(frozen=True)
@@ -181,7 +183,7 @@ def _measure(case: Case, check: Check, run: Run, outcomes: Mapping[str, Outcome]
     try:
         constants = _constants(case, run)
         output = Path(outcome.folder) / "output"
-        result = select(check.result, output, constants)
+        result = select(check.result, output, constants, METRICS[check.metric].is_path)
         if check.reference.other_run is None:
             pair = _pair(check, case, result, output, constants)
         else:
@@ -218,7 +220,8 @@ def _pair(
         return _paired(result, np.atleast_1d(evaluate(reference.expression, names)))
     assert reference.selection is not None
     folder = output if reference.of_run else case.folder
-    return _beside(reference.selection, result, folder, constants)
+    is_path = METRICS[check.metric].is_path
+    return _beside(reference.selection, result, folder, constants, is_path)
 
 
 def _pair_of_runs(
@@ -230,13 +233,20 @@ def _pair_of_runs(
     if outcomes[other.name].status != "finished":
         raise CaseError(f"the run '{other.name}' that it is compared with has not finished")
     folder = Path(outcomes[other.name].folder) / "output"
-    return _beside(check.reference.selection, result, folder, _constants(case, other))
+    is_path = METRICS[check.metric].is_path
+    return _beside(check.reference.selection, result, folder, _constants(case, other), is_path)
 
 
 def _beside(
-    selection: Selection, result: Values, folder: Path, constants: Mapping[str, float]
+    selection: Selection,
+    result: Values,
+    folder: Path,
+    constants: Mapping[str, float],
+    as_path: bool,
 ) -> Pair:
-    found = select(selection, folder, constants)
+    found = select(selection, folder, constants, as_path)
+    if as_path:
+        return Pair(result.values, found.values, result.x, found.x)
     if found.x is not None and result.x is not None:
         return _paired(result, interpolated(found, result.x, selection.file))
     return _paired(result, found.values)
@@ -280,6 +290,15 @@ def _order(check: Check, method: str, items: list[Measured]) -> MethodOrder:
 
 
 def _figure(case: Case, request: FigureRequest, outcomes: Mapping[str, Outcome]) -> DrawnFigure:
+    if request.network is not None:
+        if outcomes[request.network].status != "finished":
+            return DrawnFigure(request, (), "")  # the run's own checks say so
+        folder = Path(outcomes[request.network].folder) / "output"
+        try:
+            network_table(folder / NETWORK)
+        except CaseError as reason:
+            return DrawnFigure(request, (), f"{request.title}: {reason}")
+        return DrawnFigure(request, (), "", folder)
     lines = []
     runs = {run.name: run for run in case.runs}
     for line in request.lines:

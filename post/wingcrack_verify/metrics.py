@@ -9,6 +9,7 @@ import numpy as np
 
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import Array
+from wingcrack_verify.paths import path_distance
 
 TENTH = 0.1  # a tolerance is at most this share of the signal
 
@@ -22,12 +23,15 @@ class Pair:
     result, reference : (n,) arrays
         In the unit of the check.
     x : (n,) array or None
-        Abscissa, increasing.
+        Abscissa, increasing; of a path in the order of its points.
+    reference_x : (m,) array or None
+        Abscissa of a reference with points of its own (m of them), for paths only.
     """
 
     result: Array
     reference: Array
     x: Array | None
+    reference_x: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -44,12 +48,15 @@ class Metric:
         Whether it is for a single value only.
     can_normalise : bool
         Whether `normalise = "range"` makes sense.
+    is_path : bool
+        Whether result and reference are curves, each with its own points (x, y).
     """
 
     error: Callable[[Pair, bool], float]
     has_unit: bool = False
     one_value: bool = False
     can_normalise: bool = False
+    is_path: bool = False
 
 
 def _absolute(pair: Pair, _by_range: bool) -> float:
@@ -95,6 +102,15 @@ def _wrong_way(pair: Pair, _by_range: bool) -> float:
     return float(max(0.0, np.max(-np.diff(pair.result))) / total)
 
 
+def _apart(pair: Pair, _by_range: bool) -> float:
+    if pair.x is None or pair.reference_x is None:
+        raise CaseError("the metric path needs x, and a reference with x")
+    return path_distance(
+        np.column_stack((pair.x, pair.result)),
+        np.column_stack((pair.reference_x, pair.reference)),
+    )
+
+
 def _shortfall(pair: Pair, _by_range: bool) -> float:
     missing = float(pair.reference[0] - pair.result[0])
     return max(0.0, missing) / _nonzero(abs(float(pair.reference[0])))
@@ -109,6 +125,7 @@ METRICS: dict[str, Metric] = {
     "range": Metric(_absolute, has_unit=True),
     "monotonic": Metric(_wrong_way),
     "at_least": Metric(_shortfall, one_value=True),
+    "path": Metric(_apart, has_unit=True, is_path=True),
 }
 
 
@@ -137,12 +154,17 @@ def signal(name: str, pair: Pair, scale: float | None) -> float:
     Raises
     ------
     CaseError
-        If the reference is 0 and no scale is given, or if one is given where it is not 0.
+        If the reference is 0 and no scale is given, or if one is given where it is not 0. Paths
+        need a scale: the length that their distance is small beside.
     """
     if not METRICS[name].has_unit:
         if scale is not None:
             raise CaseError(f"'scale' is for the metric absolute and a reference of 0, not {name}")
         return 1.0
+    if METRICS[name].is_path:
+        if scale is None:
+            raise CaseError("'scale' must say what length the paths are near beside")
+        return scale
     size = float(np.max(np.abs(pair.reference)))
     if size == 0.0:
         if scale is None:

@@ -17,6 +17,7 @@ from wingcrack_verify.judge import (
     Measured,
     worst_of,
 )
+from wingcrack_verify.metrics import METRICS
 from wingcrack_verify.orders import Point
 from wingcrack_verify.stability import StabilityReport, TrialReport
 from wingcrack_verify.suite import JudgedSuite
@@ -121,7 +122,7 @@ def _texts(*texts: str | None) -> tuple[str, ...]:
 
 
 def _unit(report: CheckReport) -> str:
-    return report.check.unit if report.check.metric in ("absolute", "range") else "%"
+    return report.check.unit if METRICS[report.check.metric].has_unit else "%"
 
 
 def quantity_text(value: float, unit: str) -> str:

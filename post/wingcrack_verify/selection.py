@@ -17,6 +17,7 @@ from wingcrack_post.table import Table, read_table
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import FUNCTIONS, Array, evaluate, names_in
 from wingcrack_verify.fields import Fields, as_number
+from wingcrack_verify.paths import NETWORK, network_table
 
 T = TypeVar("T")
 Mask = npt.NDArray[np.bool_]
@@ -263,6 +264,8 @@ def _table(path: Path) -> Table:
 
 @lru_cache(maxsize=64)
 def _read(path: Path, _changed: int) -> Table:
+    if path.name == NETWORK:
+        return network_table(path)
     table = _guarded(lambda: read_table(path))
     with path.open("rb") as file:
         file.seek(-1, 2)

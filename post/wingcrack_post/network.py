@@ -1,0 +1,200 @@
+"""The fracture network: initial fractures thick, what has grown thin and coloured by its order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from wingcrack_post import style
+from wingcrack_post.errors import AbsentError
+from wingcrack_post.growth import Growth, read_growth
+from wingcrack_post.read import Run
+from wingcrack_post.scene import Scene
+from wingcrack_post.table import FloatArray, Table
+from wingcrack_post.units import Unit, length_unit, time_unit
+
+THICK, THIN = 2.2, 1.1
+INITIAL = "#000000"
+_MARGIN = 0.12  # around the network, as a share of its size
+_LARGE = 0.5  # share of the body from which on the whole body is shown
+_SIZE = (3.6, 5.0)  # [inch] of the axes at most
+_BESIDE = (1.75, 0.95)  # [inch] for labels and colour bar
+
+
+@style.styled
+def network_figure(run: Run) -> Figure:
+    """Draw the network at the end of a run, with the outline of the body.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no network, or none with fractures.
+    """
+    if run.network is None:
+        raise AbsentError("the run has no network.json")
+    if not run.network.get("steps"):
+        raise AbsentError("network.json does not tell how the network has grown")
+    growths = read_growth(run.network)
+    if not growths:
+        raise AbsentError("the scene has no fractures")
+    box = _box(growths, run.scene)
+    ratio = (box[3] - box[2]) / (box[1] - box[0])
+    width = min(_SIZE[0], _SIZE[1] / ratio)
+    figure = style.new_figure(width + _BESIDE[0], width * ratio + _BESIDE[1])
+    axes = figure.add_subplot()
+    draw_network(axes, growths, run.network, run.history, run.scene)
+    return figure
+
+
+def draw_network(
+    axes: Axes,
+    growths: Sequence[Growth],
+    network: Mapping[str, Any],
+    history: Table,
+    scene: Scene | None,
+) -> None:
+    """Draw a network into axes, with colour bar and labels.
+
+    Colours count the increments of growth; the load factor (in scenes with a fluid the time) at
+    which each came stands beside the number.
+
+    Parameters
+    ----------
+    axes : Axes
+    growths : sequence of Growth
+    network : mapping
+        Contents of network.json.
+    history : Table
+        history.csv.
+    scene : Scene or None
+        For the outline of the body.
+    """
+    box = _box(growths, scene)
+    unit = length_unit(box[1] - box[0], box[3] - box[2])
+    if scene is not None and scene.outline is not None:
+        x, y = unit.of(scene.outline).T
+        axes.plot(x, y, color="#888888", linewidth=0.8, zorder=1)
+    times = sorted({float(step["time_s"]) for step in network["steps"][1:]})
+    order = _order(growths)
+    norm = Normalize(1, max([2, *order.values()]))
+    colours = style.time_colours()
+    for item in growths:
+        axes.plot(*unit.of(item.initial).T, color=INITIAL, lw=THICK, zorder=3)
+        for points, moments, wing in ((item.start, item.start_s, 0), (item.end, item.end_s, 1)):
+            if len(points) < 2:
+                continue
+            pieces = unit.of(np.stack((points[:-1], points[1:]), axis=1))
+            numbers = [order[item.number, wing, k] for k in range(len(moments))]
+            lines = LineCollection(
+                list(pieces),
+                colors=[colours(norm(number)) for number in numbers],
+                linewidths=THIN,
+                capstyle="round",
+                zorder=4,
+            )
+            axes.add_collection(lines, autolim=False)
+    for joint in network.get("joints", []):
+        place = unit.of(np.array([joint["x_m"], joint["y_m"]]))
+        axes.plot(*place, "o", mfc="white", mec="#D55E00", mew=0.9, ms=4, zorder=5)
+    axes.set_xlim(*unit.of(np.array(box[:2])))
+    axes.set_ylim(*unit.of(np.array(box[2:])))
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel(f"$x$ [{unit.name}]")
+    axes.set_ylabel(f"$y$ [{unit.name}]")
+    axes.locator_params(nbins=5)
+    if times:
+        _colour_bar(axes, norm, order, growths, history)
+    _legend(axes, bool(network.get("joints")))
+
+
+def _order(growths: Sequence[Growth]) -> dict[tuple[int, int, int], int]:
+    """Number of the increment, from 1, that made each segment (fracture, wing, segment).
+
+    At one load several increments may follow each other: the k-th segments of all wings that grew
+    at the same load belong to the k-th of them.
+    """
+    keyed: dict[tuple[int, int, int], tuple[float, int]] = {}
+    for item in growths:
+        for wing, moments in enumerate((item.start_s, item.end_s)):
+            for k, moment in enumerate(moments):
+                first = int(np.searchsorted(moments, moment))
+                keyed[item.number, wing, k] = (float(moment), k - first)
+    ranks = {key: rank for rank, key in enumerate(sorted(set(keyed.values())), start=1)}
+    return {piece: ranks[key] for piece, key in keyed.items()}
+
+
+def _colour_bar(
+    axes: Axes,
+    norm: Normalize,
+    order: Mapping[tuple[int, int, int], int],
+    growths: Sequence[Growth],
+    history: Table,
+) -> None:
+    moments: dict[int, float] = {}
+    for item in growths:
+        for wing, times in enumerate((item.start_s, item.end_s)):
+            moments |= {order[item.number, wing, k]: float(t) for k, t in enumerate(times)}
+    if not moments:
+        return
+    time = history.number("time_s")
+    if history.has("load_factor"):
+        loads, label = history.number("load_factor"), "increment of growth (load factor)"
+        unit = Unit("", 1.0)
+    else:
+        unit = time_unit(float(time[-1]))
+        loads, label = time, f"increment of growth (time [{unit.name}])"
+
+    def text(value: float, _position: int) -> str:
+        moment = moments.get(round(value))
+        if moment is None:
+            return f"{value:g}"
+        return f"{value:g} ({float(unit.of(np.interp(moment, time, loads))):.3g})"
+
+    bar = axes.figure.colorbar(
+        ScalarMappable(norm, style.time_colours()), ax=axes, aspect=30, pad=0.03, shrink=0.9
+    )
+    bar.set_label(label)
+    bar.ax.yaxis.set_major_locator(MaxNLocator(6, integer=True))
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(text))
+
+
+def _legend(axes: Axes, has_joints: bool) -> None:
+    handles = [
+        Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start"),
+        Line2D([], [], color=style.time_colours()(0.5), linewidth=THIN, label="grown"),
+    ]
+    if has_joints:
+        look: dict[str, Any] = {"mfc": "white", "mec": "#D55E00", "mew": 0.9, "ms": 4}
+        handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))
+    figure = axes.get_figure()
+    assert isinstance(figure, Figure)
+    style.outside_legend(figure, handles, 3)
+
+
+def _box(growths: Sequence[Growth], scene: Scene | None) -> tuple[float, float, float, float]:
+    """What is shown: the body, or a square around a network that is small in it."""
+    points = np.concatenate([np.concatenate((g.initial, g.start, g.end)) for g in growths])
+    lower, upper = points.min(axis=0), points.max(axis=0)
+    size = float((upper - lower).max())
+    outline = None if scene is None else scene.outline
+    if outline is not None:
+        corner, opposite = outline.min(axis=0), outline.max(axis=0)
+        if size >= _LARGE * float((opposite - corner).max()):
+            margin = 0.02 * (opposite - corner)
+            return _limits(corner - margin, opposite + margin)
+    centre, half = 0.5 * (lower + upper), (0.5 + _MARGIN) * size
+    return _limits(centre - half, centre + half)
+
+
+def _limits(lower: FloatArray, upper: FloatArray) -> tuple[float, float, float, float]:
+    return float(lower[0]), float(upper[0]), float(lower[1]), float(upper[1])
