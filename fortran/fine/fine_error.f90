@@ -15,6 +15,10 @@ module fine_error
 
    public :: energy_error_t, estimate_error, wanted_sizes
 
+   !> 2 m of wanted_sizes: sizes that grow by 0.3 per distance, as the mesh library makes them, put
+   !! 2 pi/(0.3**2 sqrt(3)/4) = 161 elements around a tip for every factor e in distance.
+   real(rk), parameter :: tip_elements = 322.0_rk
+
    !> Errors in the energy norm.
    type :: energy_error_t
       real(rk), allocatable :: element(:)  !< (n_cells) [(J/m)^1/2]
@@ -96,53 +100,126 @@ contains
       end associate
    end function strain_product
 
-   !> Element sizes with which the mesh of fewest elements would reach a relative error, all
-   !! elements having the same share in it (Li and Bettess 1995).
+   !> Element sizes with which the mesh of fewest elements would reach a relative error (Li and
+   !! Bettess 1995), and radii of the rosettes.
    !!
-   !! The squared error of a region is proportional to h**(2 p), p = 2 where the solution is smooth.
-   !! Equal shares total**2/n for n new elements then ask for h_new/h = (total/(sqrt(n) e))**(1/(p +
-   !! 1)), and n is the sum of (h/h_new)**2. The elements around a tip are as many after refinement
-   !! as before, and their squared error falls with h only, as the singular field keeps its shape:
-   !! h_new/h = (total/(sqrt(n) e))**2.
-   pure function wanted_sizes(fine, estimate, relative) result(sizes)
+   !! Where the solution is smooth, the squared error of a region is proportional to h**(2 p) with
+   !! p = 2, and fewest elements do where each has the same squared error s**2:
+   !! h_new/h = (s/e)**(1/(p + 1)), which makes n = sum (e/s)**(2/(p + 1)) elements of those there.
+   !!
+   !! The elements around a tip are as many after refinement as before, and their squared error
+   !! falls with the radius only, as the singular field keeps its shape. A smaller rosette costs the
+   !! elements that fill the room around it, m for a factor e. One more element elsewhere takes
+   !! 2 s**2 off the squared error there, as that falls with n**(-p); so the best radius leaves
+   !! 2 m s**2 to all elements of a rosette together. Then s follows from
+   !! n s**2 + 2 m s**2 (tips) = (wanted error)**2.
+   !!
+   !! What will fill the room around a smaller rosette grows from it; the sizes wanted there are
+   !! those of the elements next to it.
+   pure subroutine wanted_sizes(fine, estimate, relative, sizes, shrinkage)
       type(fine_mesh_t), intent(in) :: fine
       type(energy_error_t), intent(in) :: estimate
       real(rk), intent(in) :: relative  !< wanted error over the norm of the solution [-]
-      real(rk), allocatable :: sizes(:)  !< (n_cells) edge of an equilateral element [m]
+      real(rk), allocatable, intent(out) :: sizes(:)  !< (n_cells) edge if equilateral [m]
+      real(rk), allocatable, intent(out) :: shrinkage(:)  !< (n_tips) new radius over the old
       real(rk), parameter :: smooth_order = 2.0_rk  ! p of quadratic elements
       real(rk), parameter :: finest = 0.1_rk, coarsest = 4.0_rk  ! change of size at once
-      real(rk) :: allowed, edge(2, 2), number, ratio
-      logical :: at_tip(fine%n_cells), is_tip(fine%n_nodes)
-      integer(ik) :: cell
+      real(rk) :: share, here
+      integer(ik) :: tip_of_cell(fine%n_cells), cell, tip
 
-      is_tip = .false.
-      is_tip(fine%fracture%tip_node) = .true.
-      do cell = 1, fine%n_cells
-         at_tip(cell) = any(is_tip(fine%cell_nodes(1:3, cell)))
+      tip_of_cell = 0
+      do tip = 1, fine%fracture%n_tips
+         do cell = 1, fine%n_cells
+            if (.not. any(fine%cell_nodes(1:3, cell) == fine%fracture%tip_node(tip))) cycle
+            tip_of_cell(cell) = tip
+         end do
       end do
-      allowed = relative*hypot(estimate%solution, estimate%total)
-      number = sum((estimate%element/allowed)**(2.0_rk/(smooth_order + 1.0_rk)), &
-                   mask=.not. at_tip)**((smooth_order + 1.0_rk)/smooth_order) + count(at_tip)
-      number = max(1.0_rk, number)
+      share = share_of_element(sum(estimate%element**(2.0_rk/(smooth_order + 1.0_rk)), &
+                                   mask=tip_of_cell == 0), fine%fracture%n_tips, &
+                               relative*hypot(estimate%solution, estimate%total))
 
-      allocate (sizes(fine%n_cells))
+      allocate (sizes(fine%n_cells), shrinkage(fine%fracture%n_tips))
+      do tip = 1, fine%fracture%n_tips
+         here = sum(estimate%element**2, mask=tip_of_cell == tip)
+         shrinkage(tip) = within(tip_elements*share**2/max(tiny(share), here))
+      end do
       do cell = 1, fine%n_cells
+         sizes(cell) = size_of(cell)*within((share/max(tiny(share), estimate%element(cell))) &
+                                            **(1.0_rk/(smooth_order + 1.0_rk)))
+      end do
+      call spread_to_tips(fine, tip_of_cell > 0, sizes)
+
+   contains
+
+      !> A change of size within what is trusted at once; no error at all lets sizes grow.
+      pure real(rk) function within(change)
+         real(rk), intent(in) :: change
+
+         within = coarsest
+         if (change < coarsest) within = max(finest, change)
+      end function within
+
+      !> Edge of an equilateral element of the same area [m].
+      pure real(rk) function size_of(cell)
+         integer(ik), intent(in) :: cell
+         real(rk) :: edge(2, 2)
+
          associate (nodes => fine%cell_nodes(:, cell))
             edge(:, 1) = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
             edge(:, 2) = fine%xy(:, nodes(3)) - fine%xy(:, nodes(1))
          end associate
-         ratio = coarsest
-         if (estimate%element(cell) > 0.0_rk) then
-            ratio = allowed/(sqrt(number)*estimate%element(cell))
-            if (at_tip(cell)) then
-               ratio = ratio**2
-            else
-               ratio = ratio**(1.0_rk/(smooth_order + 1.0_rk))
-            end if
+         size_of = sqrt(2.0_rk*(edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))/sqrt(3.0_rk))
+      end function size_of
+
+   end subroutine wanted_sizes
+
+   !> The error s that each element may have: n(s) s**2 + 2 m s**2 (tips) is the square of what is
+   !! allowed, n(s) = sum s**(-2/3). The sum rises with s; by bisection.
+   pure real(rk) function share_of_element(sum_of_powers, n_tips, allowed) result(share)
+      real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out
+      integer(ik), intent(in) :: n_tips
+      real(rk), intent(in) :: allowed  !< [(J/m)^1/2]
+      integer, parameter :: halvings = 60
+      real(rk) :: low, middle
+      integer :: k
+
+      low = 0.0_rk
+      share = allowed
+      do k = 1, halvings
+         middle = 0.5_rk*(low + share)
+         if (sum_of_powers*middle**(4.0_rk/3.0_rk) + tip_elements*n_tips*middle**2 &
+             > allowed**2) then
+            share = middle
+         else
+            low = middle
          end if
-         sizes(cell) = max(finest, min(coarsest, ratio)) &
-                       *sqrt(2.0_rk*(edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))/sqrt(3.0_rk))
       end do
-   end function wanted_sizes
+   end function share_of_element
+
+   !> Elements around a tip take the mean size wanted by the others at their corners.
+   pure subroutine spread_to_tips(fine, at_tip, sizes)
+      type(fine_mesh_t), intent(in) :: fine
+      logical, intent(in) :: at_tip(:)  !< (n_cells)
+      real(rk), intent(inout) :: sizes(:)  !< (n_cells) [m]
+      real(rk) :: total(fine%n_vertices)
+      integer(ik) :: n_around(fine%n_vertices), cell
+
+      total = 0.0_rk
+      n_around = 0
+      do cell = 1, fine%n_cells
+         if (at_tip(cell)) cycle
+         associate (corners => fine%cell_nodes(1:3, cell))
+            total(corners) = total(corners) + log(sizes(cell))
+            n_around(corners) = n_around(corners) + 1
+         end associate
+      end do
+      do cell = 1, fine%n_cells
+         if (.not. at_tip(cell)) cycle
+         associate (corners => fine%cell_nodes(1:3, cell))
+            if (.not. any(n_around(corners) > 0)) cycle
+            sizes(cell) = exp(sum(total(corners))/sum(n_around(corners)))
+         end associate
+      end do
+   end subroutine spread_to_tips
 
 end module fine_error

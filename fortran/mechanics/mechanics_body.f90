@@ -63,21 +63,22 @@ contains
 
    !> A mesh whose elements have the sizes that make the error of the present state, where they
    !! lie, as small as the scene wants.
-   subroutine refine(self, scene, start, network, timers, error)
+   subroutine refine(self, scene, start, network, relative, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      real(rk), intent(in) :: relative  !< wanted error over the norm of the solution [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      real(rk), allocatable :: sizes(:)
+      real(rk), allocatable :: sizes(:), shrinkage(:)
 
       call timers%start(phase_remesh)
-      sizes = wanted_sizes(self%model%mesh, self%estimate, scene%adaptive%tolerance)
+      call wanted_sizes(self%model%mesh, self%estimate, relative, sizes, shrinkage)
       spec = body_spec(scene, network)
-      call fit_rosettes(self%mesh, sizes, spec)
+      call fit_rosettes(self%mesh, shrinkage, spec)
       call build_mesh_sized(spec, network, self%mesher, sizes, mesher, mesh, error)
       call timers%stop(phase_remesh)
       if (allocated(error)) return
@@ -86,27 +87,20 @@ contains
       call set_up(self, scene, start, network, timers, error)
    end subroutine refine
 
-   !> Rosettes as small as the sizes that are wanted around the tips.
-   pure subroutine fit_rosettes(mesh, sizes, spec)
+   !> Rosettes as much smaller as the error around the tips asks for.
+   pure subroutine fit_rosettes(mesh, shrinkage, spec)
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: sizes(:)  !< (n_cells) [m]
+      real(rk), intent(in) :: shrinkage(:)  !< (n_tips) new radius over the present one
       type(mesh_spec_t), intent(inout) :: spec
-      real(rk) :: wanted
-      integer(ik) :: cell, n_cells, tip
+      integer(ik) :: tip
 
-      do tip = 1, mesh%fracture%n_tips
-         wanted = 0.0_rk
-         n_cells = 0
-         do cell = 1, mesh%n_cells
-            if (.not. any(mesh%cell_nodes(:, cell) == mesh%fracture%tip_node(tip))) cycle
-            wanted = wanted + sizes(cell)
-            n_cells = n_cells + 1
+      associate (fracture => mesh%fracture)
+         do tip = 1, fracture%n_tips
+            associate (radius => spec%end_radius(fracture%tip_end(tip), fracture%tip_fracture(tip)))
+               radius = min(radius, shrinkage(tip)*fracture%tip_radius(tip))
+            end associate
          end do
-         associate (radius => spec%end_radius(mesh%fracture%tip_end(tip), &
-                                              mesh%fracture%tip_fracture(tip)))
-            radius = min(radius, wanted/n_cells)
-         end associate
-      end do
+      end associate
    end subroutine fit_rosettes
 
    !> Elements, contact, conditions and factors on the present mesh.

@@ -23,6 +23,9 @@ module mechanics_simulation
    !! the intensities, so that equal tips stay equal.
    real(rk), parameter :: together = 2.0e-3_rk
 
+   !> Share of the estimated error that one new mesh is made for.
+   real(rk), parameter :: error_step = 0.4_rk
+
    !> A free tip of the body.
    type, extends(tip_state_t) :: tip_t
       real(rk) :: rosette_radius = 0.0_rk  !< [m]
@@ -267,7 +270,9 @@ contains
       where (self%tip%advance > 0.0_rk) self%tip%has_wing = .true.
    end subroutine grow
 
-   !> Let the mesh follow the error at a load, if the scene wants it.
+   !> Let the mesh follow the error at a load, if the scene wants it. A coarse mesh shows the error
+   !! of a much finer one poorly, so the error falls in steps, each of which makes a mesh about
+   !! twice as large.
    subroutine adapt(self, factor, timers, error)
       type(simulation_t), intent(inout) :: self
       real(rk), intent(in) :: factor  !< of the load [-]
@@ -282,7 +287,9 @@ contains
          call self%body%estimate_body(timers)
          if (self%body%estimate%relative <= self%scene%adaptive%tolerance) return
          if (pass == self%scene%adaptive%passes) return
-         call self%body%refine(self%scene, self%start, self%network, timers, error)
+         call self%body%refine(self%scene, self%start, self%network, &
+                               max(self%scene%adaptive%tolerance, &
+                                   error_step*self%body%estimate%relative), timers, error)
          if (allocated(error)) return
       end do
    end subroutine adapt

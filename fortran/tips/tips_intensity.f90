@@ -15,8 +15,11 @@ module tips_intensity
 
    public :: tip_intensity
 
-   ! Domains, measured in rosettes where there is room for them.
-   real(rk), parameter :: reach = 4.0_rk  !< radius of the larger domain
+   ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
+   ! of the room where the rosette is small. A domain that shrank with the rosette would look the
+   ! same on every mesh, and so would its error.
+   real(rk), parameter :: reach = 4.0_rk  !< least radius in rosettes
+   real(rk), parameter :: share_of_room = 0.15_rk  !< least radius over the largest possible
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
 
@@ -35,7 +38,7 @@ contains
       type(intensity_t), intent(out) :: intensity
       type(error_t), allocatable, intent(out) :: error
       type(tip_frame_t) :: frame
-      real(rk) :: mismatch, of_energy, size_of_all
+      real(rk) :: mismatch, of_energy, room, size_of_all
       character(len=16) :: number
 
       if (tip < 1 .or. tip > model%mesh%fracture%n_tips) then
@@ -44,8 +47,8 @@ contains
          return
       end if
       frame = frame_of_tip(model%mesh, tip)
-      intensity%radius = min(largest_radius(model%mesh, frame), &
-                             reach*rosette_size(model%mesh, frame))
+      room = largest_radius(model%mesh, frame)
+      intensity%radius = min(room, max(share_of_room*room, reach*rosette_size(model%mesh, frame)))
       intensity%radius_inner = inner_share*intensity%radius
       associate (result => intensity)
          call displacement_correlation(model%mesh, model%elasticity, displacement, frame, &

@@ -231,22 +231,47 @@ contains
       end do
    end subroutine crack
 
-   !> Sizes for a quarter of the error are half as large where the error is spread evenly.
+   !> Sizes for a quarter of the error are half as large where the error is spread evenly. Around a
+   !! tip the radius follows the squared error of all its elements, and no size wanted is that of
+   !! the tip itself.
    subroutine sizes()
       type(fine_model_t) :: model
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate
-      real(rk), allocatable :: displacement(:, :), wanted(:)
-      real(rk) :: now
+      real(rk), parameter :: share = 0.1_rk, of_rosette = 322.0_rk*share**2
+      real(rk), allocatable :: displacement(:, :), wanted(:), shrinkage(:)
+      real(rk) :: now, allowed
+      logical, allocatable :: is_tip(:)
 
       call solve(cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [8_ik, 8_ik], 1_ik, 1_ik, &
                                    0_ik), .false., model, displacement)
       call recover_by_patches(model, displacement, recovery)
       call estimate_error(model, displacement, recovery, estimate)
       estimate%element = estimate%total/sqrt(real(size(estimate%element), rk))
-      wanted = wanted_sizes(model%mesh, estimate, 0.25_rk*estimate%relative)
+      call wanted_sizes(model%mesh, estimate, 0.25_rk*estimate%relative, wanted, shrinkage)
       now = sqrt(4.0_rk/256.0_rk/sqrt(3.0_rk))  ! 256 elements of equal area
       call checks%is_close(maxval(abs(wanted/now - 0.5_rk)), 0.0_rk, 1.0e-3_rk, "wanted sizes")
+      call checks%is_true(size(shrinkage) == 0, "no tip, no rosette")
+
+      call solve(cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [16_ik, 16_ik], 8_ik, &
+                                   5_ik, 12_ik), .true., model, displacement)
+      is_tip = model%mesh%tip_corner > 0
+      deallocate (estimate%element)
+      allocate (estimate%element(model%mesh%n_cells), source=1.0_rk)
+      where (is_tip) estimate%element = 2.0_rk
+      estimate%total = norm2(estimate%element)
+      estimate%solution = 99.0_rk*estimate%total
+      ! The error if all elements but those of the rosettes had the share.
+      allowed = sqrt(count(.not. is_tip)*share**(4.0_rk/3.0_rk) + 2.0_rk*of_rosette)
+      call wanted_sizes(model%mesh, estimate, &
+                        allowed/hypot(estimate%solution, estimate%total), wanted, shrinkage)
+      now = 4.0_rk*count(is_tip)/2.0_rk  ! squared error of a rosette
+      call checks%is_close(maxval(abs(shrinkage*now/of_rosette - 1.0_rk)), 0.0_rk, 1.0e-9_rk, &
+                           "wanted radii")
+      call checks%is_close(minval(wanted, is_tip)/maxval(wanted, is_tip), 1.0_rk, 1.0e-9_rk, &
+                           "sizes at the tips are all the same")
+      call checks%is_close(minval(wanted, is_tip)/minval(wanted,.not. is_tip), 1.0_rk, 1.0e-9_rk, &
+                           "sizes at the tips are those of the elements around")
    end subroutine sizes
 
 end program test_fine_error
