@@ -11,7 +11,7 @@ from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
 
 PROFILE = "fine/profile.csv"
 LAST = "1.0,2.005"  # the last row of the finest result
-COMPARING = sorted(set(CHECKS) - {"residual", "monotonic", "at_least"})
+COMPARING = sorted(set(CHECKS) - {"residual", "monotonic", "at_least", "at_most"})
 
 
 def replace_last(case: SmallCase, value: str) -> None:
@@ -52,6 +52,12 @@ def test_sign_factor_and_unit_fail(tmp_path: Path, name: str, factor: float) -> 
 def test_less_than_the_least_fails(tmp_path: Path, factor: float) -> None:
     case = small_case(tmp_path, "at_least")
     scale_column(case, factor)
+    assert case.judge().verdict == FAILED
+
+
+def test_more_than_the_most_fails(tmp_path: Path) -> None:
+    case = small_case(tmp_path, "at_most")
+    scale_column(case, 10.0)
     assert case.judge().verdict == FAILED
 
 
@@ -216,6 +222,7 @@ def test_a_case_that_says_what_nobody_knows_is_an_error(
         ("monotonic", "tolerance = 1.0e-6", "tolerance = 0.11"),
         ("residual", "tolerance = 1.0e-8", "tolerance = 0.11"),
         ("at_least", "tolerance = 1.0e-6", "tolerance = 0.11"),
+        ("at_most", "tolerance = 1.0e-6", "tolerance = 0.11"),
     ],
 )
 def test_a_tolerance_above_a_tenth_of_the_signal_is_an_error(

@@ -33,6 +33,9 @@ def pair(result: list[float], reference: list[float]) -> Pair:
         ("at_least", [5.0], [4.0], 0.0),
         ("at_least", [3.0], [4.0], 0.25),
         ("at_least", [-3.0], [-2.0], 0.5),
+        ("at_most", [3.0], [4.0], 0.0),
+        ("at_most", [5.0], [4.0], 0.25),
+        ("at_most", [-1.0], [-2.0], 0.5),
     ],
 )
 def test_error_of_few_values(

@@ -163,12 +163,21 @@ def _check(book: _Book, check: dict[str, Any]) -> None:
                 f"{run['result']:.6g}" if single else "profile",
                 f"{run['reference']:.6g}" if single else "profile",
                 run["error_text"] or run["reason"] or run["status"],
+                number_text(run["unknowns"], ".0f"),
                 number_text(run["cpu_s"]),
             )
         )
     unit = check["unit"]
-    names = ("run", "method", f"result [{unit}]", f"reference [{unit}]", "error", "CPU s")
-    _table(book, names, rows, (42, 38, 30, 30, 26, 14))
+    names = (
+        "run",
+        "method",
+        f"result [{unit}]",
+        f"reference [{unit}]",
+        "error",
+        "unknowns",
+        "CPU s",
+    )
+    _table(book, names, rows, (40, 36, 28, 28, 22, 14, 12))
     for order in check["orders"]:
         wanted = check["order_expected"]
         _words(
@@ -176,6 +185,11 @@ def _check(book: _Book, check: dict[str, Any]) -> None:
             f"Observed order of {order['method']}: {number_text(order['observed'], '.2f')}, "
             f"expected {wanted['expected']:g} ± {wanted['within']:g}.",
         )
+    rates = [f"{rate['method']} {rate['observed']:.2f}" for rate in check["rates"]]
+    if rates:
+        _words(book, f"Rates (error over unknowns): {', '.join(rates)}.", 3.5)
+    if check["saving"]:
+        _words(book, f"{check['saving']}.", 3.5)
 
 
 def _trials(book: _Book, item: dict[str, Any]) -> None:

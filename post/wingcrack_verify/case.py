@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack_verify.economy import Economy, read_economy
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
 from wingcrack_verify.metrics import METRICS
@@ -70,6 +71,7 @@ class Check:
     tolerance: float
     scale: float | None
     order: Order | None
+    economy: Economy | None
     work_precision: bool
     known_gap: str | None
     x_label: str
@@ -210,6 +212,10 @@ def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | No
     result = read_selection(result_fields, result_fields.text("file"))
     result_fields.done()
     order = _read_order(fields.take("order"), fields.place) if fields.has("order") else None
+    economy = None
+    if fields.has("economy"):
+        methods = [run.method for run in runs if run.name in measured]
+        economy = read_economy(fields.take("economy"), fields.place, methods)
     check = Check(
         quantity=quantity,
         unit=unit,
@@ -222,6 +228,7 @@ def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | No
         tolerance=tolerance,
         scale=fields.positive("scale", None),
         order=order,
+        economy=economy,
         work_precision=fields.flag("work_precision"),
         known_gap=fields.text("known_gap", case_gap),
         x_label=fields.text("x_label", result.x or ""),

@@ -17,8 +17,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from wingcrack_post.network import network_figure
 from wingcrack_post.read import read_run
 from wingcrack_post.style import CYCLE, new_figure, styled
+from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
-from wingcrack_verify.orders import pareto_front
+from wingcrack_verify.orders import Point, pareto_front
 from wingcrack_verify.stability import MapReport
 
 WIDTH, HEIGHT = 4.3, 3.1  # [inch]: at this width the letters keep their size on a phone
@@ -139,38 +140,73 @@ def order_drawing(report: CheckReport) -> Drawing | None:
     )
 
 
-@styled
-def work_precision_drawing(report: CheckReport) -> Drawing | None:
-    """Error against CPU seconds; None unless the check asks for it and two runs were measured."""
+def work_precision_drawings(report: CheckReport) -> list[Drawing]:
+    """Error against CPU seconds, and against unknowns where at least two runs tell theirs.
+
+    Empty unless the check asks for it and two runs were measured.
+    """
     points = [point for point in report.points if point.error > 0.0]
     if not report.check.work_precision or len(points) < 2:
-        return None
+        return []
+    drawings = [
+        _cost_drawing(
+            f"{report.check.quantity}: error against run time",
+            "Down and left is better; one line per method.",
+            "CPU time [s]",
+            [(point.cpu_s, point) for point in points],
+        )
+    ]
+    sized = [(point.unknowns, point) for point in points if point.unknowns is not None]
+    if len({unknowns for unknowns, _ in sized}) > 1:
+        drawings.append(
+            _cost_drawing(
+                f"{report.check.quantity}: error against unknowns",
+                "In the legend, the observed rate: error proportional to unknowns to this power.",
+                "unknowns",
+                sized,
+                tell_rates=True,
+            )
+        )
+    return drawings
+
+
+@styled
+def _cost_drawing(
+    title: str,
+    caption: str,
+    label: str,
+    costs: Sequence[tuple[float, Point]],
+    tell_rates: bool = False,
+) -> Drawing:
+    """Error against a cost, a line per method; with the Pareto front unless rates are told."""
     figure, axes = _new()
-    front = pareto_front(points)
-    axes.plot(
-        [point.cpu_s for point in front],
-        [100.0 * point.error for point in front],
-        color="#BBBBBB",
-        linewidth=5.0,
-        zorder=1,
-        label="Pareto front",
-        solid_capstyle="round",
-    )
-    for index, method in enumerate(dict.fromkeys(point.method for point in points)):
-        of_method = [point for point in points if point.method == method]
+    if not tell_rates:
+        front = pareto_front([point for _, point in costs])
         axes.plot(
-            [point.cpu_s for point in of_method],
-            [100.0 * point.error for point in of_method],
+            [point.cpu_s for point in front],
+            [100.0 * point.error for point in front],
+            color="#BBBBBB",
+            linewidth=5.0,
+            zorder=1,
+            label="Pareto front",
+            solid_capstyle="round",
+        )
+    for index, method in enumerate(dict.fromkeys(point.method for _, point in costs)):
+        of_method = [(cost, point) for cost, point in costs if point.method == method]
+        rate = observed_rate([point for _, point in of_method]) if tell_rates else None
+        axes.plot(
+            [cost for cost, _ in of_method],
+            [100.0 * point.error for _, point in of_method],
             color=CYCLE[index % len(CYCLE)],
             marker=MARKERS[index % len(MARKERS)],
             markersize=4,
-            label=method,
+            label=method if rate is None else f"{method}: {rate:.2f}",
         )
-    defaults = [point for point in points if point.default]
+    defaults = [(cost, point) for cost, point in costs if point.default]
     if defaults:
         axes.plot(
-            [point.cpu_s for point in defaults],
-            [100.0 * point.error for point in defaults],
+            [cost for cost, _ in defaults],
+            [100.0 * point.error for _, point in defaults],
             linestyle="none",
             marker="o",
             markersize=11,
@@ -182,14 +218,10 @@ def work_precision_drawing(report: CheckReport) -> Drawing | None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     _plain_logs(axes)
-    axes.set_xlabel("CPU time [s]")
+    axes.set_xlabel(label)
     axes.set_ylabel("error [% of the signal]")
     _legend(figure, axes)
-    return _finish(
-        figure,
-        f"{report.check.quantity}: error against run time",
-        "Down and left is better; one line per method.",
-    )
+    return _finish(figure, title, caption)
 
 
 @styled
@@ -306,5 +338,6 @@ def _finish(figure: Figure, title: str, caption: str) -> Drawing:
 
 def check_drawings(report: CheckReport) -> Sequence[Drawing]:
     """All figures of a check."""
-    drawings = (profile_drawing(report), order_drawing(report), work_precision_drawing(report))
-    return [drawing for drawing in drawings if drawing is not None]
+    drawings = (profile_drawing(report), order_drawing(report))
+    found = [drawing for drawing in drawings if drawing is not None]
+    return [*found, *work_precision_drawings(report)]

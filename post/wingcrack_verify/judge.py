@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from wingcrack_verify.case import Case, Check, FigureRequest, Run
+from wingcrack_verify.economy import Saving, saving, unknowns_of
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.expressions import Array, evaluate
@@ -64,6 +65,7 @@ class CheckReport:
     orders: tuple[MethodOrder, ...]
     points: tuple[Point, ...]
     advice: tuple[Advice, ...]
+    saving: Saving | None = None
 
     @property
     def worst(self) -> Measured | None:
@@ -141,7 +143,7 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     orders = _orders(check, measured)
     reasons = [f"{item.run.name}: {item.broken}" for item in measured if item.broken]
     broken = bool(reasons) or any(order.broken for order in orders)
-    needed = [item for item in measured if item.judged or check.order is not None]
+    needed = [item for item in measured if item.judged or check.order or check.economy]
     for item in needed:
         if not item.ran and not item.broken:
             status = item.outcome.status
@@ -150,18 +152,11 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
         if item.judged and item.ran and not item.broken and not item.good:
             reasons.append(f"{item.run.name}: {item.error:.3g} exceeds {check.tolerance:.3g}")
     reasons += [order.reason for order in orders if not order.good]
+    points = _points(measured)
+    saved = None if check.economy is None else saving(check.economy, points)
+    if saved is not None and not saved.good:
+        reasons.append(saved.reason)
     good = not reasons and all(item.good for item in measured if item.judged)
-    points = tuple(
-        Point(
-            item.run.name,
-            item.run.method,
-            item.outcome.cpu_s,
-            item.error / item.signal,
-            item.run.default,
-        )
-        for item in measured
-        if item.ran and item.error is not None and item.signal
-    )
     if broken:
         verdict = ERROR
     elif check.known_gap is not None:
@@ -171,7 +166,22 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     else:
         verdict = PASSED if good else FAILED
     advice = tuple(advise(points)) if check.work_precision else ()
-    return CheckReport(check, verdict, tuple(reasons), measured, orders, points, advice)
+    return CheckReport(check, verdict, tuple(reasons), measured, orders, points, advice, saved)
+
+
+def _points(measured: tuple[Measured, ...]) -> tuple[Point, ...]:
+    return tuple(
+        Point(
+            item.run.name,
+            item.run.method,
+            item.outcome.cpu_s,
+            item.error / item.signal,
+            item.run.default,
+            unknowns_of(Path(item.outcome.folder) / "output"),
+        )
+        for item in measured
+        if item.ran and item.error is not None and item.signal
+    )
 
 
 def _measure(case: Case, check: Check, run: Run, outcomes: Mapping[str, Outcome]) -> Measured:

@@ -116,6 +116,11 @@ def _shortfall(pair: Pair, _by_range: bool) -> float:
     return max(0.0, missing) / _nonzero(abs(float(pair.reference[0])))
 
 
+def _excess(pair: Pair, _by_range: bool) -> float:
+    above = float(pair.result[0] - pair.reference[0])
+    return max(0.0, above) / _nonzero(abs(float(pair.reference[0])))
+
+
 METRICS: dict[str, Metric] = {
     "absolute": Metric(_absolute, has_unit=True),
     "relative": Metric(_relative, one_value=True),
@@ -125,6 +130,7 @@ METRICS: dict[str, Metric] = {
     "range": Metric(_absolute, has_unit=True),
     "monotonic": Metric(_wrong_way),
     "at_least": Metric(_shortfall, one_value=True),
+    "at_most": Metric(_excess, one_value=True),
     "path": Metric(_apart, has_unit=True, is_path=True),
 }
 

@@ -63,6 +63,8 @@ class Point:
         Relative to the signal.
     default : bool
         Whether the run has the program's default settings.
+    unknowns : float or None
+        Unknowns of all kinds; None where the run does not tell.
     """
 
     run: str
@@ -70,6 +72,7 @@ class Point:
     cpu_s: float
     error: float
     default: bool
+    unknowns: float | None = None
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import (
     ERROR,
     PASSED,
@@ -211,11 +212,24 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
             }
             for order in report.orders
         ],
+        "rates": _rates(report) if check.work_precision or check.economy else [],
+        "saving": "" if report.saving is None else report.saving.reason,
     }
+
+
+def _rates(report: CheckReport) -> list[dict[str, Any]]:
+    """Observed rate of each method: error proportional to unknowns to this power."""
+    found = []
+    for method in dict.fromkeys(point.method for point in report.points):
+        rate = observed_rate([point for point in report.points if point.method == method])
+        if rate is not None:
+            found.append({"method": method, "observed": rate})
+    return found
 
 
 def _measured_record(report: CheckReport, item: Measured) -> dict[str, Any]:
     relative = item.error / item.signal if item.error is not None and item.signal else None
+    point = next((point for point in report.points if point.run == item.run.name), None)
     single = item.pair if item.pair is not None and item.pair.result.size == 1 else None
     return {
         "run": item.run.name,
@@ -233,6 +247,7 @@ def _measured_record(report: CheckReport, item: Measured) -> dict[str, Any]:
         "good": item.good,
         "cpu_s": item.outcome.cpu_s,
         "wall_s": item.outcome.wall_s,
+        "unknowns": None if point is None else point.unknowns,
     }
 
 

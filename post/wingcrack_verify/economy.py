@@ -1,0 +1,136 @@
+"""Error against the number of unknowns: observed rates, and what a method saves beside another."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wingcrack_verify.errors import CaseError
+from wingcrack_verify.fields import Fields
+from wingcrack_verify.orders import Point
+
+
+@dataclass(frozen=True)
+class Economy:
+    """What is asked for.
+
+    `method` has the error with at most the share `at_most` of the unknowns that `than` needs.
+    """
+
+    method: str
+    than: str
+    error: float
+    at_most: float
+
+
+@dataclass(frozen=True)
+class Saving:
+    """What was found; `share` is None where it cannot be told."""
+
+    wanted: Economy
+    unknowns: float | None
+    unknowns_than: float | None
+    share: float | None
+    good: bool
+    reason: str
+
+
+def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
+    """Read the table ``economy`` of a check.
+
+    Raises
+    ------
+    CaseError
+        If a name is missing or unknown, or a number out of range.
+    """
+    fields = Fields(data, f"{place}: economy")
+    economy = Economy(
+        fields.text("method"),
+        fields.text("than"),
+        fields.positive("error"),
+        fields.positive("at_most"),
+    )
+    fields.done()
+    for name in (economy.method, economy.than):
+        if name not in methods:
+            raise CaseError(f"{fields.place}: no measured run has the method '{name}'")
+    if economy.method == economy.than:
+        raise CaseError(f"{fields.place}: '{economy.method}' would be compared with itself")
+    if not economy.at_most < 1.0:
+        raise CaseError(f"{fields.place}: 'at_most' must be less than 1")
+    return economy
+
+
+def unknowns_of(output: Path) -> float | None:
+    """Unknowns of all kinds of a run; None where its run.json tells none."""
+    try:
+        blocks = json.loads((output / "run.json").read_text(encoding="utf-8")).get("dofs", {})
+        total = float(sum(blocks.values()))
+    except (OSError, ValueError, AttributeError, TypeError):
+        return None
+    return total if math.isfinite(total) and total > 0.0 else None
+
+
+def observed_rate(points: Sequence[Point]) -> float | None:
+    """Slope of log error over log unknowns, by least squares; None for fewer than two points."""
+    known = [(point.unknowns, point.error) for point in points if point.unknowns and point.error]
+    if len({unknowns for unknowns, _ in known}) < 2:
+        return None
+    unknowns, error = np.log(np.array(known)).T
+    return float(np.polyfit(unknowns - unknowns.mean(), error, 1)[0])
+
+
+def unknowns_needed(points: Sequence[Point], error: float, favourably: bool) -> float | None:
+    """Unknowns with which a method has an error, interpolated between its runs (both in logs).
+
+    Errors need not fall from run to run. Favourably it is the first place where they pass the
+    target, else the last one, behind which all are below it.
+
+    Returns
+    -------
+    float or None
+        None where the target lies outside of what was measured.
+    """
+    known = sorted((point.unknowns, point.error) for point in points if point.unknowns is not None)
+    below = [measured <= error for _, measured in known]
+    if not any(below) or (not favourably and not below[-1]):
+        return None
+    if favourably:
+        place = below.index(True)
+    else:
+        place = len(below) - below[::-1].index(False) if False in below else 0
+    if place == 0:
+        return None
+    (fewer, larger), (more, smaller) = known[place - 1], known[place]
+    if smaller <= 0.0:
+        return more
+    share = math.log(larger / error) / math.log(larger / smaller)
+    return float(fewer * (more / fewer) ** share)
+
+
+def saving(wanted: Economy, points: Sequence[Point]) -> Saving:
+    """Compare two methods at an error, in favour of the one that is to be beaten.
+
+    A method `than` that never gets as far needs more than it was measured with; so its largest
+    number of unknowns stands for what it needs.
+    """
+    ours = [point for point in points if point.method == wanted.method]
+    theirs = [point for point in points if point.method == wanted.than]
+    need = unknowns_needed(ours, wanted.error, favourably=False)
+    need_than = unknowns_needed(theirs, wanted.error, favourably=True)
+    known = [point.unknowns for point in theirs if point.unknowns is not None]
+    if need_than is None and known and all(point.error > wanted.error for point in theirs):
+        need_than = max(known)
+    share = None if need is None or need_than is None else need / need_than
+    what = f"unknowns of '{wanted.method}' over those of '{wanted.than}' at {wanted.error:.3g}"
+    if share is None:
+        return Saving(wanted, need, need_than, None, False, f"{what}: outside of the runs")
+    good = share <= wanted.at_most
+    text = f"{what}: {need:.0f}/{need_than:.0f} = {share:.3g}"
+    return Saving(wanted, need, need_than, share, good, f"{text}, at most {wanted.at_most:.3g}")
