@@ -1,0 +1,178 @@
+"""What a scene does not need stays out: shown by unknowns and by the instructions executed."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from callgrind_profile import Profile, profile, why_not
+from system_scene import TOP
+
+needs_valgrind = pytest.mark.skipif(bool(why_not()), reason=why_not())
+
+# A plate of 1 m x 2 m on its lower edge, drawn or pressed at the upper one.
+PLATE = """\
+&domain x_min = 0.0, x_max = 1.0, y_min = -1.0, y_max = 1.0 /
+&material young = 1.0e9, poisson = 0.25, toughness = 1.0e6 /
+&side name = 'bottom', y_displacement = 0.0 /
+&restraint x = 0.0, y = -1.0, x_displacement = 0.0 /
+&fe size_fracture = 0.2, size_boundary = 0.5 /
+"""
+DRAWN = "&side name = 'top', y_traction = 1.0e6 /\n"
+PRESSED = "&side name = 'top', y_traction = -1.0e7 /\n"
+CRACK = "&fracture name = 'f', x = 0.35, 0.65, y = -0.15, 0.15, {law} /\n"
+NO_FILES = "&output vtu = .false. /\n"
+
+# A body of 2 m x 2 m of porous rock under 20 MPa and 10 MPa, and one step in time.
+POROUS = """\
+&domain x_min = 0.0, x_max = 2.0, y_min = 0.0, y_max = 2.0 /
+&material
+  young = 40.0e9, poisson = 0.2, biot = 0.8, porosity = 0.01, permeability = 5.0e-20
+  toughness = 0.3e6
+/
+&fluid compressibility = 4.0e-10, viscosity = 1.0e-4 /
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&side name = 'right', x_traction = -20.0e6 /
+&side name = 'top', y_traction = -10.0e6 /
+&time end = 3600.0, step = 3600.0 /
+&output vtu = .false. /
+"""
+WELL = """\
+&fracture
+  name = 'f', x = 0.9, 1.1, y = 0.9, 1.1, friction = 0.5, dilation_deg = 1.0, aperture = 1.0e-3
+/
+&injection fracture = 'f', rate = 5.0e-9 /
+"""
+COARSE = "&coarse size_fracture = 0.1, size_boundary = 0.5 /\n"
+
+SCENES = {
+    "plate": PLATE + DRAWN + NO_FILES,
+    "open crack": PLATE + DRAWN + NO_FILES + CRACK.format(law="law = 'open'"),
+    "its intensities": PLATE
+    + DRAWN
+    + NO_FILES
+    + CRACK.format(law="law = 'open'")
+    + "&growth intensities = .true. /\n",
+    "and VTU files": PLATE
+    + DRAWN
+    + CRACK.format(law="law = 'open'")
+    + "&growth intensities = .true. /\n",
+    "growing wings": PLATE
+    + PRESSED
+    + NO_FILES
+    + CRACK.format(law="friction = 0.1")
+    + "&growth enabled = .true., increment = 0.1, stop_gain = 0.05 /\n",
+    "porous body": POROUS + "&coarse size_boundary = 0.5 /\n",
+    "with a well": POROUS + COARSE + WELL,
+    "two levels": POROUS
+    + COARSE
+    + WELL
+    + "&fine window = 0.4, size_ratio = 1.0 /\n&growth enabled = .true., stop_gain = 0.01 /\n",
+}
+
+# Modules, or the beginnings of their names, that a scene has no use for. Those of growth: what
+# evaluates tips and moves them.
+FLUID = ("coarse_", "twolevel_")
+TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "tips_growth")
+CONTACT = ("contact_law",)
+WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_jumps")
+FILES = ("output_vtu",)
+ABSENT = {
+    "plate": FLUID + TIPS + CONTACT + FILES,
+    "open crack": FLUID + TIPS + CONTACT + FILES,
+    "its intensities": FLUID + CONTACT + FILES,
+    "and VTU files": FLUID + CONTACT,
+    "growing wings": FLUID + FILES,
+    "porous body": ("mechanics_", *WINDOWS, *TIPS, *CONTACT, "coarse_newton", *FILES),
+    "with a well": ("mechanics_", *WINDOWS, *TIPS, *FILES),
+    "two levels": ("mechanics_", *FILES),
+}
+# The same instrument sees them where they are wanted.
+PRESENT = {
+    "plate": ("mechanics_", "fine_"),
+    "open crack": ("mechanics_", "fine_"),
+    "its intensities": TIPS,
+    "and VTU files": FILES,
+    "growing wings": (*TIPS, *CONTACT),
+    "porous body": ("coarse_",),
+    "with a well": ("coarse_newton", *CONTACT),
+    "two levels": (*FLUID, *WINDOWS, *TIPS, *CONTACT),
+}
+
+
+@pytest.fixture(scope="module")
+def profiles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Profile]:
+    """Profiles of all scenes."""
+    top = tmp_path_factory.mktemp("profiles")
+    places = [top / name.replace(" ", "_") for name in SCENES]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return dict(zip(SCENES, pool.map(profile, SCENES.values(), places), strict=True))
+
+
+@needs_valgrind
+@pytest.mark.parametrize("scene", SCENES)
+def test_what_is_left_out_is_not_called(profiles: dict[str, Profile], scene: str) -> None:
+    assert not profiles[scene].executed(*ABSENT[scene])
+    for module in PRESENT[scene]:
+        assert profiles[scene].executed(module), module
+
+
+@needs_valgrind
+def test_what_is_left_out_saves(
+    profiles: dict[str, Profile], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each part of a scene costs; without it its rooms execute nothing, or less."""
+    rooms = ("mechanics", "coarse", "twolevel", "fine", "contact", "tips", "output")
+    with capsys.disabled():
+        print("\nthousands of instructions" + "".join(f"{room:>10}" for room in rooms))
+        for name, counts in profiles.items():
+            by_room = counts.rooms()
+            numbers = "".join(f"{by_room[room] / 1e3:>10.0f}" for room in rooms)
+            print(f"{name:<25}{numbers}")
+    chains = (
+        ("plate", "open crack", "its intensities", "and VTU files"),
+        ("porous body", "with a well", "two levels"),
+    )
+    for chain in chains:
+        totals = [sum(profiles[name].rooms()[room] for room in rooms) for name in chain]
+        assert totals == sorted(totals)
+        assert len(set(totals)) == len(totals)
+
+
+@pytest.mark.usefixtures("program")
+def test_mechanics_links_nothing_of_the_fluid() -> None:
+    """The room's own test program holds no symbol of the coarse level or of both levels in time."""
+    names = shutil.which("nm")
+    assert names is not None  # comes with the compiler
+    build = TOP / "build" / "release" / "fortran"
+    for program, holds_fluid in (
+        (build / "mechanics" / "test_mechanics_simulation", False),
+        (build / "app" / "wingcrack-solver", True),
+    ):
+        if not program.exists():
+            pytest.skip(f"{program.name} is not built; ./wingcrack test builds all")
+        symbols = subprocess.run(
+            [names, program], capture_output=True, text=True, check=True
+        ).stdout
+        assert "__mechanics_simulation_MOD_" in symbols
+        assert ("__coarse_" in symbols) == holds_fluid
+        assert ("__twolevel_" in symbols) == holds_fluid
+
+
+@pytest.mark.usefixtures("program")
+@pytest.mark.parametrize("scene", ["plate", "growing wings"])
+def test_no_unknowns_of_a_fluid(scene: str, tmp_path: Path) -> None:
+    solver = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
+    (tmp_path / "scene.nml").write_text(SCENES[scene])
+    subprocess.run(
+        [solver, "run", "scene.nml", "--out", "out", "--quiet"], cwd=tmp_path, check=True
+    )
+    record = json.loads((tmp_path / "out" / "run.json").read_text())
+    assert set(record["dofs"]) == {"displacement"}
+    assert any("pressure" in words for words in record["left_out"])
