@@ -11,10 +11,11 @@ module coarse_equations
    use coarse_condensed, only: condensed_t
    use coarse_state, only: fracture_cells_t, state_t
    use contact_law, only: contact_equations, contact_law_t
+   use contact_newton, only: contact_system_t
    implicit none(type, external)
    private
 
-   public :: equations_t, evaluate, newton_settings_t, per_cell, prepare
+   public :: equations_t, newton_settings_t, per_cell, prepare
 
    integer(ik), parameter :: per_cell = 7  !< unknowns of a cell
 
@@ -29,38 +30,61 @@ module coarse_equations
       logical :: equilibrate = .false.
    end type newton_settings_t
 
-   !> One step's equations in scaled unknowns. Matrices are kept transposed: an equation is a
-   !! column.
-   type :: equations_t
+   !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and
+   !! must outlive them. The points of contact are the starts and ends of the cells in turn.
+   type, extends(contact_system_t) :: equations_t
+      type(condensed_t), pointer :: condensed => null()
+      type(fracture_cells_t), pointer :: cells => null()
+      integer(ik), pointer :: connections(:, :) => null()  !< (2, m) cells that exchange fluid
+      real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system
+      type(state_t), pointer :: before => null()  !< at the last accepted time
+      type(newton_settings_t) :: settings
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
       real(rk) :: unit = 0.0_rk  !< fluid volumes are divided by it [m2/Pa]
+      real(rk) :: load_stress = 0.0_rk  !< traction of the faces without jumps and fluid [Pa]
       real(rk), allocatable :: force_slope(:, :)  !< (7 n, 6 n) of the condensed forces
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g
-      real(rk), allocatable :: residual(:)  !< [Pa]
-      real(rk), allocatable :: jacobian(:, :)  !< transposed
+      real(rk), allocatable :: q(:)  !< (6 n) unknowns of the condensed system
+      real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
+   contains
+      procedure :: evaluate
    end type equations_t
 
 contains
 
    !> Units, and the part of the derivatives that does not change within the step.
-   subroutine prepare(condensed, settings, dt, n_all, eq)
-      type(condensed_t), intent(in) :: condensed
+   subroutine prepare(condensed, cells, connections, settings, dt, g, before, eq)
+      type(condensed_t), intent(in), target :: condensed
+      type(fracture_cells_t), intent(in), target :: cells
+      integer(ik), intent(in), target :: connections(:, :)
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt
-      integer(ik), intent(in) :: n_all
+      real(rk), intent(in), target :: g(:)
+      type(state_t), intent(in), target :: before
       type(equations_t), intent(out) :: eq
 
       real(rk) :: reference
-      integer(ik) :: i, n
+      integer(ik) :: i, n, n_all
 
       n = condensed%n
+      n_all = per_cell*n + size(connections, 2)
       reference = sum(condensed%length)/real(n, rk)
+      eq%condensed => condensed
+      eq%cells => cells
+      eq%connections => connections
+      eq%g => g
+      eq%before => before
+      eq%settings = settings
       eq%dt = dt
       eq%stiffness = settings%young/reference
       eq%unit = reference**2/settings%young
-      allocate (eq%force_slope(per_cell*n, 6*n), source=0.0_rk)
+      eq%load_stress = stress_without_jumps(condensed, g)
+      eq%state = reshape(before%contact, [2*n])
+      allocate (eq%way(2*n), source=0_ik)
+      allocate (eq%q(6*n), eq%traction(2, 2, n))
       allocate (eq%residual(n_all), eq%jacobian(n_all, n_all))
+      allocate (eq%force_slope(per_cell*n, 6*n), source=0.0_rk)
       do i = 1, n
          eq%force_slope(7*i - 6:7*i - 1, :) = condensed%stiffness(6*i - 5:6*i, :)
          eq%force_slope([7*i - 6, 7*i - 5, 7*i - 3, 7*i - 2], :) = &
@@ -68,68 +92,78 @@ contains
       end do
    end subroutine prepare
 
-   !> Residuals [Pa] and their derivatives at x.
-   subroutine evaluate(condensed, cells, connections, settings, g, state, x, eq, q, traction, way, &
-                       contact)
+   !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
+   !! without fluid carry none, and yet rounding errors are relative to what has been released
+   !! there.
+   pure function stress_without_jumps(condensed, g) result(stress)
       type(condensed_t), intent(in) :: condensed
-      type(fracture_cells_t), intent(in) :: cells
-      integer(ik), intent(in) :: connections(:, :)
-      type(newton_settings_t), intent(in) :: settings
-      real(rk), intent(in) :: g(:), x(:)
-      type(state_t), intent(in) :: state
-      type(equations_t), intent(inout) :: eq
-      real(rk), intent(out) :: q(:), traction(:, :, :)
-      integer(ik), intent(inout) :: way(:, :)  !< direction of slip at the ends of each cell
-      integer(ik), intent(out) :: contact(:, :)
+      real(rk), intent(in) :: g(:)  !< (6 n)
+      real(rk) :: stress
+
+      integer(ik) :: i
+
+      stress = 0.0_rk
+      do i = 1, condensed%n
+         stress = max(stress, maxval(abs(g(6*i - [5, 4, 2, 1])))/(0.5_rk*condensed%length(i)))
+      end do
+   end function stress_without_jumps
+
+   !> Residuals [Pa] and their derivatives at x.
+   subroutine evaluate(self, x)
+      class(equations_t), intent(inout) :: self
+      real(rk), intent(in) :: x(:)
 
       integer(ik) :: end, i, k
 
-      do i = 1, condensed%n
-         q(6*i - 5:6*i) = x(7*i - 6:7*i - 1)
-         q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) = q([6*i - 5, 6*i - 4, 6*i - 2, 6*i &
-                                                      - 1])/eq%stiffness
-      end do
-      eq%force = matmul(condensed%stiffness, q) - g
-      eq%jacobian = 0.0_rk
-      do i = 1, condensed%n
-         do end = 1, 2
-            call contact_rows(cells%law(i), i, end, 0.5_rk*condensed%length(i), &
-                              state%jump(2, end, i), q, x, eq, traction(:, end, i), way(end, i), &
-                              contact(end, i))
+      associate (condensed => self%condensed, q => self%q)
+         do i = 1, condensed%n
+            q(6*i - 5:6*i) = x(7*i - 6:7*i - 1)
+            q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) = q([6*i - 5, 6*i - 4, 6*i - 2, 6*i - 1]) &
+                                                      /self%stiffness
          end do
-         if (settings%equilibrate) then
-            call equilibrium_rows(i, x, eq)
-         else
-            call exchange_rows(cells, settings, i, condensed%length(i), x, eq)
-            call balance_row(cells, settings, i, condensed%length(i), state, x, eq)
-         end if
-      end do
-      do k = 1, size(connections, 2)
-         call flow_row(condensed, cells, connections(:, k), per_cell*condensed%n + k, settings, x, &
-                       eq)
-      end do
+         self%force = matmul(condensed%stiffness, q) - self%g
+         self%jacobian = 0.0_rk
+         do i = 1, condensed%n
+            do end = 1, 2
+               call contact_rows(self%cells%law(i), i, end, 0.5_rk*condensed%length(i), &
+                                 self%before%jump(2, end, i), x, self)
+            end do
+            if (self%settings%equilibrate) then
+               call equilibrium_rows(i, x, self)
+            else
+               call exchange_rows(self%cells, self%settings, i, condensed%length(i), x, self)
+               call balance_row(self%cells, self%settings, i, condensed%length(i), self%before, &
+                                x, self)
+            end if
+         end do
+         do k = 1, size(self%connections, 2)
+            call flow_row(condensed, self%cells, self%connections(:, k), &
+                          per_cell*condensed%n + k, self%settings, x, self)
+         end do
+         self%stress_scale = max(maxval(abs(self%traction)), &
+                                 maxval(abs(x(7:per_cell*condensed%n:7))), self%load_stress, &
+                                 1.0_rk)
+      end associate
    end subroutine evaluate
 
    !> The two contact equations at one end of cell i.
-   pure subroutine contact_rows(law, i, end, half_length, slip_before, q, x, eq, traction, way, &
-                                contact)
+   pure subroutine contact_rows(law, i, end, half_length, slip_before, x, eq)
       type(contact_law_t), intent(in) :: law
       integer(ik), intent(in) :: i, end
-      real(rk), intent(in) :: half_length, slip_before, q(:), x(:)
-      type(equations_t), intent(inout) :: eq
-      real(rk), intent(out) :: traction(:)
-      integer(ik), intent(inout) :: way
-      integer(ik), intent(out) :: contact
+      real(rk), intent(in) :: half_length, slip_before, x(:)
+      class(equations_t), intent(inout) :: eq
 
       real(rk) :: by_traction(2, 2), by_jump(2, 2)
-      integer(ik) :: at, k, m, n, row
+      integer(ik) :: at, k, m, n, point, row
 
       n = size(eq%force_slope, 1)
       at = 6*i - 5 + 3*(end - 1)
       row = 7*i - 6 + 3*(end - 1)
-      traction = [x(7*i), 0.0_rk] - eq%force(at:at + 1)/half_length
-      call contact_equations(law, eq%stiffness, traction, q(at:at + 1), slip_before, way, &
-                             contact, eq%residual(row:row + 1), by_traction, by_jump)
+      point = 2*(i - 1) + end
+      eq%traction(:, end, i) = [x(7*i), 0.0_rk] - eq%force(at:at + 1)/half_length
+      call contact_equations(law, eq%stiffness, eq%traction(:, end, i), eq%q(at:at + 1), &
+                             slip_before, eq%way(point), eq%state(point), &
+                             eq%residual(row:row + 1), by_traction, by_jump)
       do k = 1, 2
          associate (slope => eq%jacobian(:, row + k - 1))
             do m = 1, 2
@@ -159,7 +193,7 @@ contains
       type(newton_settings_t), intent(in) :: settings
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: length, x(:)
-      type(equations_t), intent(inout) :: eq
+      class(equations_t), intent(inout) :: eq
 
       real(rk) :: aperture, conductance, slope, volume
       integer(ik) :: n, row, side
@@ -187,7 +221,7 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: length, x(:)
       type(state_t), intent(in) :: state
-      type(equations_t), intent(inout) :: eq
+      class(equations_t), intent(inout) :: eq
 
       real(rk) :: aperture, compression
       integer(ik) :: n, row
@@ -209,7 +243,7 @@ contains
    pure subroutine equilibrium_rows(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)
-      type(equations_t), intent(inout) :: eq
+      class(equations_t), intent(inout) :: eq
 
       real(rk) :: conductance
       integer(ik) :: at, row, side
@@ -234,7 +268,7 @@ contains
       integer(ik), intent(in) :: pair(2), row
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: x(:)
-      type(equations_t), intent(inout) :: eq
+      class(equations_t), intent(inout) :: eq
 
       real(rk) :: aperture, resistance, slope
       integer(ik) :: k

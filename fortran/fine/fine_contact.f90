@@ -1,10 +1,8 @@
-!> Contact and friction on node pairs: the law of contact (contact_law) at every pair, as one
-!! semismooth Newton iteration on the body condensed onto the jumps of the pairs.
+!> Contact and friction on the node pairs of a mesh: which pairs there are, what their history is,
+!! and the solution by the iteration of contact_newton on the equations of contact_pairs.
 !!
-!! With the other unknowns eliminated, what is left of the equilibrium is S w - g = -L f: w are the
-!! jumps ([u]_n, [u]_tau pair by pair), g the load, and L f the nodal contact forces on side +. The
-!! nodal lengths L are the integrals of the shape functions over the faces (1/6, 4/6, 1/6 of a cell,
-!! and 0, 2/3, 1/3 from the tip in a quarter-point element); they are positive wherever a pair
+!! The nodal lengths L are the integrals of the shape functions over the faces (1/6, 4/6, 1/6 of a
+!! cell, and 0, 2/3, 1/3 from the tip in a quarter-point element); they are positive wherever a pair
 !! exists, so the sign of a force is that of the traction f.
 !!
 !! At a joint one link follows from the others (fine_joints). Its jump is C w, and its traction f_c
@@ -12,8 +10,9 @@
 !! g)_m/L_m. Rows of S and g combined accordingly leave the form above.
 module fine_contact
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgetrf, dgetrs
-   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
+                             outcome_converged, outcome_not_a_number, outcome_singular
+   use contact_pairs, only: contact_pairs_t
    use contact_states, only: state_open
    use fine_faces, only: constraints_t, face_contact, face_conditions_t
    use fine_loads, only: face_shares
@@ -46,15 +45,9 @@ module fine_contact
       real(rk), allocatable :: jump_of(:, :)  !< C (n tau, 2 n) its jump from all jumps
    end type closing_t
 
-   !> What does not change from load to load.
-   type :: contact_problem_t
-      integer(ik) :: n = 0  !< pairs in contact
-      real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
-      real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
+   !> The pairs of a mesh.
+   type, extends(contact_pairs_t) :: contact_problem_t
       type(closing_t), allocatable :: closing(:)
-      real(rk), allocatable :: length(:)  !< L (n) [m]
-      type(contact_law_t), allocatable :: law(:)  !< (n)
-      logical, allocatable :: slip_given(:)  !< (n)
       real(rk), allocatable :: share(:, :)  !< (3, fracture cells) of each cell in L [m]
       integer(ik), allocatable :: place(:, :)  !< (3, fracture cells) contact number, or 0
    end type contact_problem_t
@@ -102,6 +95,10 @@ contains
       allocate (problem%share(3, fine%fracture%n_cells), source=0.0_rk)
       allocate (problem%place(3, fine%fracture%n_cells), source=0_ik)
       problem%slip_given = .false.
+      allocate (problem%load(2*problem%n), problem%residual(2*problem%n))
+      allocate (problem%jacobian(2*problem%n, 2*problem%n), problem%traction(2, problem%n))
+      allocate (problem%slip_before(problem%n), problem%given(problem%n))
+      allocate (problem%way(problem%n), problem%state(problem%n))
       do cell = 1, fine%fracture%n_cells
          if (conditions%condition(cell) /= face_contact) cycle
          problem%share(:, cell) = fine%face_length(cell)*face_shares(fine%face_tip(cell))
@@ -193,110 +190,49 @@ contains
 
    !> Find the jumps that fulfil equilibrium and the law. A reason is given if that fails.
    subroutine solve_contact(problem, load, given_jump, contact, jump, reason)
-      type(contact_problem_t), intent(in) :: problem
+      type(contact_problem_t), intent(inout) :: problem
       real(rk), intent(in) :: load(:)  !< g (2 n) [N/m]
       real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
       type(contact_t), intent(inout) :: contact  !< replaced only by a solution
       real(rk), intent(out) :: jump(:)  !< w (2 n) [m]
       character(len=:), allocatable, intent(out) :: reason
-      integer(ik), parameter :: iterations_max = 50
-      real(rk), parameter :: tolerance = 1.0e-10_rk  ! residual over the largest traction
-      real(rk) :: traction(2, problem%n), before(problem%n), given(problem%n)
-      real(rk) :: residual(2*problem%n, 1), matrix(2*problem%n, 2*problem%n), scale, worst
-      integer(ik) :: state(problem%n), state_before(problem%n), way(problem%n)
-      integer(ik) :: pivots(2*problem%n), i, info, iteration
-      logical :: converged
+      type(iteration_report_t) :: report
+      real(rk) :: x(2*problem%n)
 
       call gather(problem, contact%jump(2, :, :), jump(1 :: 2))
       call gather(problem, contact%jump(1, :, :), jump(2 :: 2))
-      call gather(problem, contact%slip_before, before)
-      call gather(problem, given_jump(1, :, :), given)
-      where (problem%slip_given) jump(2 :: 2) = given
-      way = 0
-      state_before = -1
-      converged = .false.
-      do iteration = 0, iterations_max
-         call evaluate(problem, load, jump, before, given, way, state, traction, residual(:, 1), &
-                       matrix)
-         ! The largest traction: that of the faces as they are, or as if their jumps were none.
-         scale = 0.0_rk
-         do i = 1, problem%n
-            scale = max(scale, maxval(abs(traction(:, i))), &
-                        maxval(abs(load(2*i - 1:2*i)))/problem%length(i), &
-                        problem%stiffness*abs(before(i)), problem%stiffness*abs(given(i)))
-         end do
-         worst = maxval(abs(residual))
-         if (.not. worst <= huge(1.0_rk)) then
-            reason = "the iteration met a value that is not a number"
-            return
-         end if
-         converged = worst <= tolerance*scale .and. all(state == state_before)
-         if (converged) exit
-         state_before = state
-         call dgetrf(2*problem%n, 2*problem%n, matrix, 2*problem%n, pivots, info)
-         if (info /= 0) then
-            reason = "a part of the body that only contact holds is free to move"
-            return
-         end if
-         call dgetrs("T", 2*problem%n, 1_ik, matrix, 2*problem%n, pivots, residual, &
-                     2*problem%n, info)
-         jump = jump - residual(:, 1)/problem%stiffness
-      end do
-      if (.not. converged) then
+      call gather(problem, contact%slip_before, problem%slip_before)
+      call gather(problem, given_jump(1, :, :), problem%given)
+      where (problem%slip_given)
+         jump(2 :: 2) = problem%given
+      elsewhere
+         problem%given = 0.0_rk
+      end where
+      problem%load = load
+      problem%way = 0
+      problem%state = -1  ! none yet
+      x = problem%stiffness*jump
+      call iterate(problem, x, iteration_settings_t(), report)
+      select case (report%outcome)
+      case (outcome_converged)
+         continue
+      case (outcome_not_a_number)
+         reason = "the iteration met a value that is not a number"
+      case (outcome_singular)
+         reason = "a part of the body that only contact holds is free to move"
+      case default
          reason = "the iteration on the fracture faces did not converge"
-         return
-      end if
+      end select
+      if (allocated(reason)) return
 
-      contact%iterations = iteration
-      worst = 0.0_rk
-      do i = 1, problem%n
-         if (problem%slip_given(i)) cycle
-         worst = max(worst, contact_residual(problem%law(i), problem%stiffness, traction(:, i), &
-                                             jump(2*i - 1:2*i), before(i)))
-      end do
-      contact%residual = worst/max(scale, tiny(1.0_rk))
+      jump = x/problem%stiffness
+      contact%iterations = report%iterations
+      contact%residual = problem%law_residual(x)
       contact%jump = 0.0_rk
       contact%traction = 0.0_rk
       contact%state = state_open
-      call scatter(problem, jump, traction, state, contact)
+      call scatter(problem, jump, problem%traction, problem%state, contact)
    end subroutine solve_contact
-
-   !> The equations of all pairs [Pa], and their derivatives by the jumps times the stiffness. An
-   !! equation is a column of the matrix.
-   subroutine evaluate(problem, load, jump, before, given, way, state, traction, residual, matrix)
-      type(contact_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: load(:), jump(:), before(:), given(:)
-      integer(ik), intent(inout) :: way(:)
-      integer(ik), intent(out) :: state(:)
-      real(rk), intent(out) :: traction(:, :), residual(:), matrix(:, :)
-      real(rk) :: force(size(load)), by_traction(2, 2), by_jump(2, 2)
-      integer(ik) :: i, k, m, row
-
-      force = matmul(jump, problem%condensed) - load
-      do i = 1, problem%n
-         row = 2*i - 1
-         traction(:, i) = -force(row:row + 1)/problem%length(i)
-         call contact_equations(problem%law(i), problem%stiffness, traction(:, i), &
-                                jump(row:row + 1), before(i), way(i), state(i), &
-                                residual(row:row + 1), by_traction, by_jump)
-         if (problem%slip_given(i)) then
-            residual(row + 1) = problem%stiffness*(jump(row + 1) - given(i))
-            by_traction(2, :) = 0.0_rk
-            by_jump(2, :) = [0.0_rk, problem%stiffness]
-         end if
-         do k = 1, 2
-            associate (slope => matrix(:, row + k - 1))
-               slope = 0.0_rk
-               do m = 1, 2
-                  if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
-                  slope = slope - by_traction(k, m)/(problem%length(i)*problem%stiffness) &
-                          *problem%condensed(:, row + m - 1)
-               end do
-               slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/problem%stiffness
-            end associate
-         end do
-      end do
-   end subroutine evaluate
 
    !> From values on the cells to values at the pairs: means weighted by the cells' lengths.
    pure subroutine gather(problem, cells, pairs)

@@ -5,7 +5,7 @@ program test_coarse_equations
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_equations, only: equations_t, evaluate, newton_settings_t, per_cell, prepare
+   use coarse_equations, only: equations_t, newton_settings_t, per_cell, prepare
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t
@@ -19,9 +19,9 @@ program test_coarse_equations
    real(rk), parameter :: dt = 10.0_rk  !< [s]
    type(checks_t) :: checks
    type(mesh_t) :: mesh
-   type(coarse_model_t) :: model
-   type(state_t) :: state
-   real(rk), allocatable :: g(:)  !< load on the condensed system
+   type(coarse_model_t), target :: model
+   type(state_t), target :: state
+   real(rk), allocatable, target :: g(:)  !< load on the condensed system
    logical :: has_occurred(state_stick:state_open) = .false.
 
    call start()
@@ -122,18 +122,12 @@ contains
       type(equations_t), intent(out) :: eq
       integer(ik), allocatable, intent(out) :: contact(:, :)
       type(newton_settings_t) :: settings
-      real(rk), allocatable :: q(:), traction(:, :, :)
-      integer(ik), allocatable :: way(:, :)
 
-      associate (n => mesh%fracture%n_cells)
-         settings = model%settings
-         settings%equilibrate = equilibrate
-         allocate (q(6*n), traction(2, 2, n), contact(2, n))
-         allocate (way(2, n), source=0_ik)
-         call prepare(model%condensed, settings, dt, size(x, kind=ik), eq)
-         call evaluate(model%condensed, model%cells, model%connections, settings, g, state, x, &
-                       eq, q, traction, way, contact)
-      end associate
+      settings = model%settings
+      settings%equilibrate = equilibrate
+      call prepare(model%condensed, model%cells, model%connections, settings, dt, g, state, eq)
+      call eq%evaluate(x)
+      contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at
 
    !> Each column of the Jacobian, relative to the largest entry of its row. Where a difference

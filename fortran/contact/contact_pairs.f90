@@ -1,0 +1,123 @@
+!> Pairs of nodes in contact on an elastic body that is condensed onto their jumps.
+!!
+!! What is left of the equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair),
+!! g the load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The law of
+!! contact at every pair closes the system.
+module contact_pairs
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_newton, only: contact_system_t
+   use contact_pivoting, only: pivot_to_solution
+   implicit none(type, external)
+   private
+
+   public :: contact_pairs_t
+
+   !> The pairs, their history and their load.
+   type, extends(contact_system_t) :: contact_pairs_t
+      integer(ik) :: n = 0  !< pairs in contact
+      real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
+      real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
+      real(rk), allocatable :: length(:)  !< L (n) [m]
+      type(contact_law_t), allocatable :: law(:)  !< (n)
+      logical, allocatable :: slip_given(:)  !< (n) [u]_tau is given; friction plays no part
+      real(rk), allocatable :: load(:)  !< g (2 n) [N/m]
+      real(rk), allocatable :: slip_before(:)  !< (n) [u]_tau when last accepted [m]
+      real(rk), allocatable :: given(:)  !< (n) [u]_tau where it is given [m]
+      real(rk), allocatable :: traction(:, :)  !< f (n tau, n) where last evaluated [Pa]
+   contains
+      procedure :: evaluate
+      procedure :: law_residual
+      procedure :: obeys_law
+      procedure :: restart
+   end type contact_pairs_t
+
+contains
+
+   !> The equations of all pairs and their derivatives; x are the jumps times the stiffness. The
+   !! stress scale is the largest traction, of the faces as they are or as if their jumps were none.
+   subroutine evaluate(self, x)
+      class(contact_pairs_t), intent(inout) :: self
+      real(rk), intent(in) :: x(:)
+      real(rk) :: force(2*self%n), jump(2*self%n), by_traction(2, 2), by_jump(2, 2)
+      integer(ik) :: i, k, m, row
+
+      jump = x/self%stiffness
+      force = matmul(jump, self%condensed) - self%load
+      self%stress_scale = 0.0_rk
+      do i = 1, self%n
+         row = 2*i - 1
+         self%traction(:, i) = -force(row:row + 1)/self%length(i)
+         call contact_equations(self%law(i), self%stiffness, self%traction(:, i), &
+                                jump(row:row + 1), self%slip_before(i), self%way(i), &
+                                self%state(i), self%residual(row:row + 1), by_traction, by_jump)
+         if (self%slip_given(i)) then
+            self%residual(row + 1) = self%stiffness*(jump(row + 1) - self%given(i))
+            by_traction(2, :) = 0.0_rk
+            by_jump(2, :) = [0.0_rk, self%stiffness]
+         end if
+         do k = 1, 2
+            associate (slope => self%jacobian(:, row + k - 1))
+               slope = 0.0_rk
+               do m = 1, 2
+                  if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
+                  slope = slope - by_traction(k, m)/(self%length(i)*self%stiffness) &
+                          *self%condensed(:, row + m - 1)
+               end do
+               slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/self%stiffness
+            end associate
+         end do
+         self%stress_scale = max(self%stress_scale, maxval(abs(self%traction(:, i))), &
+                                 maxval(abs(self%load(row:row + 1)))/self%length(i), &
+                                 self%stiffness*abs(self%slip_before(i)), &
+                                 self%stiffness*abs(self%given(i)))
+      end do
+   end subroutine evaluate
+
+   !> How far the pairs are from the law itself where last evaluated, over the stress scale.
+   pure real(rk) function law_residual(self, x) result(worst)
+      class(contact_pairs_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)
+      real(rk) :: jump(2), traction(2)
+      integer(ik) :: i
+
+      worst = 0.0_rk
+      do i = 1, self%n
+         jump = x(2*i - 1:2*i)/self%stiffness
+         traction = self%traction(:, i)
+         if (self%slip_given(i)) then  ! no friction; the shear is that which the slip needs
+            worst = max(worst, self%stiffness*abs(jump(2) - self%given(i)), &
+                        contact_residual(self%law(i), self%stiffness, [traction(1), 0.0_rk], &
+                                         jump, jump(2)))
+         else
+            worst = max(worst, contact_residual(self%law(i), self%stiffness, traction, jump, &
+                                                self%slip_before(i)))
+         end if
+      end do
+      worst = worst/max(self%stress_scale, tiny(1.0_rk))
+   end function law_residual
+
+   !> The law itself, whatever the states.
+   logical function obeys_law(self, x, tolerance)
+      class(contact_pairs_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: tolerance
+
+      obeys_law = self%law_residual(x) <= tolerance
+   end function obeys_law
+
+   !> The solution by complementary pivoting.
+   subroutine restart(self, x, has_start)
+      class(contact_pairs_t), intent(inout) :: self
+      real(rk), intent(inout) :: x(:)
+      logical, intent(out) :: has_start
+      real(rk) :: mean
+
+      mean = sum(self%length)/self%n
+      call pivot_to_solution(self%condensed/(self%stiffness*mean), self%load/mean, self%law, &
+                             self%slip_given, self%stiffness*self%slip_before, &
+                             self%stiffness*self%given, x, has_start)
+      self%way = 0
+   end subroutine restart
+
+end module contact_pairs

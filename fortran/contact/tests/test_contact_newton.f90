@@ -1,0 +1,233 @@
+!> The iteration and its way out of cycles: hundreds of bodies of random stiffness with random
+!! loads, friction, dilation and history, each solution held against the law of contact itself.
+!!
+!! The bodies are far worse than elastic ones: their stiffness is any positive definite matrix,
+!! opening and slip are coupled as strongly as that allows. Reference: the law as it is stated
+!! (model.md section 4), written out here anew.
+program test_contact_newton
+   use base_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_law_t
+   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
+                             outcome_converged, outcome_singular
+   use contact_pairs, only: contact_pairs_t
+   implicit none(type, external)
+
+   real(rk), parameter :: stiffness = 3.0e12_rk  !< c [Pa/m]
+   integer(ik), parameter :: any_body = 1, crack = 2  !< kinds of stiffness matrices
+   type(checks_t) :: checks
+
+   call fix_seed()
+   call many("no friction, any body", any_body, 400, [0.0_rk, 0.0_rk], 0.0_rk, .false.)
+   call many("no friction, crack", crack, 200, [0.0_rk, 0.0_rk], 0.0_rk, .false.)
+   call many("friction, any body", any_body, 400, [0.0_rk, 1.0_rk], 0.0_rk, .false.)
+   call many("friction and history, any body", any_body, 400, [0.0_rk, 1.0_rk], 0.0_rk, .true.)
+   call many("rough, any body", any_body, 400, [1.0_rk, 10.0_rk], 0.0_rk, .true.)
+   call many("rough, crack", crack, 200, [1.0_rk, 10.0_rk], 0.0_rk, .true.)
+   call many("dilation, any body", any_body, 400, [0.5_rk, 1.5_rk], 0.5_rk, .false.)
+   call many("dilation, crack", crack, 200, [0.2_rk, 1.0_rk], 0.2_rk, .false.)
+   call held_closed()
+   call floating_block()
+   call checks%finish()
+
+contains
+
+   !> The same numbers in every run.
+   subroutine fix_seed()
+      integer, allocatable :: seed(:)
+      integer :: i, n
+
+      call random_seed(size=n)
+      seed = [(104729 + 7919*i, i=1, n)]
+      call random_seed(put=seed)
+   end subroutine fix_seed
+
+   !> Numbers between -1 and 1.
+   function random(n) result(numbers)
+      integer(ik), intent(in) :: n
+      real(rk) :: numbers(n)
+
+      call random_number(numbers)
+      numbers = 2.0_rk*numbers - 1.0_rk
+   end function random
+
+   !> Pairs without laws or loads on a body of a random stiffness.
+   subroutine some_pairs(kind, n, pairs)
+      integer(ik), intent(in) :: kind, n
+      type(contact_pairs_t), intent(out) :: pairs
+      real(rk) :: shape(2*n, 2*n), share(n)
+      integer(ik) :: i, j
+
+      pairs%n = n
+      pairs%stiffness = stiffness
+      call random_number(share)
+      pairs%length = 0.01_rk*(0.2_rk + share)
+      if (kind == any_body) then
+         do i = 1, 2*n
+            shape(:, i) = random(2*n)
+         end do
+         pairs%condensed = matmul(transpose(shape), shape)/n
+         do i = 1, 2*n
+            pairs%condensed(i, i) = pairs%condensed(i, i) + 1.0e-2_rk
+         end do
+      else  ! the kernel of a straight crack in constant elements, opening and slip a little coupled
+         do j = 1, n
+            do i = 1, n
+               shape(2*i - 1, 2*j - 1) = 1.0_rk/(0.25_rk - real(i - j, rk)**2)
+               shape(2*i, 2*j) = shape(2*i - 1, 2*j - 1)
+               shape(2*i - 1, 2*j) = 1.5_rk*(i - j)/(1.0_rk + real(i - j, rk)**2)**2
+               shape(2*i, 2*j - 1) = -shape(2*i - 1, 2*j)
+            end do
+         end do
+         pairs%condensed = shape
+      end if
+      pairs%condensed = 0.01_rk*stiffness*pairs%condensed
+      allocate (pairs%law(n), pairs%slip_given(n), pairs%way(n), pairs%state(n))
+      allocate (pairs%load(2*n), pairs%residual(2*n), pairs%jacobian(2*n, 2*n))
+      allocate (pairs%traction(2, n), pairs%slip_before(n), pairs%given(n))
+      pairs%slip_given = .false.
+      pairs%slip_before = 0.0_rk
+      pairs%given = 0.0_rk
+      pairs%way = 0
+      pairs%state = -1
+   end subroutine some_pairs
+
+   !> Many bodies of a kind.
+   subroutine many(name, kind, n_bodies, friction, dilation, with_history)
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: kind, n_bodies
+      real(rk), intent(in) :: friction(2)  !< smallest, largest [-]
+      real(rk), intent(in) :: dilation  !< largest [-]
+      logical, intent(in) :: with_history
+      integer(ik), parameter :: n_largest = 40
+      type(contact_pairs_t) :: pairs
+      type(iteration_report_t) :: report
+      real(rk) :: x(2*n_largest), number(2), worst
+      integer(ik) :: body, i, most, n, n_failed, n_restarted, total
+
+      worst = 0.0_rk
+      most = 0
+      total = 0
+      n_failed = 0
+      n_restarted = 0
+      do body = 1, n_bodies
+         n = 1 + mod(body*7_ik, n_largest)
+         call some_pairs(kind, n, pairs)
+         do i = 1, n
+            call random_number(number)
+            pairs%law(i) = contact_law_t(friction=friction(1) + number(1)*(friction(2) &
+                                                                           - friction(1)), &
+                                         dilation=number(2)*dilation)
+         end do
+         if (with_history) pairs%slip_before = 1.0e-5_rk*random(n)
+         pairs%load = 1.0e7_rk*0.01_rk*random(2*n)
+         pairs%load(1 :: 2) = pairs%load(1 :: 2) - 0.3e7_rk*0.01_rk  ! more often pressed than not
+         x(:2*n) = 0.0_rk
+         call iterate(pairs, x(:2*n), iteration_settings_t(), report)
+         if (report%outcome /= outcome_converged) n_failed = n_failed + 1
+         if (report%was_restarted) n_restarted = n_restarted + 1
+         total = total + report%iterations
+         most = max(most, report%iterations)
+         if (report%outcome == outcome_converged) worst = max(worst, departure(pairs, x(:2*n)))
+      end do
+      print "(a,t36,i0,a,f5.1,a,i0,a,i0,a,es8.1)", name, n_bodies, " solved, iterations ", &
+         real(total, rk)/n_bodies, ", most ", most, ", started anew ", n_restarted, &
+         ", departure ", worst
+      call checks%is_true(n_failed == 0, name//": every iteration converges")
+      call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, name//": the law is fulfilled")
+   end subroutine many
+
+   !> The largest violation of the law, over the largest traction, with the jumps or without.
+   real(rk) function departure(pairs, x)
+      type(contact_pairs_t), intent(in) :: pairs
+      real(rk), intent(in) :: x(:)
+      real(rk) :: traction(2, pairs%n), jump(2, pairs%n), largest, opening, pressure, shear, slip
+      integer(ik) :: i
+
+      jump = reshape(x/pairs%stiffness, [2_ik, pairs%n])
+      traction = reshape(pairs%load - matmul(transpose(pairs%condensed), x/pairs%stiffness), &
+                         [2_ik, pairs%n])/spread(pairs%length, 1, 2)
+      largest = max(maxval(abs(traction)), maxval(abs(pairs%load(1 :: 2))/pairs%length), &
+                    maxval(abs(pairs%load(2 :: 2))/pairs%length))
+      departure = 0.0_rk
+      do i = 1, pairs%n
+         pressure = -traction(1, i)
+         shear = traction(2, i)
+         opening = pairs%stiffness*(jump(1, i) - pairs%law(i)%dilation*abs(jump(2, i)))
+         slip = pairs%stiffness*(jump(2, i) - pairs%slip_before(i))
+         associate (bound => pairs%law(i)%friction*max(pressure, 0.0_rk))
+            if (pairs%law(i)%bilateral) then
+               departure = max(departure, abs(opening))
+            else
+               departure = max(departure, -opening, -pressure)
+               if (opening > 0.0_rk) departure = max(departure, min(opening, abs(pressure)))
+            end if
+            departure = max(departure, abs(shear) - bound)
+            ! Where it slips, the shear is the bound, in the direction of the slip.
+            departure = max(departure, min(abs(slip), abs(shear - sign(bound, slip))))
+         end associate
+      end do
+      if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) departure = huge(1.0_rk)
+      departure = departure/largest
+   end function departure
+
+   !> Faces that cannot part, some of them with friction, some with a given slip.
+   subroutine held_closed()
+      integer(ik), parameter :: n = 12, n_bodies = 200
+      type(contact_pairs_t) :: pairs
+      type(iteration_report_t) :: report
+      real(rk) :: worst, x(2*n)
+      integer(ik) :: body, n_failed, n_restarted
+
+      worst = 0.0_rk
+      n_failed = 0
+      n_restarted = 0
+      do body = 1, n_bodies
+         call some_pairs(crack, n, pairs)
+         pairs%law%bilateral = .true.
+         pairs%law(1:n:3)%bilateral = .false.
+         pairs%law(1:n:2)%friction = 0.6_rk
+         pairs%slip_given(n) = .true.
+         pairs%law(n)%friction = 0.0_rk
+         pairs%given(n) = 1.0e-6_rk
+         pairs%load = 1.0e7_rk*0.01_rk*random(2*n)
+         x = 0.0_rk
+         call iterate(pairs, x, iteration_settings_t(), report)
+         if (report%outcome /= outcome_converged) n_failed = n_failed + 1
+         if (report%was_restarted) n_restarted = n_restarted + 1
+         worst = max(worst, pairs%law_residual(x))
+      end do
+      print "(a,t36,i0,a,i0)", "held closed", n_bodies, " solved, started anew ", n_restarted
+      call checks%is_true(n_failed == 0, "held closed: every iteration converges")
+      call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, "held closed: the law is fulfilled")
+   end subroutine held_closed
+
+   !> A part that only contact holds: pressed on, it is found though it starts off its support;
+   !! drawn off, it is reported.
+   subroutine floating_block()
+      type(contact_pairs_t) :: pairs
+      type(iteration_report_t) :: report
+      real(rk) :: x(4)
+
+      call some_pairs(any_body, 2_ik, pairs)
+      ! Two pairs, a stiff bar between them that is free to move across both.
+      pairs%condensed = 0.0_rk
+      pairs%condensed([1, 3], 1) = 0.01_rk*stiffness*[1.0_rk, -1.0_rk]
+      pairs%condensed([1, 3], 3) = 0.01_rk*stiffness*[-1.0_rk, 1.0_rk]
+      pairs%condensed(2, 2) = 0.01_rk*stiffness
+      pairs%condensed(4, 4) = 0.01_rk*stiffness
+      pairs%length = 0.01_rk
+      pairs%law%friction = 0.4_rk
+      pairs%load = [-1.0e5_rk, 1.0e4_rk, 0.2e5_rk, 3.0e4_rk]
+      x = [1.0e7_rk, 0.0_rk, 1.0e7_rk, 0.0_rk]
+      call iterate(pairs, x, iteration_settings_t(), report)
+      call checks%is_true(report%outcome == outcome_converged, "a pressed block is found")
+      call checks%is_true(report%was_restarted, "a pressed block: from another start")
+      call checks%is_close(departure(pairs, x), 0.0_rk, 1.0e-8_rk, "a pressed block: law")
+      pairs%load = [1.0e5_rk, 1.0e4_rk, 0.2e5_rk, 3.0e4_rk]
+      x = 0.0_rk
+      call iterate(pairs, x, iteration_settings_t(), report)
+      call checks%is_true(report%outcome == outcome_singular, "a block drawn off is reported")
+   end subroutine floating_block
+
+end program test_contact_newton
