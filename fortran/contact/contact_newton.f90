@@ -89,14 +89,17 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(out) :: report
+      integer(ik) :: first_outcome
       logical :: has_start
 
       call iterate_from(system, x, settings, report)
-      if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
+      first_outcome = report%outcome
+      if (first_outcome /= outcome_stuck .and. first_outcome /= outcome_singular) return
       call system%restart(x, has_start)
       if (.not. has_start) return
       report%was_restarted = .true.
       call iterate_from(system, x, settings, report)
+      if (report%outcome /= outcome_converged) report%outcome = first_outcome
    end subroutine iterate
 
    !> Iterate until convergence or failure.

@@ -11,9 +11,10 @@
 !! Its matrix M is copositive where mu_s >= tan(psi): z'Mz is the work of the contact forces on the
 !! body plus (mu_s - tan(psi)) P l. So Lemke's algorithm (Lemke 1965; Cottle, Pang and Stone 1992,
 !! section 4.4) ends in a solution, for any friction, if the body is held and the total slip before
-!! was none. Elsewhere - dilation after a slip, where the gap goes with the sign of the total slip,
-!! faces held closed with friction, whose bound is that of the pressed part P+, and rings closed at
-!! a joint - it is without this guarantee.
+!! was none. Elsewhere it is without this guarantee: for faces held closed with friction, whose
+!! bound is that of the pressed part P+ of P; for rings closed at a joint, where the stiffness is
+!! not symmetric; and for dilation after a slip, where l gives way to |[u]_tau| = t + 2 v with
+!! v + t >= 0 and v >= 0, the product 0, and t the total slip, positive in its direction before.
 module contact_pivoting
    use base_kinds, only: ik, rk
    use base_lapack, only: dgetrf, dgetrs
@@ -39,6 +40,7 @@ module contact_pivoting
       integer(ik) :: bound = 0  !< l
       integer(ik) :: pressed = 0  !< P+ of faces that cannot part
       integer(ik) :: given = 0  !< shear where the slip is given
+      integer(ik) :: reversed = 0  !< v: how far the slip is beyond its sign, for the gap
    end type places_t
 
 contains
@@ -53,20 +55,26 @@ contains
       real(rk), intent(in) :: slip_before(:), given(:)  !< (n) [Pa]
       real(rk), intent(inout) :: x(:)  !< (2 n) jumps [Pa]; replaced if solved
       logical, intent(out) :: is_solved
-      type(dictionary_t) :: dictionary
+      integer(ik), parameter :: covers = 4  ! tried where a path may end without a solution
+      type(dictionary_t) :: dictionary, start
       type(places_t) :: places(size(law))
       real(rk) :: flexibility(size(x), size(x)), force(size(x)), scale
-      integer(ik) :: i
+      integer(ik) :: cover, i
 
       is_solved = .false.
       call invert(stiffness, flexibility, is_solved)
       scale = max(maxval(abs(load)), maxval(abs(slip_before)), maxval(abs(given)))
       if (.not. is_solved .or. .not. scale > 0.0_rk) return
-      call place_unknowns(law, slip_given, places, dictionary)
+      call place_unknowns(law, slip_given, slip_before, places, start)
       call fill(flexibility, load/scale, law, slip_given, slip_before/scale, given/scale, x, &
-                places, dictionary)
-      call release_free(dictionary, is_solved)
-      if (is_solved) call follow_path(dictionary, is_solved)
+                places, start)
+      do cover = 1, covers
+         dictionary = start
+         call take_cover(cover, dictionary)
+         call release_free(dictionary, is_solved)
+         if (is_solved) call follow_path(dictionary, is_solved)
+         if (is_solved) exit
+      end do
       if (.not. is_solved) return
       force = load/scale
       do i = 1, size(law)
@@ -79,25 +87,18 @@ contains
       x = scale*matmul(flexibility, force)
    end subroutine pivot_to_solution
 
-   !> Jumps by forces. A part that only contact holds has none: a spring far softer than the body,
-   !! whose force the iteration takes away again, holds it meanwhile.
+   !> Jumps by forces.
    subroutine invert(stiffness, flexibility, is_regular)
       real(rk), intent(in) :: stiffness(:, :)
       real(rk), intent(out) :: flexibility(:, :)
       logical, intent(out) :: is_regular
-      real(rk), parameter :: softness = 1.0e-9_rk
-      real(rk) :: factors(size(stiffness, 1), size(stiffness, 1)), spring
+      real(rk) :: factors(size(stiffness, 1), size(stiffness, 1))
       integer(ik) :: i, info, n, pivots(size(stiffness, 1))
 
       n = size(stiffness, 1, kind=ik)
       factors = stiffness
       flexibility = 0.0_rk
-      spring = 0.0_rk
       do i = 1, n
-         spring = spring + softness*abs(stiffness(i, i))/n
-      end do
-      do i = 1, n
-         factors(i, i) = factors(i, i) + spring
          flexibility(i, i) = 1.0_rk
       end do
       call dgetrf(n, n, factors, n, pivots, info)
@@ -106,15 +107,16 @@ contains
    end subroutine invert
 
    !> Number the unknowns.
-   pure subroutine place_unknowns(law, slip_given, places, dictionary)
+   pure subroutine place_unknowns(law, slip_given, slip_before, places, dictionary)
       type(contact_law_t), intent(in) :: law(:)
       logical, intent(in) :: slip_given(:)
+      real(rk), intent(in) :: slip_before(:)
       type(places_t), intent(out) :: places(:)
       type(dictionary_t), intent(out) :: dictionary
       integer(ik) :: i, m
 
       m = 0
-      allocate (dictionary%is_free(6*size(law)), source=.false.)
+      allocate (dictionary%is_free(7*size(law)), source=.false.)
       do i = 1, size(law)
          associate (at => places(i))
             call take(m, at%normal)
@@ -128,6 +130,8 @@ contains
                call take(m, at%bound)
                if (law(i)%bilateral) call take(m, at%pressed)
             end if
+            if (.not. slip_given(i) .and. law(i)%dilation > 0.0_rk .and. &
+                (at%bound == 0 .or. abs(slip_before(i)) > 0.0_rk)) call take(m, at%reversed)
          end associate
       end do
       dictionary%is_free = dictionary%is_free(:m)
@@ -156,8 +160,8 @@ contains
       real(rk), intent(in) :: slip_before(:), given(:), x(:)
       type(places_t), intent(in) :: places(:)
       type(dictionary_t), intent(inout) :: dictionary
-      real(rk) :: motion(size(load)), slope
-      integer(ik) :: constant, i, k, m
+      real(rk) :: motion(size(load)), side, slope
+      integer(ik) :: constant, i, m
 
       m = size(dictionary%basic, kind=ik)
       constant = m + 2
@@ -173,11 +177,14 @@ contains
                   entry(at%normal, constant) = entry(at%normal, constant) - slope*abs(given(i))
                   cycle
                end if
-               if (at%bound > 0 .and. .not. abs(slip_before(i)) > 0.0_rk) then
+               if (at%reversed > 0) then
+                  side = sign(1.0_rk, merge(slip_before(i), x(2*i), abs(slip_before(i)) > 0.0_rk))
+                  call add_motion(entry, at%normal, 2*i, -slope*side)
+                  entry(at%normal, at%reversed) = -2.0_rk*slope
+                  call add_motion(entry, at%reversed, 2*i, side)
+                  entry(at%reversed, at%reversed) = 1.0_rk
+               else if (at%bound > 0) then
                   entry(at%normal, at%bound) = -slope
-               else if (slope > 0.0_rk) then
-                  slope = sign(slope, merge(slip_before(i), x(2*i), abs(slip_before(i)) > 0.0_rk))
-                  call add_motion(entry, at%normal, 2*i, -slope)
                end if
                if (at%bound == 0) cycle
                call add_motion(entry, at%forward, 2*i, 1.0_rk)
@@ -194,10 +201,6 @@ contains
                   entry(at%bound, at%normal) = law(i)%friction
                end if
             end associate
-         end do
-         ! No two shares of the cover are equal: ties on the path are then accidents of round-off.
-         do k = 1, m
-            if (.not. dictionary%is_free(k)) entry(k, m + 1) = 1.0_rk + fraction_of(k)
          end do
       end associate
 
@@ -225,15 +228,24 @@ contains
          end do
       end subroutine add_motion
 
-      !> Irregular numbers between 0 and 1 (Weyl).
-      pure real(rk) function fraction_of(k)
-         integer(ik), intent(in) :: k
-         real(rk), parameter :: golden = 0.6180339887498949_rk
-
-         fraction_of = k*golden - floor(k*golden)
-      end function fraction_of
-
    end subroutine fill
+
+   !> The shares of the cover, between 1 and 2. No two are equal (Weyl's irregular numbers), so that
+   !! ties on the path are accidents of round-off.
+   pure subroutine take_cover(number, dictionary)
+      integer(ik), intent(in) :: number
+      type(dictionary_t), intent(inout) :: dictionary
+      real(rk), parameter :: golden = 0.6180339887498949_rk
+      real(rk) :: multiple
+      integer(ik) :: k, m
+
+      m = size(dictionary%basic, kind=ik)
+      do k = 1, m
+         multiple = golden*k*number**2
+         if (.not. dictionary%is_free(k)) dictionary%entry(k, m + 1) = 1.0_rk + multiple &
+                                                                       - aint(multiple)
+      end do
+   end subroutine take_cover
 
    !> Make the free unknowns basic, once and for all.
    pure subroutine release_free(dictionary, is_done)
@@ -251,11 +263,13 @@ contains
    end subroutine release_free
 
    !> Lemke's path: enough of the cover makes everything feasible; then the complement of what has
-   !! left the basis enters, until the cover leaves.
+   !! left the basis enters, until the cover leaves or is no more than round-off.
    pure subroutine follow_path(dictionary, is_done)
       type(dictionary_t), intent(inout) :: dictionary
       logical, intent(out) :: is_done
       real(rk), parameter :: infeasible = 1.0e-13_rk  ! of the largest constant
+      real(rk), parameter :: round_off = 1.0e-13_rk  ! of the cover at the start
+      real(rk) :: none
       integer(ik) :: cover, entering, leaving, m, pivot, row
 
       m = size(dictionary%basic, kind=ik)
@@ -275,6 +289,7 @@ contains
       if (is_done) return
       leaving = dictionary%basic(row)
       call exchange(dictionary, row, m + 1)
+      none = round_off*dictionary%entry(row, m + 2)
       do pivot = 1, 50*m
          entering = merge(leaving + m, leaving - m, leaving <= m)
          entering = findloc(dictionary%outside, entering, dim=1)
@@ -283,6 +298,8 @@ contains
          leaving = dictionary%basic(row)
          call exchange(dictionary, row, entering)
          is_done = leaving == cover
+         if (is_done) return
+         is_done = dictionary%entry(findloc(dictionary%basic, cover, dim=1), m + 2) <= none
          if (is_done) return
       end do
    end subroutine follow_path

@@ -32,6 +32,7 @@ module fine_contact
       real(rk), allocatable :: traction(:, :, :)  !< (tau n, start end mid, fracture cell) [Pa]
       integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_states
       integer(ik) :: iterations = 0  !< of the last solution
+      logical :: was_restarted = .false.  !< by pivoting, as the iteration had cycled
       real(rk) :: residual = 0.0_rk  !< how far it is from the law, over the largest traction [-]
    contains
       procedure :: accept
@@ -205,11 +206,12 @@ contains
       call gather(problem, given_jump(1, :, :), problem%given)
       where (problem%slip_given)
          jump(2 :: 2) = problem%given
-      elsewhere
+      else where
          problem%given = 0.0_rk
       end where
       problem%load = load
       problem%way = 0
+      problem%spring = 0.0_rk
       problem%state = -1  ! none yet
       x = problem%stiffness*jump
       call iterate(problem, x, iteration_settings_t(), report)
@@ -227,6 +229,7 @@ contains
 
       jump = x/problem%stiffness
       contact%iterations = report%iterations
+      contact%was_restarted = report%was_restarted
       contact%residual = problem%law_residual(x)
       contact%jump = 0.0_rk
       contact%traction = 0.0_rk
