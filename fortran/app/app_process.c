@@ -15,10 +15,12 @@ static void note_interrupt(int number) {
     if (interrupt_count >= 2) signal(number, SIG_DFL);
 }
 
-// From now on the first two SIGINT or SIGTERM are noted instead of ending the program.
+// From now on the first two SIGINT or SIGTERM are noted instead of ending the program, and a file that grows
+// beyond the user's limit is an error of writing, as on a full disk.
 void app_catch_interrupts(void) {
     signal(SIGINT, note_interrupt);
     signal(SIGTERM, note_interrupt);
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 int app_interrupted(void) { return interrupt_count > 0; }

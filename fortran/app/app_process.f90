@@ -7,7 +7,8 @@ module app_process
    public :: catch_interrupts, interrupted, keep_heap, use_one_blas_thread
 
    interface
-      !> From now on the first two interrupts are noted; a third one ends the program.
+      !> From now on the first two interrupts are noted; a third one ends the program. A file that
+      !! grows beyond the user's limit is an error of writing.
       subroutine catch_interrupts() bind(C, name="app_catch_interrupts")
          implicit none(type, external)
       end subroutine catch_interrupts

@@ -91,7 +91,10 @@ contains
       if (allocated(error)) return
       scene_path = self%directory//"/scene.nml"
       call write_scene(scene_path//".part", scene, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+         call remove_file(scene_path//".part", was_there)
+         return
+      end if
       call rename_file(scene_path//".part", scene_path, error)
       if (allocated(error)) return
 
@@ -221,15 +224,17 @@ contains
       self%flush_cost = self%last_flush - begun
    end subroutine flush_run
 
-   !> End the run, well or not: write everything, and run.json last.
+   !> End the run, well or not: write everything, and run.json last, even if other files failed.
    subroutine close_run(self, record, timers, error)
       class(run_output_t), intent(inout) :: self
       type(run_record_t), intent(in) :: record
       type(timers_t), intent(in) :: timers
       type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: trouble
 
       call self%flush(error)
-      if (.not. allocated(error)) call record%write(self%directory//"/run.json", timers, error)
+      call record%write(self%directory//"/run.json", timers, trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
    end subroutine close_run
 
    !> Wall time since `open` [s].

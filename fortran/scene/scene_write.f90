@@ -10,6 +10,7 @@ module scene_write
    use scene_types, only: scene_t
    use scene_values, only: value_t
    use scene_words, only: real_text
+   use, intrinsic :: iso_fortran_env, only: int64
    implicit none(type, external)
    private
 
@@ -25,8 +26,10 @@ contains
       character(len=256) :: reason
       type(sheet_t) :: sheet
       integer :: unit, status, i, item
+      integer(int64) :: n_bytes, n_bytes_there
 
       call scene_to_sheet(scene, sheet)
+      n_bytes = 0_int64
       reason = ""
       open (newunit=unit, file=path, action="write", status="replace", iostat=status, iomsg=reason)
       if (status /= 0) then
@@ -51,6 +54,11 @@ contains
       end do
       if (status == 0) then
          close (unit, iostat=status, iomsg=reason)
+         inquire (file=path, size=n_bytes_there)
+         if (status == 0 .and. n_bytes_there /= n_bytes) then
+            status = 1  ! gfortran closes without a word what a full disk cut
+            reason = "not all bytes were taken, the disk may be full"
+         end if
       else
          close (unit, status="delete")
       end if
@@ -67,6 +75,7 @@ contains
          if (status /= 0) return
          write (unit, "(a)", iostat=status_now, iomsg=reason) line
          if (status_now /= 0) status = status_now
+         n_bytes = n_bytes + len(line, kind=int64) + 1_int64  ! and the line's end
       end subroutine put
 
       !> `name = value`, with the unit as a comment.
