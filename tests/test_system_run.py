@@ -51,6 +51,11 @@ TIPS = [
     "k1_error_pa_sqrtm",
     "k2_error_pa_sqrtm",
     "g_ahead_j_m2",
+    "g_ahead_error_j_m2",
+    "k1_dc_error_pa_sqrtm",
+    "k2_dc_error_pa_sqrtm",
+    "k1_corrected_pa_sqrtm",
+    "k2_corrected_pa_sqrtm",
 ]
 FRACTURES = [
     "time_s",

@@ -141,7 +141,12 @@ contains
                                            keq=drive%intensity, g=drive%energy, angle=angle, &
                                            advance=advance, k1_error=intensity%k1_error, &
                                            k2_error=intensity%k2_error, &
-                                           g_domain=intensity%g_domain))
+                                           g_domain=intensity%g_domain, &
+                                           g_error=intensity%g_error, &
+                                           k1_dc_error=intensity%k1_dc_error, &
+                                           k2_dc_error=intensity%k2_dc_error, &
+                                           k1_corrected=intensity%k1_corrected, &
+                                           k2_corrected=intensity%k2_corrected))
       end subroutine add_row
 
    end subroutine tips_done

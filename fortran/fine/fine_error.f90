@@ -13,7 +13,7 @@ module fine_error
    implicit none(type, external)
    private
 
-   public :: energy_error_t, estimate_error, wanted_sizes
+   public :: energy_error_t, error_product, estimate_error, wanted_sizes
 
    !> 2 m of wanted_sizes: sizes that grow by 0.3 per distance, as the mesh library makes them, put
    !! 2 pi/(0.3**2 sqrt(3)/4) = 161 elements around a tip for every factor e in distance.
@@ -39,7 +39,8 @@ contains
 
       allocate (estimate%element(model%mesh%n_cells))
       do cell = 1, model%mesh%n_cells
-         estimate%element(cell) = sqrt(squared_error(model, displacement, recovery, cell))
+         estimate%element(cell) = sqrt(product_in(model, displacement, recovery, &
+                                                  displacement, recovery, cell))
       end do
       estimate%total = norm2(estimate%element)
       estimate%solution = sqrt(max(0.0_rk, 2.0_rk*model%strain_energy(displacement)))
@@ -48,16 +49,29 @@ contains
       end if
    end subroutine estimate_error
 
-   !> Squared energy norm of the difference in one element [J/m].
-   pure real(rk) function squared_error(model, displacement, recovery, cell)
+   !> Energy of the error of one solution in the strain of that of another on the same body [J/m].
+   real(rk) function error_product(model, displacement, recovery, other, other_recovery) &
+      result(product)
       type(fine_model_t), intent(in) :: model
-      real(rk), intent(in) :: displacement(:, :)
-      type(recovery_t), intent(in) :: recovery
+      real(rk), intent(in) :: displacement(:, :), other(:, :)  !< (2, n_nodes) [m]
+      type(recovery_t), intent(in) :: recovery, other_recovery
+      integer(ik) :: cell
+
+      product = 0.0_rk
+      do cell = 1, model%mesh%n_cells
+         product = product + product_in(model, displacement, recovery, other, other_recovery, cell)
+      end do
+   end function error_product
+
+   !> Energy product of the differences between recovered and computed stress in one element [J/m].
+   pure real(rk) function product_in(model, displacement, recovery, other, other_recovery, cell)
+      type(fine_model_t), intent(in) :: model
+      real(rk), intent(in) :: displacement(:, :), other(:, :)
+      type(recovery_t), intent(in) :: recovery, other_recovery
       integer(ik), intent(in) :: cell
       integer(ik), parameter :: n_t = 4, n_w = 5
       real(rk) :: points(3, n_t*n_w), weights(n_t*n_w)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
-      real(rk) :: stress(2, 2), difference(3)
       integer(ik) :: corner, n_points, point
 
       corner = 0
@@ -72,31 +86,42 @@ contains
          n_points = 7
          call triangle_rule_7(points(:, 1:7), weights(1:7))
       end if
-      squared_error = 0.0_rk
-      associate (nodes => model%mesh%cell_nodes(:, cell))
-         do point = 1, n_points
-            call model%mesh%evaluate(cell, points(:, point), values, gradients, &
-                                     area_coordinates, determinant)
-            stress = model%elasticity%total_stress(matmul(displacement(:, nodes), &
-                                                          transpose(gradients)), 0.0_rk)
-            difference = recovered_stress(model%mesh, recovery, cell, area_coordinates) &
-                         - [stress(1, 1), stress(2, 2), stress(1, 2)]
-            squared_error = squared_error + weights(point)*determinant &
-                            *strain_product(model%elasticity, difference)
-         end do
-      end associate
-   end function squared_error
+      product_in = 0.0_rk
+      do point = 1, n_points
+         call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
+                                  determinant)
+         product_in = product_in + weights(point)*determinant &
+                      *strain_product(model%elasticity, difference(displacement, recovery), &
+                                      difference(other, other_recovery))
+      end do
 
-   !> s C^-1 s of a stress xx, yy, xy [J/m3].
-   pure real(rk) function strain_product(elasticity, stress)
+   contains
+
+      !> Recovered less computed stress, xx yy xy [Pa].
+      pure function difference(field, recovered)
+         real(rk), intent(in) :: field(:, :)
+         type(recovery_t), intent(in) :: recovered
+         real(rk) :: difference(3)
+         real(rk) :: stress(2, 2)
+
+         stress = model%elasticity%total_stress(matmul(field(:, model%mesh%cell_nodes(:, cell)), &
+                                                       transpose(gradients)), 0.0_rk)
+         difference = recovered_stress(model%mesh, recovered, cell, area_coordinates) &
+                      - [stress(1, 1), stress(2, 2), stress(1, 2)]
+      end function difference
+
+   end function product_in
+
+   !> s C^-1 t of two stresses xx, yy, xy [J/m3].
+   pure real(rk) function strain_product(elasticity, stress, other)
       type(elasticity_t), intent(in) :: elasticity
-      real(rk), intent(in) :: stress(3)  !< [Pa]
+      real(rk), intent(in) :: stress(3), other(3)  !< [Pa]
       real(rk) :: share
 
       associate (lambda => elasticity%lame_lambda(), mu => elasticity%shear_modulus())
          share = lambda/(2.0_rk*(lambda + mu))
-         strain_product = (stress(1)**2 + stress(2)**2 + 2.0_rk*stress(3)**2 &
-                           - share*(stress(1) + stress(2))**2)/(2.0_rk*mu)
+         strain_product = (stress(1)*other(1) + stress(2)*other(2) + 2.0_rk*stress(3)*other(3) &
+                           - share*(stress(1) + stress(2))*(other(1) + other(2)))/(2.0_rk*mu)
       end associate
    end function strain_product
 

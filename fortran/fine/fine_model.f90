@@ -34,6 +34,7 @@ module fine_model
       procedure :: set_mesh
       procedure :: prepare
       procedure :: solve
+      procedure :: influence
       procedure :: external_forces
       procedure :: reactions
       procedure :: strain_energy
@@ -223,6 +224,30 @@ contains
          call raise_error(error, "fine_model_t%solve", "a displacement is not a finite number")
       end if
    end subroutine solve
+
+   !> Displacements that nodal forces alone cause, where no face touches another: all displacements
+   !! and jumps that are given are 0.
+   subroutine influence(self, force, displacement, error)
+      class(fine_model_t), intent(inout) :: self
+      real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
+      real(rk), allocatable, intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(error_t), allocatable, intent(out) :: error
+      type(contact_t) :: none
+      real(rk) :: no_jump(2, 3, self%mesh%fracture%n_cells)
+
+      if (.not. self%ready) then
+         call raise_error(error, "fine_model_t%influence", "prepare has to come first")
+         return
+      else if (self%contact_problem%n > 0) then
+         call raise_error(error, "fine_model_t%influence", "faces in contact answer nonlinearly")
+         return
+      end if
+      allocate (displacement(2, self%mesh%n_nodes), source=0.0_rk)
+      no_jump = 0.0_rk
+      if (self%constraints%n_dofs > 0) then
+         call solve_free_part(self, force, no_jump, displacement, none, error)
+      end if
+   end subroutine influence
 
    !> Add what the forces do to the given part of the displacements.
    subroutine solve_free_part(self, force, given_jump, displacement, contact, error)

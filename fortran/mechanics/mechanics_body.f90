@@ -17,6 +17,7 @@ module mechanics_body
    use mesh_builder, only: build_mesh, build_mesh_sized, mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
+   use tips_dual, only: correct_intensity, has_dual
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
    implicit none(type, external)
@@ -41,6 +42,7 @@ module mechanics_body
       procedure :: refine
       procedure :: estimate_body
       procedure :: respond
+      procedure :: correct_intensities
    end type body_t
 
 contains
@@ -226,5 +228,24 @@ contains
       end do
       call timers%stop(phase_tips)
    end subroutine respond
+
+   !> Errors of the intensities from that of the whole solution, where no faces touch.
+   subroutine correct_intensities(self, timers, error)
+      class(body_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(recovery_t) :: recovery
+      integer(ik) :: tip
+
+      if (self%mesh%fracture%n_tips == 0 .or. .not. has_dual(self%model)) return
+      call timers%start(phase_tips)
+      call recover_by_patches(self%model, self%displacement, recovery)
+      do tip = 1, self%mesh%fracture%n_tips
+         call correct_intensity(self%model, self%displacement, recovery, tip, &
+                                self%intensity(tip), error)
+         if (allocated(error)) exit
+      end do
+      call timers%stop(phase_tips)
+   end subroutine correct_intensities
 
 end module mechanics_body

@@ -94,12 +94,18 @@ contains
       real(rk), intent(in) :: factor  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: i, k
 
       call self%body%respond(self%scene, factor, timers, error)
       if (allocated(error)) return
       self%factor = factor
-      if (.not. self%scene%growth%intensities) return
+      if (self%scene%growth%intensities) call take_intensities(self)
+   end subroutine respond
+
+   !> The tips learn what the body's mesh has at theirs.
+   subroutine take_intensities(self)
+      type(simulation_t), intent(inout) :: self
+      integer(ik) :: i, k
+
       associate (fracture => self%body%mesh%fracture)
          do i = 1, size(self%tip)
             associate (tip => self%tip(i))
@@ -116,7 +122,7 @@ contains
             end associate
          end do
       end associate
-   end subroutine respond
+   end subroutine take_intensities
 
    !> Raise the load up to a factor, or to the onset of growth if that comes first.
    !!
@@ -145,6 +151,9 @@ contains
       call accept(self)
       if (.not. self%scene%growth%enabled) then
          call self%respond(target, timers, error)
+         if (allocated(error) .or. .not. self%scene%growth%intensities) return
+         call self%body%correct_intensities(timers, error)
+         if (.not. allocated(error)) call take_intensities(self)
          return
       end if
       excess_low = largest_excess(self)

@@ -84,6 +84,9 @@ module output_fields
       real(rk) :: advance = 0.0_rk  !< length grown [m]
       real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
       real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
+      real(rk) :: g_error = 0.0_rk  !< its estimated error [J/m2]
+      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< those of k1_dc, k2_dc [Pa m^1/2]
+      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< with what they lack [Pa m^1/2]
    end type tip_row_t
 
 contains

@@ -64,7 +64,9 @@ contains
          call self%tips%open(directory//"/tips.csv", [character(len=column_length) :: "time_s", &
             & "tip", "fracture", "x_m", "y_m", "k1_pa_sqrtm", "k2_pa_sqrtm", "k1_dc_pa_sqrtm", &
             & "k2_dc_pa_sqrtm", "keq_pa_sqrtm", "g_j_m2", "angle_deg", "advance_m", &
-            & "k1_error_pa_sqrtm", "k2_error_pa_sqrtm", "g_ahead_j_m2"])
+            & "k1_error_pa_sqrtm", "k2_error_pa_sqrtm", "g_ahead_j_m2", &
+            & "g_ahead_error_j_m2", "k1_dc_error_pa_sqrtm", "k2_dc_error_pa_sqrtm", &
+            & "k1_corrected_pa_sqrtm", "k2_corrected_pa_sqrtm"])
       end if
       if (allocated(scene%probes)) then
          if (size(scene%probes) > 0) call open_probes(self%probes, directory, scene, has_fluid)
@@ -128,6 +130,11 @@ contains
          call table%put(row%k1_error)
          call table%put(row%k2_error)
          call table%put(row%g_domain)
+         call table%put(row%g_error)
+         call table%put(row%k1_dc_error)
+         call table%put(row%k2_dc_error)
+         call table%put(row%k1_corrected)
+         call table%put(row%k2_corrected)
          call table%end_row()
       end associate
    end subroutine tip_row

@@ -9,8 +9,8 @@ module tips_domain
    implicit none(type, external)
    private
 
-   public :: domain_weight, element_rule, largest_radius, on_line, rosette_size, rule_size
-   public :: tip_stress
+   public :: domain_weight, element_rule, largest_radius, on_line, reference_angle, rosette_size
+   public :: rule_size, tip_stress
 
    integer(ik), parameter :: rule_t = 4, rule_w = 5, rule_size = rule_t*rule_w  !< points at most
    real(rk), parameter :: on_line = 1.0e-9_rk  !< distance from the line over that from the tip
@@ -131,5 +131,30 @@ contains
          end do
       end do
    end function rosette_size
+
+   !> A polar angle near to those of an element, continued across the line behind the crack where
+   !! the crack itself has turned away from it. A node within the domain and off the line has a
+   !! sure angle; an element all of whose nodes within the domain are on the line lies on one side
+   !! of it.
+   pure real(rk) function reference_angle(fine, frame, cell, q)
+      type(fine_mesh_t), intent(in) :: fine
+      type(tip_frame_t), intent(in) :: frame
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: q(:)
+      real(rk) :: place(2)
+      integer(ik) :: k
+
+      do k = 1, 6
+         if (.not. q(fine%cell_nodes(k, cell)) > 0.0_rk) cycle
+         place = matmul(frame%axes, fine%xy(:, fine%cell_nodes(k, cell)) - frame%origin)
+         if (abs(place(2)) > on_line*norm2(place)) then
+            reference_angle = atan2(place(2), place(1))
+            return
+         end if
+      end do
+      place = sum(fine%xy(:, fine%cell_nodes(1:3, cell)), dim=2)/3.0_rk
+      place = matmul(frame%axes, place - frame%origin)
+      reference_angle = atan2(place(2), place(1))
+   end function reference_angle
 
 end module tips_domain

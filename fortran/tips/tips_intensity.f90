@@ -13,7 +13,7 @@ module tips_intensity
    implicit none(type, external)
    private
 
-   public :: tip_intensity
+   public :: complete_errors, plateau, tip_intensity
 
    ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
    ! of the room where the rosette is small. A domain that shrank with the rosette would look the
@@ -62,14 +62,31 @@ contains
          mismatch = abs(hypot(result%k1, result%k2) - of_energy)
          result%k1_error = abs(result%k1 - result%k1_inner) + mismatch
          result%k2_error = abs(result%k2 - result%k2_inner) + mismatch
+         result%k1_corrected = result%k1
+         result%k2_corrected = result%k2
          size_of_all = sum(abs([result%k1, result%k2, result%k1_inner, result%k2_inner, &
                                 result%k1_dc, result%k2_dc, result%g_domain]))
       end associate
       call respect_contact(model, displacement, frame, intensity)
+      call complete_errors(model%elasticity%crack_modulus(), intensity)
       if (.not. size_of_all <= huge(1.0_rk)) then
          call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if
    end subroutine tip_intensity
+
+   !> Errors of the other two methods, by their distance from the first and its error.
+   elemental subroutine complete_errors(crack_modulus, intensity)
+      real(rk), intent(in) :: crack_modulus  !< E' [Pa]
+      type(intensity_t), intent(inout) :: intensity
+
+      associate (k1 => intensity%k1_corrected, k2 => intensity%k2_corrected)
+         intensity%k1_dc_error = abs(intensity%k1_dc - k1) + intensity%k1_error
+         intensity%k2_dc_error = abs(intensity%k2_dc - k2) + intensity%k2_error
+         intensity%g_error = abs(intensity%g_domain - (k1**2 + k2**2)/crack_modulus) &
+                             + 2.0_rk*(abs(k1)*intensity%k1_error + abs(k2)*intensity%k2_error) &
+                             /crack_modulus
+      end associate
+   end subroutine complete_errors
 
    !> Where the law of contact closes the faces next to the tip, their jump says more than any
    !! integral: [u]_n = tan(psi) |[u]_tau| leaves K_I = tan(psi) |K_II|, and no jump leaves neither.
@@ -98,8 +115,11 @@ contains
             intensity%k2 = 0.0_rk
             intensity%k1_inner = 0.0_rk
             intensity%k2_inner = 0.0_rk
+            intensity%k1_corrected = 0.0_rk
+            intensity%k2_corrected = 0.0_rk
          else if (maxval(abs(opening - law%dilation*slip)) <= round_off*largest) then
             intensity%k1 = law%dilation*abs(intensity%k2)
+            intensity%k1_corrected = intensity%k1
             intensity%k1_inner = law%dilation*abs(intensity%k2_inner)
          else
             return

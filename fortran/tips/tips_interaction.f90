@@ -21,7 +21,7 @@ module tips_interaction
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t
-   use tips_domain, only: domain_weight, element_rule, on_line, rule_size, tip_stress
+   use tips_domain, only: domain_weight, element_rule, reference_angle, rule_size, tip_stress
    use tips_faces, only: face_traction, traction_source
    use tips_types, only: tip_frame_t
    implicit none(type, external)
@@ -134,31 +134,6 @@ contains
          end do
       end do
    end subroutine add_cell
-
-   !> A polar angle near to those of an element, continued across the line behind the crack where
-   !! the crack itself has turned away from it. A node within the domain and off the line has a
-   !! sure angle; an element all of whose nodes within the domain are on the line lies on one side
-   !! of it.
-   pure real(rk) function reference_angle(fine, frame, cell, q)
-      type(fine_mesh_t), intent(in) :: fine
-      type(tip_frame_t), intent(in) :: frame
-      integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)
-      real(rk) :: place(2)
-      integer(ik) :: k
-
-      do k = 1, 6
-         if (.not. q(fine%cell_nodes(k, cell)) > 0.0_rk) cycle
-         place = matmul(frame%axes, fine%xy(:, fine%cell_nodes(k, cell)) - frame%origin)
-         if (abs(place(2)) > on_line*norm2(place)) then
-            reference_angle = atan2(place(2), place(1))
-            return
-         end if
-      end do
-      place = sum(fine%xy(:, fine%cell_nodes(1:3, cell)), dim=2)/3.0_rk
-      place = matmul(frame%axes, place - frame%origin)
-      reference_angle = atan2(place(2), place(1))
-   end function reference_angle
 
    !> One fracture cell's share: its traction on the difference of hat u,1 between the faces.
    pure subroutine add_face(model, loads, displacement, frame, reference_stress, cell, q, integral)

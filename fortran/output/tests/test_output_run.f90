@@ -69,7 +69,7 @@ contains
             & 1.25_rk, 2_ik, 1_ik, 1.0e6_rk))
          call output%tip_row(tip_row_t(2.0_rk*i, 1_ik, 1_ik, [1.0_rk, 0.5_rk], 1.0e6_rk, 2.0e5_rk, &
             & 1.1e6_rk, 2.1e5_rk, 1.05e6_rk, 30.0_rk, acos(-1.0_rk)/4.0_rk, 0.0_rk, 1.0e3_rk, &
-            & 2.0e3_rk, 28.0_rk))
+            & 2.0e3_rk, 28.0_rk, 1.5_rk, 3.0e3_rk, 4.0e3_rk, 1.0005e6_rk, 2.005e5_rk))
          call output%probe_row(2.0_rk*i, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
             & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]), [6.8e6_rk])
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
@@ -102,9 +102,11 @@ contains
          & "1,1,1,1.25,2,1,1000000.0"//nl//"2.0,")
       call starts(folder//"/tips.csv", "time_s,tip,fracture,x_m,y_m,k1_pa_sqrtm,k2_pa_sqrtm,"// &
          & "k1_dc_pa_sqrtm,k2_dc_pa_sqrtm,keq_pa_sqrtm,g_j_m2,angle_deg,advance_m,"// &
-         & "k1_error_pa_sqrtm,k2_error_pa_sqrtm,g_ahead_j_m2"//nl// &
+         & "k1_error_pa_sqrtm,k2_error_pa_sqrtm,g_ahead_j_m2,"// &
+         & "g_ahead_error_j_m2,k1_dc_error_pa_sqrtm,k2_dc_error_pa_sqrtm,"// &
+         & "k1_corrected_pa_sqrtm,k2_corrected_pa_sqrtm"//nl// &
          & "0.0,1,1,1.0,0.5,1000000.0,200000.0,1100000.0,210000.0,1050000.0,30.0,45.0,0.0,"// &
-         & "1000.0,2000.0,28.0"//nl)
+         & "1000.0,2000.0,28.0,1.5,3000.0,4000.0,1000500.0,200500.0"//nl)
       call starts(folder//"/fractures.csv", "time_s,fracture,s_m,x_m,y_m,aperture_m,jump_n_m,"// &
          & "jump_t_m,traction_n_pa,traction_t_pa,pressure_pa,state"//nl// &
          & "0.0,1,0.25,0.25,0.5,0.001,0.0,0.0,-10000000.0,1000000.0,6000000.0,stick"//nl// &

@@ -16,8 +16,10 @@ program test_tips_plate
    use fine_recovery, only: recover_by_patches, recovery_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use tips_intensity, only: tip_intensity
-   use tips_types, only: intensity_t
+   use tips_dual, only: correct_intensity, has_dual
+   use tips_extraction, only: extraction_forces
+   use tips_intensity, only: plateau, tip_intensity
+   use tips_types, only: frame_of_tip, intensity_t
    implicit none(type, external)
    integer(ik), parameter :: tension = 1, shear = 2, clamped = 3
    real(rk), parameter :: pi = acos(-1.0_rk)
@@ -81,6 +83,17 @@ contains
          call checks%is_close(abs(intensity%k2)/scale, k2/scale, tolerance, name//": K_II")
          call checks%is_close(intensity%g_domain/scale**2, 1.0_rk, 2.0_rk*tolerance, name//": G")
          call checks%is_close(energy/expected_energy, 1.0_rk, tolerance, name//": energy")
+         print "(a,t22,2(a,3f9.4))", name, "in %: K_I lacks, as estimated, error of it", &
+            100.0_rk*[k1 - intensity%k1, intensity%k1_corrected - intensity%k1, &
+                      intensity%k1_error]/scale, "; K_II", &
+            100.0_rk*[sign(k2, intensity%k2) - intensity%k2, &
+                      intensity%k2_corrected - intensity%k2, intensity%k2_error]/scale
+         call checks%is_true(hypot(intensity%k1_corrected - k1, abs(intensity%k2_corrected) - k2) &
+                             <= 0.5_rk*hypot(intensity%k1 - k1, abs(intensity%k2) - k2), &
+                             name//": the correction takes half of the error at least")
+         call checks%is_true(abs(intensity%k1 - k1) <= intensity%k1_error .and. &
+                             abs(abs(intensity%k2) - k2) <= intensity%k2_error, &
+                             name//": true errors are within the estimated ones")
          ! Stresses are given, so the energy of the solution falls short by that of its error.
          call checks%is_true(estimated**2 > 0.5_rk*(1.0_rk - energy/expected_energy) .and. &
                              estimated**2 < 2.0_rk*(1.0_rk - energy/expected_energy), &
@@ -106,8 +119,9 @@ contains
       type(fine_loads_t) :: loads
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate
+      type(intensity_t) :: corrected
       type(error_t), allocatable :: error
-      real(rk), allocatable :: displacement(:, :)
+      real(rk), allocatable :: displacement(:, :), force(:, :, :)
       real(rk) :: scale
 
       network = network_t(first=[1_ik, 3_ik], s_start=[0.0_rk], &
@@ -168,6 +182,20 @@ contains
       call recover_by_patches(model, displacement, recovery)
       call estimate_error(model, displacement, recovery, estimate)
       estimated = estimate%relative
+      ! Without loads on the faces the intensities are the work of the extraction's forces.
+     force = extraction_forces(model, frame_of_tip(model%mesh, 1_ik), dimensionless%radius, plateau)
+      call checks%is_close(sum(force(:, :, 1)*displacement)/scale, dimensionless%k1, 1.0e-9_rk, &
+                           "K_I is linear in the displacement")
+      call checks%is_close(sum(force(:, :, 2)*displacement)/scale, dimensionless%k2, 1.0e-9_rk, &
+                           "K_II is linear in the displacement")
+      call checks%is_true(has_dual(model), "faces that are loaded have a dual")
+      call tip_intensity(model, loads, displacement, 1_ik, corrected, error)
+      call correct_intensity(model, displacement, recovery, 1_ik, corrected, error)
+      call checks%no_error(error, "intensities are corrected")
+      dimensionless%k1_corrected = corrected%k1_corrected/scale
+      dimensionless%k2_corrected = corrected%k2_corrected/scale
+      dimensionless%k1_error = corrected%k1_error/scale
+      dimensionless%k2_error = corrected%k2_error/scale
    end subroutine solve
 
 end program test_tips_plate
