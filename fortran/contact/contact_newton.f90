@@ -41,6 +41,9 @@ module contact_newton
       real(rk) :: tolerance = 1.0e-10_rk  !< of residuals, relative to the stress scale [-]
       integer(ik) :: iterations_max = 30  !< before another start is tried, and after it
       logical :: with_condition = .false.  !< estimate the condition of the matrices
+      !> Residuals as large as the rounding of their terms are small too. Only where no part can
+      !! move freely: one that flies off has terms of any size.
+      logical :: allows_rounding = .false.
    end type iteration_settings_t
 
    type :: iteration_report_t
@@ -125,7 +128,9 @@ contains
          report%outcome = outcome_stuck
          is_small = worst <= settings%tolerance*system%stress_scale
          if (all(system%state == before)) then
-            if (.not. is_small) is_small = is_rounding(system, x, settings%tolerance)
+            if (.not. is_small .and. settings%allows_rounding) then
+               is_small = is_rounding(system, x, settings%tolerance)
+            end if
          else if (is_small) then
             is_small = system%obeys_law(x, settings%tolerance)
          end if
