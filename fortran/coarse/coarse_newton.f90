@@ -44,7 +44,8 @@ contains
       end do
       call iterate(eq, x, iteration_settings_t(tolerance=settings%tolerance, &
                                                iterations_max=settings%iterations_max, &
-                                              with_condition=.true., allows_rounding=.true.), found)
+                                               with_condition=.true., &
+                                               allows_rounding=.true.), found)
       q = eq%q
       report%stress_scale = eq%stress_scale
       report%iterations = found%iterations
