@@ -12,7 +12,7 @@
 !! body plus (mu_s - tan(psi)) P l. So Lemke's algorithm (Lemke 1965; Cottle, Pang and Stone 1992,
 !! section 4.4) ends in a solution, for any friction, if the body is held and the total slip before
 !! was none. Elsewhere it is without this guarantee: for faces held closed with friction, whose
-!! bound is that of the pressed part P+ of P; for rings closed at a joint, where the stiffness is
+!! bound is taken from the pressed part P+ of P (under tension a start, no solution); for rings closed at a joint, where the stiffness is
 !! not symmetric; and for dilation after a slip, where l gives way to |[u]_tau| = t + 2 v with
 !! v + t >= 0 and v >= 0, the product 0, and t the total slip, positive in its direction before.
 module contact_pivoting

@@ -222,9 +222,9 @@ module scene_parameters
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
-                  meaning="The faces slide but never part, even under tension, where they "// &
-                  "carry no friction: an assumption of reference solutions. Faces that grow "// &
-                  "may part"), &
+                  meaning="The faces slide but never part, and friction goes on with the "// &
+                  "normal traction where that is tension: a model of reference solutions. "// &
+                  "Faces that grow may part"), &
       parameter_t("fracture", "face_pressure", unit="Pa", default="0.0", scenes=in_mechanics, &
                   meaning="Pressure that pushes the faces apart, those of its wings too, times "// &
                   "the load factor; contact carries the rest"), &

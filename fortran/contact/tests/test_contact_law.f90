@@ -53,10 +53,11 @@ contains
       call compare_slopes(smooth_dilating, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, -2.0_rk]*um, 0.0_rk, &
                           state_slip)
       call compare_slopes(smooth, [-1.0_rk, 0.1_rk]*mpa, [2.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
-      ! Faces that cannot part: as before under pressure, free to slip under tension.
+      ! Faces that cannot part: as before under pressure; friction goes on under tension.
       call compare_slopes(tied, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
       call compare_slopes(tied, [-5.0_rk, 2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 2.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 3.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 1.0_rk]*um, 2.0_rk*um, state_slip)
    end subroutine test_derivatives
 
    !> The equations are piecewise linear, so that central differences are exact up to rounding.

@@ -17,7 +17,7 @@ program test_fine_contact_random
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    implicit none(type, external)
-   integer(ik), parameter :: n_bodies = 6, n_loads = 8, n_laws = 6
+   integer(ik), parameter :: n_bodies = 6, n_loads = 6, n_laws = 6
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4
    real(rk), parameter :: half = 3.0_rk  !< of the square body [m]
    real(rk), parameter :: size_fracture = 0.15_rk  !< [m]
