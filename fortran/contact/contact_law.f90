@@ -9,10 +9,10 @@
 !!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
 !!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
 !! The gap g = tan(psi) |[u]_tau|. A bilateral law knows no open state: the faces keep the gap g
-!! under tension too, where z <= 0, and f_tau = mu_s z sign(d[u]_tau) goes on holding there. It is the
+!! under tension too, where z <= 0, and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the
 !! model of reference solutions for cracks that are closed all along; friction under tension drives
-!! the slip, either way, so it makes sense only where the tension is confined to small zones and the
-!! rest of the crack decides the way.
+!! the slip, either way, so it makes sense only where the tension is confined to small zones and
+!! the rest of the crack decides the way.
 !!
 !! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
 !! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip

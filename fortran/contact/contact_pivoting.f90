@@ -11,10 +11,12 @@
 !! Its matrix M is copositive where mu_s >= tan(psi): z'Mz is the work of the contact forces on the
 !! body plus (mu_s - tan(psi)) P l. So Lemke's algorithm (Lemke 1965; Cottle, Pang and Stone 1992,
 !! section 4.4) ends in a solution, for any friction, if the body is held and the total slip before
-!! was none. Elsewhere it is without this guarantee: for faces held closed with friction, whose
-!! bound is taken from the pressed part P+ of P (under tension a start, no solution); for rings closed at a joint, where the stiffness is
-!! not symmetric; and for dilation after a slip, where l gives way to |[u]_tau| = t + 2 v with
-!! v + t >= 0 and v >= 0, the product 0, and t the total slip, positive in its direction before.
+!! was none. Elsewhere it is without this guarantee:
+!! - Rings closed at a joint make the stiffness unsymmetric.
+!! - Dilation after a slip: l gives way to |[u]_tau| = t + 2 v with v + t >= 0 and v >= 0, the
+!!   product 0, and t the total slip, positive in its direction before.
+!! - Faces held closed with friction: its bound is that of the pressed part P+ of P, so that under
+!!   tension the result is a start for the iteration, not its solution.
 module contact_pivoting
    use base_kinds, only: ik, rk
    use base_lapack, only: dgetrf, dgetrs
