@@ -177,7 +177,7 @@ def _check(book: _Book, check: dict[str, Any]) -> None:
         "unknowns",
         "CPU s",
     )
-    _table(book, names, rows, (40, 36, 28, 28, 22, 14, 12))
+    _table(book, names, rows, (40, 35, 26, 26, 22, 18, 13))
     for order in check["orders"]:
         wanted = check["order_expected"]
         _words(
