@@ -30,7 +30,7 @@ def test_version_is_that_of_the_python_package(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, f"wingcrack {expected}\n", "")
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "verify", "test"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "verify", "bench", "test"])
 def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str) -> None:
     done = call(tmp_path, command, "--help")
     assert done.returncode == 0
@@ -42,7 +42,7 @@ def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str)
 def test_help_names_every_subcommand(tmp_path: Path) -> None:
     done = call(tmp_path, "--help")
     assert done.returncode == 0
-    for command in ("run", "check", "plot", "verify", "test", "--version"):
+    for command in ("run", "check", "plot", "verify", "bench", "test", "--version"):
         assert command in done.stdout
 
 
@@ -73,6 +73,9 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["check", "nowhere.nml", "other.nml"], "check takes one scene file"),
         (["plot"], "plot needs the directory of a run"),
         (["plot", "nowhere"], "there is no directory nowhere"),
+        (["bench", "--fast"], "unknown option --fast"),
+        (["bench", "no_such_scene"], "there is no measurement no_such_scene"),
+        (["bench", "--repeat"], "--repeat needs a value"),
         (["test", "everything"], "test takes no arguments"),
     ],
 )

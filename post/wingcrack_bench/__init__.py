@@ -1,0 +1,1 @@
+"""The performance measurements: ``./wingcrack bench``."""
