@@ -79,6 +79,7 @@ def _tell(measured: Sequence[Measurement], out: Path) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="./wingcrack bench",
+        description="Measure how long scenes take, and where the time goes.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
