@@ -44,6 +44,7 @@ def test_a_failed_run_leaves_the_last_good_state(tmp_path: Path) -> None:
     told = record(out)
     assert told["status"] == "failed"
     assert done.stderr.splitlines()[-1] == f"wingcrack: {told['reason']}"
+    assert str(told["reason"]).startswith("after load factor 0: ")
     factors = numbers(out / "history.csv", "load_factor")
     assert factors[:2] == [-2.0, -1.0]
     assert 1.0 not in factors

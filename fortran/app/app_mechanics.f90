@@ -5,6 +5,7 @@ module app_mechanics
    use app_mode, only: mode_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_number, only: brief_text
    use base_timers, only: phase_output, timers_t
    use mechanics_simulation, only: simulation_t
    use output_fields, only: history_row_t, intersection_fields_t
@@ -31,6 +32,7 @@ module app_mechanics
       procedure :: tell_state
       procedure :: grow
       procedure :: tell_end
+      procedure :: last_state
    end type mechanics_mode_t
 
 contains
@@ -182,6 +184,16 @@ contains
       if (self%is_good) self%good = fields_of(self%simulation)
       call write_fields(journal, self%good, error)
    end subroutine tell_end
+
+   !> The load factor that was told last.
+   pure function last_state(self) result(words)
+      class(mechanics_mode_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      associate (load => self%simulation%scene%load)
+         words = "load factor "//brief_text(load%from + self%told_time*(load%to - load%from), 6)
+      end associate
+   end function last_state
 
    !> Fields, unless those of this time have been written.
    subroutine write_fields(journal, fields, error)

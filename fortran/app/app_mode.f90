@@ -24,6 +24,7 @@ module app_mode
       procedure(tell), deferred :: tell_state
       procedure(go_on), deferred :: grow
       procedure(tell), deferred :: tell_end
+      procedure(name_state), deferred :: last_state
       procedure :: end_at_gain
    end type mode_t
 
@@ -66,6 +67,14 @@ module app_mode
          type(journal_t), intent(inout) :: journal
          type(error_t), allocatable, intent(out) :: error
       end subroutine tell
+
+      !> The last state that the files were told of, in words for messages: a time, a load factor.
+      pure function name_state(self) result(words)
+         import :: mode_t
+         implicit none(type, external)
+         class(mode_t), intent(in) :: self
+         character(len=:), allocatable :: words
+      end function name_state
    end interface
 
 contains

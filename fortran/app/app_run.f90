@@ -81,12 +81,19 @@ contains
 
       do
          call mode%next_state(journal, timers, error)
-         if (allocated(error)) return
-         call timers%start(phase_output)
-         call mode%tell_state(journal, error)
-         call timers%stop(phase_output)
-         if (.not. allocated(error)) call mode%grow(journal, timers, error)
-         if (allocated(error) .or. allocated(mode%ending) .or. interrupted()) return
+         if (.not. allocated(error)) then
+            call timers%start(phase_output)
+            call mode%tell_state(journal, error)
+            call timers%stop(phase_output)
+            if (allocated(error)) return
+            call mode%grow(journal, timers, error)
+         end if
+         if (allocated(error)) then
+            error%message = "after "//mode%last_state()//": "//error%message
+            return
+         end if
+         if (allocated(mode%ending)) return
+         if (interrupted()) return
       end do
    end subroutine march
 

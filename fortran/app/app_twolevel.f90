@@ -6,6 +6,7 @@ module app_twolevel
                                   history_of, probe_values
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_number, only: brief_text
    use base_timers, only: phase_output, timers_t
    use coarse_fields, only: cell_stresses
    use coarse_state, only: step_report_t
@@ -43,6 +44,7 @@ module app_twolevel
       procedure :: tell_state
       procedure :: grow
       procedure :: tell_end
+      procedure :: last_state
    end type twolevel_mode_t
 
 contains
@@ -308,6 +310,14 @@ contains
          call write_fields(simulation, journal, stresses_of(simulation), error)
       end associate
    end subroutine tell_end
+
+   !> The time of the last good state.
+   pure function last_state(self) result(words)
+      class(twolevel_mode_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = brief_text(self%simulation%state%time, 6)//" s"
+   end function last_state
 
    !> Stress of each cell: xx, yy, xy [Pa].
    function stresses_of(simulation) result(stresses)

@@ -117,6 +117,7 @@ contains
       record = file_text(directory(scene)//"/run.json")
       call checks%is_true(index(record, '"failed"') > 0, "status: failed")
       call checks%is_true(index(record, "did not converge") > 0, "the reason is on record")
+      call checks%is_true(index(record, "after 90 s: ") > 0, "and when it was")
       call checks%is_true(file_exists(directory(scene)//"/fractures.csv"), &
                           "the last state is on disk")
       ! 60 s, cut to 30 s, 15 s, 7.5 s, and then below 6 s.
