@@ -103,6 +103,9 @@ contains
          record%contact_residual = max(record%contact_residual, body%contact%residual)
          record%cells = body%mesh%n_cells
          record%fracture_cells = body%mesh%fracture%n_cells
+         if (record%smallest_angle > body%smallest_angle .or. &
+             .not. record%smallest_angle > 0.0_rk) record%smallest_angle = body%smallest_angle
+         record%energy_error = body%estimate%relative
          call record%count_dofs("displacement", body%model%constraints%n_dofs)
          closes = touches(simulation%scene%fractures)
          call journal%contact_events(row%time, body%mesh%fracture, body%contact%state(3, :), &

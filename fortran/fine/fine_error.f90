@@ -22,6 +22,7 @@ module fine_error
    !> Errors in the energy norm.
    type :: energy_error_t
       real(rk), allocatable :: element(:)  !< (n_cells) [(J/m)^1/2]
+      logical, allocatable :: left_out(:)  !< (n_cells) with no error and no energy, size as it is
       real(rk) :: total = 0.0_rk  !< root of the sum of their squares [(J/m)^1/2]
       real(rk) :: solution = 0.0_rk  !< energy norm of the solution [(J/m)^1/2]
       real(rk) :: relative = 0.0_rk  !< total over the norm of solution and error together [-]
@@ -29,21 +30,30 @@ module fine_error
 
 contains
 
-   !> Compare the stresses of the elements with the recovered ones.
-   subroutine estimate_error(model, displacement, recovery, estimate)
+   !> Compare the stresses of the elements with the recovered ones. Elements may be left out: those
+   !! near a point load, whose energy is infinite in truth.
+   subroutine estimate_error(model, displacement, recovery, estimate, left_out)
       type(fine_model_t), intent(in) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(recovery_t), intent(in) :: recovery
       type(energy_error_t), intent(out) :: estimate
+      logical, intent(in), optional :: left_out(:)  !< (n_cells)
+      real(rk) :: energy
       integer(ik) :: cell
 
-      allocate (estimate%element(model%mesh%n_cells))
+      allocate (estimate%element(model%mesh%n_cells), source=0.0_rk)
+      allocate (estimate%left_out(model%mesh%n_cells), source=.false.)
+      if (present(left_out)) estimate%left_out = left_out
+      energy = 0.0_rk
       do cell = 1, model%mesh%n_cells
+         if (estimate%left_out(cell)) cycle
+         energy = energy + sum(displacement(:, model%mesh%cell_nodes(:, cell)) &
+                               *model%element_forces(displacement, cell))
          estimate%element(cell) = sqrt(product_in(model, displacement, recovery, &
                                                   displacement, recovery, cell))
       end do
       estimate%total = norm2(estimate%element)
-      estimate%solution = sqrt(max(0.0_rk, 2.0_rk*model%strain_energy(displacement)))
+      estimate%solution = sqrt(max(0.0_rk, energy))
       if (estimate%total > 0.0_rk) then
          estimate%relative = estimate%total/hypot(estimate%solution, estimate%total)
       end if
@@ -171,6 +181,9 @@ contains
       do cell = 1, fine%n_cells
          sizes(cell) = size_of(cell)*within((share/max(tiny(share), estimate%element(cell))) &
                                             **(1.0_rk/(smooth_order + 1.0_rk)))
+      end do
+      do cell = 1, fine%n_cells
+         if (estimate%left_out(cell)) sizes(cell) = size_of(cell)
       end do
       call spread_to_tips(fine, tip_of_cell > 0, sizes)
 

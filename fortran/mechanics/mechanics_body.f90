@@ -14,7 +14,8 @@ module mechanics_body
    use mechanics_faces, only: face_conditions, face_pressure, given_slip, transfer_contact
    use mechanics_loads, only: body_loads, held_boundary
    use mechanics_outline, only: outline_of_scene, outline_t
-   use mesh_builder, only: build_mesh, build_mesh_sized, mesh_spec_t, mesher_t, transfer_mesher
+   use mesh_builder, only: build_mesh, build_mesh_sized, mesh_quality, mesh_spec_t, mesher_t, &
+                           transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use tips_dual, only: correct_intensity, has_dual
@@ -37,6 +38,7 @@ module mechanics_body
       real(rk), allocatable :: given_jump(:, :, :)
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
       type(energy_error_t) :: estimate  !< of the error; on adaptive meshes only
+      real(rk) :: smallest_angle = 0.0_rk  !< of the mesh [rad]
    contains
       procedure :: build
       procedure :: refine
@@ -116,7 +118,10 @@ contains
       type(fine_mesh_t) :: fine_before
       type(contact_t) :: contact_before
       logical :: has_before
+      integer(ik) :: worst
 
+      call mesh_quality(self%mesher, self%smallest_angle, worst, error)
+      if (allocated(error)) return
       has_before = allocated(self%displacement)
       if (has_before) then
          deallocate (self%displacement)
@@ -161,15 +166,39 @@ contains
       end select
    end function tip_element
 
-   !> Estimate the error of the present state.
-   subroutine estimate_body(self, timers)
+   !> Elements within reach of a point load: the size of elements far from fractures, which leaves
+   !! about one of them on each side of the load.
+   pure function near_point_loads(scene, fine) result(is_near)
+      type(scene_t), intent(in) :: scene
+      type(fine_mesh_t), intent(in) :: fine
+      logical :: is_near(fine%n_cells)
+      integer(ik) :: cell, i, k
+
+      is_near = .false.
+      do i = 1, size(scene%point_loads, kind=ik)
+         associate (point => scene%point_loads(i), reach => scene%discretization%size_boundary)
+            do cell = 1, fine%n_cells
+               do k = 1, 3
+                  if (norm2(fine%xy(:, fine%cell_nodes(k, cell)) - [point%x, point%y]) < reach) then
+                     is_near(cell) = .true.
+                  end if
+               end do
+            end do
+         end associate
+      end do
+   end function near_point_loads
+
+   !> Estimate the error of the present state, near point loads left out.
+   subroutine estimate_body(self, scene, timers)
       class(body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(timers_t), intent(inout) :: timers
       type(recovery_t) :: recovery
 
       call timers%start(phase_remesh)
       call recover_by_patches(self%model, self%displacement, recovery)
-      call estimate_error(self%model, self%displacement, recovery, self%estimate)
+      call estimate_error(self%model, self%displacement, recovery, self%estimate, &
+                          near_point_loads(scene, self%model%mesh))
       call timers%stop(phase_remesh)
    end subroutine estimate_body
 

@@ -293,7 +293,7 @@ contains
       do pass = 0, self%scene%adaptive%passes
          call self%respond(factor, timers, error)
          if (allocated(error)) return
-         call self%body%estimate_body(timers)
+         call self%body%estimate_body(self%scene, timers)
          if (self%body%estimate%relative <= self%scene%adaptive%tolerance) return
          if (pass == self%scene%adaptive%passes) return
          call self%body%refine(self%scene, self%start, self%network, &

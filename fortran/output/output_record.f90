@@ -35,6 +35,8 @@ module output_record
       real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
       !> of their solutions, relative; with the one above [-]
       real(rk) :: forward_error_bound = 0.0_rk
+      real(rk) :: smallest_angle = 0.0_rk  !< of all meshes; 0: left out [rad]
+      real(rk) :: energy_error = 0.0_rk  !< estimate on the last mesh, relative; 0: left out [-]
       integer(ik) :: newton_total = 0  !< iterations
       integer(ik) :: newton_max = 0  !< iterations in one step
       integer(ik) :: step_cuts = 0
@@ -154,6 +156,12 @@ contains
       if (self%condition_estimate > 0.0_rk) then
          call json%add("condition_estimate", self%condition_estimate)
          call json%add("forward_error_bound", self%forward_error_bound)
+      end if
+      if (self%smallest_angle > 0.0_rk) then
+         call json%add("smallest_angle_deg", self%smallest_angle*180.0_rk/acos(-1.0_rk))
+      end if
+      if (self%energy_error > 0.0_rk) then
+         call json%add("energy_error_relative", self%energy_error)
       end if
       call json%begin_object("newton_iterations")
       call json%add("total", self%newton_total)

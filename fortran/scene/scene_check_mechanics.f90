@@ -126,9 +126,6 @@ contains
          else if (scene%growth%enabled .and. load%from < 0.0_rk) then
             call refuse(error, sheet, sheet%find("load"), "from", "is "//real_text(load%from)// &
                         " but must be at least 0.0 where fractures grow")
-         else if (scene%adaptive%enabled .and. size(scene%point_loads) > 0) then
-            call refuse(error, sheet, sheet%find("adaptive"), "enabled", "is .true., but a "// &
-                        "point load has infinite energy, which no mesh can follow")
          end if
       end associate
    end subroutine check_load

@@ -125,7 +125,8 @@ module scene_parameters
               "quarter-point elements around the fracture tips."), &
       group_t("adaptive", implied=.true., scenes=in_mechanics, &
               meaning="Meshes that follow the estimated error of the stresses (Zienkiewicz and "// &
-              "Zhu): after the first mesh of the body and after every growth."), &
+          "Zhu): after the first mesh of the body and after every growth. Within size_boundary "// &
+              "of a point load, whose energy is infinite, the error does not count."), &
       group_t("coarse", implied=.true., scenes=in_fluid, &
               meaning="The coarse level: finite volumes on the whole body."), &
       group_t("fine", implied=.true., scenes=in_fluid, &

@@ -237,7 +237,7 @@ contains
    subroutine sizes()
       type(fine_model_t) :: model
       type(recovery_t) :: recovery
-      type(energy_error_t) :: estimate
+      type(energy_error_t) :: estimate, rest
       real(rk), parameter :: share = 0.1_rk, of_rosette = 322.0_rk*share**2
       real(rk), allocatable :: displacement(:, :), wanted(:), shrinkage(:)
       real(rk) :: now, allowed
@@ -252,12 +252,24 @@ contains
       now = sqrt(4.0_rk/256.0_rk/sqrt(3.0_rk))  ! 256 elements of equal area
       call checks%is_close(maxval(abs(wanted/now - 0.5_rk)), 0.0_rk, 1.0e-3_rk, "wanted sizes")
       call checks%is_true(size(shrinkage) == 0, "no tip, no rosette")
+      call estimate_error(model, displacement, recovery, estimate, &
+                          model%mesh%xy(1, model%mesh%cell_nodes(1, :)) < 0.5_rk)
+      call wanted_sizes(model%mesh, estimate, 0.25_rk*estimate%relative, wanted, shrinkage)
+      call checks%is_close(maxval(abs(wanted/now - 1.0_rk), estimate%left_out), 0.0_rk, 1.0e-9_rk, &
+                           "elements that are left out keep their size")
+      call checks%is_true(.not. any(estimate%left_out .and. estimate%element > 0.0_rk), &
+                          "elements that are left out have no error")
+      call estimate_error(model, displacement, recovery, rest,.not. estimate%left_out)
+      call checks%is_close((estimate%solution**2 + rest%solution**2) &
+                           /(2.0_rk*model%strain_energy(displacement)), 1.0_rk, 1.0e-12_rk, &
+                           "elements that are left out have no energy")
 
       call solve(cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [16_ik, 16_ik], 8_ik, &
                                    5_ik, 12_ik), .true., model, displacement)
       is_tip = model%mesh%tip_corner > 0
-      deallocate (estimate%element)
+      deallocate (estimate%element, estimate%left_out)
       allocate (estimate%element(model%mesh%n_cells), source=1.0_rk)
+      allocate (estimate%left_out(model%mesh%n_cells), source=.false.)
       where (is_tip) estimate%element = 2.0_rk
       estimate%total = norm2(estimate%element)
       estimate%solution = 99.0_rk*estimate%total
