@@ -6,8 +6,8 @@ module tips_network
    implicit none(type, external)
    private
 
-   public :: end_gain, extend, fracture_length, network_of_scene, other_distance, same_network
-   public :: total_length
+   public :: end_gain, extend, fracture_length, move_end, network_of_scene, other_distance
+   public :: same_network, total_length
 
 contains
 
@@ -55,6 +55,16 @@ contains
       call move_alloc(longer, network%xy)
       network%first(fracture + 1:) = network%first(fracture + 1:) + 1
    end subroutine extend
+
+   !> Move one end of a fracture.
+   pure subroutine move_end(network, fracture, end, xy)
+      type(network_t), intent(inout) :: network
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: its first vertex, 2: its last
+      real(rk), intent(in) :: xy(2)  !< where to [m]
+
+      network%xy(:, merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1)) = xy
+   end subroutine move_end
 
    pure function same_network(a, b) result(same)
       type(network_t), intent(in) :: a, b

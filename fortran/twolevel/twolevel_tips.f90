@@ -7,8 +7,9 @@ module twolevel_tips
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use tips_growth, only: advances, carry_over, growth_drive, new_tip
-   use tips_network, only: extend, other_distance
+   use tips_growth, only: growth_drive
+   use tips_increment, only: begin_increment, plan_increment, reach
+   use tips_network, only: extend, move_end, other_distance
    use tips_state, only: tip_state_t
    use twolevel_window, only: coarse_level_t, window_t
    implicit none(type, external)
@@ -107,40 +108,31 @@ contains
       real(rk), intent(in) :: increment  !< l_max [m]
       logical, intent(out) :: any_grew
 
-      real(rk) :: wanted(size(self%tip)), applied, left, to(2)
+      real(rk) :: radius(size(self%tip)), to(2, size(self%tip))
       logical :: grows(size(self%tip))
       integer(ik) :: i
 
       any_grew = .false.
-      do i = 1, size(self%tip)
-         self%tip(i)%advance = 0.0_rk
-         self%tip(i)%intensity_before = self%tip(i)%intensity
-         self%tip(i)%drive_before = self%tip(i)%drive
-         grows(i) = self%tip(i)%drive%intensity >= scene%material%toughness .and. &
-                    .not. self%tip(i)%arrested
-      end do
-      if (.not. any(grows)) return
+      call begin_increment(self%tip)
+      if (.not. any(reach(self%tip, scene%material%toughness))) return
       ! Where one tip grows, those that the error of their intensities does not tell from it grow
       ! too: wings of equal rank would otherwise drift apart by chance.
+      grows = reach(self%tip, (1.0_rk - intensity_error)*scene%material%toughness)
       do i = 1, size(self%tip)
-         grows(i) = self%tip(i)%drive%intensity >= (1.0_rk - intensity_error) &
-                    *scene%material%toughness .and. .not. self%tip(i)%arrested
+         associate (window => self%window(i))
+            radius(i) = window%mesh%fracture%tip_radius(window%tip)
+         end associate
       end do
-      wanted = advances(self%tip%drive%energy, grows, increment, scene%growth%exponent)
+      call plan_increment(self%tip, increment, scene%growth%exponent, radius, grows, to)
       do i = 1, size(self%tip)
          if (.not. grows(i)) cycle
-         associate (tip => self%tip(i), window => self%window(i))
-            call carry_over(wanted(i), tip%carried, window%mesh%fracture%tip_radius(window%tip), &
-                            applied, left)
-            tip%carried = left
-            if (.not. applied > 0.0_rk) cycle
-            to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
-            call find_obstacle(self%network, scene, tip, to)
+         associate (tip => self%tip(i))
+            call find_obstacle(self%network, scene, tip, to(:, i))
             if (tip%arrested) cycle
-            call extend(self%network, tip%fracture, tip%end, to)
-            call forget_windows(self, tip%xy, to)
-            call tip%move(to, tip%drive%angle)
-            tip%pending = tip%pending + applied
+            call extend(self%network, tip%fracture, tip%end, to(:, i))
+            call forget_windows(self, tip%xy, to(:, i))
+            tip%pending = tip%pending + norm2(to(:, i) - tip%xy)
+            call tip%move(to(:, i), tip%drive%angle)
             tip%pending_vertices = tip%pending_vertices + 1
             any_grew = .true.
          end associate
@@ -154,7 +146,7 @@ contains
       logical, intent(out) :: any_turned
 
       real(rk) :: before(2)
-      integer(ik) :: at, i
+      integer(ik) :: i
       logical :: has_turned
 
       any_turned = .false.
@@ -163,11 +155,9 @@ contains
             before = tip%xy
             call tip%correct(tip%drive%angle, has_turned)
             if (.not. has_turned) cycle
-            at = merge(self%network%first(tip%fracture), self%network%first(tip%fracture + 1) - 1, &
-                       tip%end == 1)
             call forget_windows(self, tip%origin, before)
             call forget_windows(self, tip%origin, tip%xy)
-            self%network%xy(:, at) = tip%xy
+            call move_end(self%network, tip%fracture, tip%end, tip%xy)
             any_turned = .true.
          end associate
       end do

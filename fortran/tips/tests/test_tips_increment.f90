@@ -1,0 +1,87 @@
+!> One increment of growth of many tips.
+program test_tips_increment
+   use base_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use mesh_types, only: network_t
+   use tips_increment, only: begin_increment, plan_increment, reach
+   use tips_network, only: move_end
+   use tips_state, only: tip_state_t
+   implicit none(type, external)
+
+   real(rk), parameter :: exact = 1.0e-14_rk
+   type(checks_t) :: checks
+
+   call test_reach()
+   call test_plan()
+   call test_move_end()
+   call checks%finish()
+
+contains
+
+   !> Four tips that look along x, driven by 1, 2, 4 and 8 J/m2 and intensities of 1 to 4.
+   function four_tips() result(tips)
+      type(tip_state_t) :: tips(4)
+      integer(ik) :: i
+
+      do i = 1, 4
+         tips(i)%xy = [real(i, rk), 0.0_rk]
+         tips(i)%direction = [1.0_rk, 0.0_rk]
+         tips(i)%drive%intensity = real(i, rk)
+         tips(i)%drive%energy = 2.0_rk**(i - 1)
+         tips(i)%advance = 7.0_rk
+      end do
+      tips(4)%arrested = .true.
+   end function four_tips
+
+   !> An arrested tip does not grow, however it is driven.
+   subroutine test_reach()
+      call checks%is_true(all(reach(four_tips(), 2.0_rk) .eqv. [.false., .true., .true., .false.]), &
+                          "tips at their toughness")
+      call checks%is_true(.not. any(reach(four_tips(), 3.5_rk)), "none at a larger one")
+   end subroutine test_reach
+
+   !> The most strongly driven tip advances by l_max, another by (G/max G)**exponent of it; what is
+   !! too short for the mesh is carried over until it adds up.
+   subroutine test_plan()
+      type(tip_state_t) :: tips(4)
+      real(rk) :: to(2, 4)
+      logical :: grows(4)
+      real(rk), parameter :: quarter_turn = 2.0_rk*atan(1.0_rk)
+
+      tips = four_tips()
+      call begin_increment(tips)
+      call checks%is_close(maxval(tips%advance), 0.0_rk, 0.0_rk, "nothing has grown yet")
+      call checks%is_close(tips(3)%drive_before%energy, 4.0_rk, 0.0_rk, "drive before")
+      tips(3)%drive%angle = quarter_turn
+      grows = [.true., .true., .true., .false.]
+      ! A quarter of 0.2 m for the first tip: below 0.4 of a radius of 0.2 m.
+      call plan_increment(tips, 0.2_rk, 1.0_rk, spread(0.2_rk, 1, 4), grows, to)
+      call checks%is_true(all(grows .eqv. [.false., .true., .true., .false.]), "who grows")
+      call checks%is_close(tips(1)%carried, 0.05_rk, exact, "carried over")
+      call checks%is_close(norm2(to(:, 1) - [1.0_rk, 0.0_rk]), 0.0_rk, 0.0_rk, "it stays")
+      call checks%is_close(norm2(to(:, 2) - [2.1_rk, 0.0_rk]), 0.0_rk, exact, "half the energy")
+      call checks%is_close(norm2(to(:, 3) - [3.0_rk, 0.2_rk]), 0.0_rk, exact, "a kink")
+      call checks%is_close(norm2(to(:, 4) - [4.0_rk, 0.0_rk]), 0.0_rk, 0.0_rk, "arrested")
+      grows = [.true., .true., .true., .false.]
+      call plan_increment(tips, 0.2_rk, 1.0_rk, spread(0.2_rk, 1, 4), grows, to)
+      call checks%is_true(grows(1), "two short advances make one")
+      call checks%is_close(to(1, 1), 1.1_rk, exact, "with what was carried")
+      call checks%is_close(tips(1)%carried, 0.0_rk, 0.0_rk, "nothing left")
+   end subroutine test_plan
+
+   !> Both ends of the second of two fractures.
+   subroutine test_move_end()
+      type(network_t) :: network
+
+      network%first = [1_ik, 3_ik, 6_ik]
+      network%s_start = [0.0_rk, 0.0_rk]
+      network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, &
+                            2.0_rk, 1.0_rk], [2, 5])
+      call move_end(network, 2_ik, 1_ik, [-1.0_rk, 3.0_rk])
+      call move_end(network, 2_ik, 2_ik, [4.0_rk, 5.0_rk])
+      call checks%is_close(norm2(network%xy(:, 3) - [-1.0_rk, 3.0_rk]), 0.0_rk, 0.0_rk, "start")
+      call checks%is_close(norm2(network%xy(:, 5) - [4.0_rk, 5.0_rk]), 0.0_rk, 0.0_rk, "end")
+      call checks%is_close(norm2(network%xy(:, 4) - [1.0_rk, 1.0_rk]), 0.0_rk, 0.0_rk, "between")
+   end subroutine test_move_end
+
+end program test_tips_increment
