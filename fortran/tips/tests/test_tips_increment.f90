@@ -35,8 +35,9 @@ contains
 
    !> An arrested tip does not grow, however it is driven.
    subroutine test_reach()
-      call checks%is_true(all(reach(four_tips(), 2.0_rk) .eqv. [.false., .true., .true., .false.]), &
-                          "tips at their toughness")
+      logical, parameter :: expected(4) = [.false., .true., .true., .false.]
+
+      call checks%is_true(all(reach(four_tips(), 2.0_rk) .eqv. expected), "tips at their toughness")
       call checks%is_true(.not. any(reach(four_tips(), 3.5_rk)), "none at a larger one")
    end subroutine test_reach
 
