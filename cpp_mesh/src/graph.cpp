@@ -310,14 +310,23 @@ private:
                         continue;
                     const double angle = angle_between(direction(e, p), direction(f, p));
                     if (angle < tolerances_.angle)
-                        throw MeshError(
-                            pair_name(graph_.edges[f].segment, graph_.edges[e].segment) +
-                            (angle < 1e-6 ? " overlap" : " meet at too small an angle") +
-                            place_text(at(p)) + "; at least " +
-                            number_text(degrees(tolerances_.angle)) + " degrees are needed");
+                        throw MeshError(meeting_name(graph_.edges[f], graph_.edges[e], angle) +
+                                        place_text(at(p)) + "; at least " +
+                                        number_text(degrees(tolerances_.angle)) +
+                                        " degrees are needed");
                 }
             }
         }
+    }
+
+    // How two cells of fractures meet whose angle is too small.
+    std::string meeting_name(const GraphEdge& a, const GraphEdge& b, double angle) const {
+        const bool is_overlap = angle < 1e-6;
+        if (a.fracture == b.fracture)
+            return fracture_name(a.fracture) +
+                   (is_overlap ? " overlaps itself" : " turns back at too small an angle");
+        return pair_name(a.segment, b.segment) +
+               (is_overlap ? " overlap" : " meet at too small an angle");
     }
 
     static double degrees(double angle) { return angle * 180.0 / 3.14159265358979323846; }

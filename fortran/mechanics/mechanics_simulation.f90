@@ -167,7 +167,8 @@ contains
       has_onset = .true.
       do k = 1, iterations
          if (abs(largest_excess(self)) <= at_onset) return
-         middle = high - excess_high*(high - low)/(excess_high - excess_low)
+         ! From the lower end, which may be nearer to the root by all the digits there are.
+         middle = low - excess_low*(high - low)/(excess_high - excess_low)
          call self%respond(middle, timers, error)
          if (allocated(error)) return
          excess = largest_excess(self)
@@ -229,6 +230,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: corrections = 8
+      real(rk), parameter :: nothing = 1.0e-9_rk  ! of an advance
       real(rk) :: wanted(size(self%tip)), applied, left, to(2)
       logical :: grows(size(self%tip)), any_turned, has_turned
       integer(ik) :: i, k, at
@@ -251,6 +253,7 @@ contains
             if (.not. applied > 0.0_rk) cycle
             to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
             call meet_target(self, tip, tip%xy, to)
+            if (.not. norm2(to - tip%xy) > nothing*applied) cycle  ! another tip has come to this one
             call extend(self%network, tip%fracture, tip%end, to)
             call tip%move(to, tip%drive%angle)
             any_grew = .true.

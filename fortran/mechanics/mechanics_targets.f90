@@ -13,6 +13,9 @@ module mechanics_targets
 
    !> Share of the reach within which a joint is put onto a vertex that is there already.
    real(rk), parameter :: snap = 0.3_rk
+   !> Sine of the smallest angle at which a segment may meet its target; a shallower one goes
+   !! straight to the nearest place, for the mesh library refuses angles below 3 degrees.
+   real(rk), parameter :: shallow = sin(5.0_rk*acos(-1.0_rk)/180.0_rk)
 
 contains
 
@@ -121,6 +124,9 @@ contains
       if (.not. rank < best) return
       best = rank
       target = candidate
+      associate (near => nearest_place(from, ends))
+         if (norm2(near - from) < shallow*norm2(place - from)) place = near
+      end associate
       at = place
       do k = 1, 2
          if (norm2(place - ends(:, k)) < snap*reach) at = ends(:, k)
@@ -128,14 +134,16 @@ contains
    end subroutine try
 
    !> Fractures, with the outer boundary as one more, form a ring: they cut a piece off the body.
+   !! Without a mesh nothing is known to.
    pure logical function cuts_through(fracture)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik) :: group(fracture%n_points), cell, i, outer, roots(2)
 
+      cuts_through = .false.
+      if (.not. allocated(fracture%cell_points)) return
       group = [(i, i=1, fracture%n_points)]
       outer = findloc(fracture%point_kind, point_boundary, dim=1)
       if (outer > 0) where (fracture%point_kind == point_boundary) group = outer
-      cuts_through = .false.
       do cell = 1, fracture%n_cells
          roots = group(fracture%cell_points(:, cell))
          if (roots(1) == roots(2)) cuts_through = .true.

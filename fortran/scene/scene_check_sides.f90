@@ -78,8 +78,8 @@ contains
       integer, intent(in) :: i  !< index of the record
       type(error_t), allocatable, intent(out) :: error
       character(len=1), parameter :: axes(2) = ["x", "y"]
-      character(len=14), parameter :: by_axis(4) = [character(len=14) :: "x_displacement", &
-                                                       "y_displacement", "x_traction", "y_traction"]
+      character(len=14), parameter :: by_axis(4) = ["x_displacement", "y_displacement", &
+                                                    "x_traction    ", "y_traction    "]
       integer :: axis, k
 
       associate (record => sheet%records(i))
@@ -96,8 +96,8 @@ contains
          do k = 1, size(by_axis)
             if (.not. record%is_given(trim(by_axis(k)))) cycle
             call refuse(error, sheet, i, given_of(record, "normal_traction", "shear_traction"), &
-                       "is given beside "//trim(by_axis(k))//" but a side has either tractions "// &
-                        "along and across it, or values in x and y")
+                        "is given beside "//trim(by_axis(k))//" but a side has either "// &
+                        "tractions along and across it, or values in x and y")
             return
          end do
       end associate

@@ -19,11 +19,12 @@ module tips_growth
 contains
 
    !> Angle at which the tangential stress is largest (Erdogan and Sih 1963), in a form that
-   !! divides by nothing that vanishes with k2. Zero where nothing drives the tip.
+   !! divides by nothing that vanishes with k2, and whose squares neither over- nor underflow. Zero
+   !! where nothing drives the tip.
    elemental real(rk) function kink_angle(k1, k2)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
 
-      kink_angle = 2.0_rk*atan2(-2.0_rk*k2, k1 + sqrt(k1**2 + 8.0_rk*k2**2))
+      kink_angle = 2.0_rk*atan2(-2.0_rk*k2, k1 + hypot(k1, sqrt(8.0_rk)*k2))
    end function kink_angle
 
    !> Tangential stress at an angle times sqrt(2 pi r) [Pa m^1/2].

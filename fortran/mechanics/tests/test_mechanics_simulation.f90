@@ -13,6 +13,7 @@ program test_mechanics_simulation
    call check_onset("open", -1.0_rk)
    call check_onset("open", 1.0_rk)
    call check_onset("frictionless", -1.0_rk)
+   call check_tiny_onset()
    call check_growth()
    call checks%finish()
 
@@ -73,6 +74,25 @@ contains
       call checks%is_true(has_onset, law//": the onset is found on the way")
       call checks%is_close(simulation%factor/expected, 1.0_rk, exact, law//": where it is")
    end subroutine check_onset
+
+   !> The onset is found where it lies at a tiny share of the programme.
+   subroutine check_tiny_onset()
+      type(simulation_t) :: usual, strong
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      logical :: has_onset
+
+      call timers%begin()
+      call usual%begin(plate("open", 1.0_rk), timers, error)
+      call usual%rise(100.0_rk, has_onset, timers, error)
+      call strong%begin(plate("open", 1.0e24_rk), timers, error)
+      call checks%no_error(error, "tiny onset: begin")
+      if (allocated(error)) return
+      call strong%rise(100.0_rk, has_onset, timers, error)
+      call checks%no_error(error, "tiny onset")
+      call checks%is_true(has_onset, "growth under a load of 1e24 Pa")
+      call checks%is_close(strong%factor*1.0e24_rk/usual%factor, 1.0_rk, exact, "at its factor")
+   end subroutine check_tiny_onset
 
    !> Both tips grow together, at a load that does not change, and the next rise starts there.
    subroutine check_growth()

@@ -29,6 +29,11 @@ program test_mechanics_targets
    call meets([-3.0_rk, 0.0_rk], [-5.0_rk, 0.0_rk], target_boundary, [-4.0_rk, 0.0_rk], &
               "out of the body")
 
+   call meets([-3.95_rk, 0.0_rk], [-4.05_rk, 2.0_rk], target_boundary, [-4.0_rk, 0.0_rk], &
+              "out of the body at 3 degrees: to the nearest place")
+   call meets([-3.95_rk, 0.0_rk], [-4.05_rk, 0.9_rk], target_boundary, [-4.0_rk, 0.45_rk], &
+              "out of the body at 6 degrees")
+
    ! A hook (0, 0), (1, 0), (1, 0.5), (0.5, 0.5) that turns back to its first segment.
    network%first = [1_ik, 5_ik]
    network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.5_rk], [2, 4])
@@ -49,6 +54,7 @@ program test_mechanics_targets
    call checks%is_true(cuts_through(chain([point_boundary, point_interior, point_boundary])), &
                        "a fracture from edge to edge cuts")
    call check_ring()
+   call checks%is_true(.not. cuts_through(fracture_mesh_t()), "no mesh, as where it cannot be made")
    call checks%finish()
 
 contains
