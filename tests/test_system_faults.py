@@ -69,6 +69,53 @@ def test_a_faulty_scene_is_refused(command: str, fault: str, tmp_path: Path) -> 
     assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
 
 
+# The L of a polygon with a crack in it; then what is changed, and what the refusal must hold.
+POLYGON = """\
+&domain shape = 'polygon'
+  x = 0.0, 2.0, 2.0, 1.0, 1.0, 0.0
+  y = 0.0, 0.0, 1.0, 1.0, 2.0, 2.0
+/
+&material young = 1.0e9, poisson = 0.2, density = 2500.0 /
+&gravity y = -9.81 /
+&fracture name = 'f', x = 0.4, 0.6, y = 0.5, 0.5, law = 'open' /
+&side name = 'floor', edges = 1, x_displacement = 0.0, y_displacement = 0.0 /
+&side name = 'end', edges = 2, normal_traction = -1.0e6 /
+&fe size_fracture = 0.1, size_boundary = 0.5 /
+"""
+POLYGON_FAULTS = {
+    "corner twice": (
+        "y = 0.0, 0.0, 1.0",
+        "y = 0.0, 0.0, 0.0",
+        "faulty.nml:2: &domain",
+        "the corners 2 and 3 at the same place",
+    ),
+    "edges cross": ("y = 0.0, 0.0, 1.0", "y = 0.0, 3.0, 1.0", "faulty.nml:2: &domain", "meet"),
+    "too few": ("y = 0.0, 0.0", "y = 0.0", "faulty.nml:3: &domain", "as many as x, 6"),
+    "no such edge": ("edges = 2", "edges = 7", "faulty.nml:9: &side", "must be at most 6"),
+    "edge twice": ("edges = 2", "edges = 2, 1", "faulty.nml:9: &side", "must not overlap"),
+    "through the notch": (
+        "x = 0.4, 0.6, y = 0.5, 0.5",
+        "x = 0.9, 1.9, y = 1.9, 0.9",
+        "faulty.nml:7: &fracture",
+        "leave the domain on the way to (1.9, 0.9)",
+    ),
+    "no density": (", density = 2500.0", "", "faulty.nml:6: &gravity", "has no density"),
+    "no number": ("y = -9.81", "y = -inf", "faulty.nml:6: &gravity", "y is -inf"),
+}
+
+
+@pytest.mark.parametrize("fault", POLYGON_FAULTS)
+def test_a_faulty_polygon_is_refused(fault: str, tmp_path: Path) -> None:
+    old, new, place, words = POLYGON_FAULTS[fault]
+    assert old in POLYGON
+    (tmp_path / "faulty.nml").write_text(POLYGON.replace(old, new, 1))
+    done = call(tmp_path, "run", "faulty.nml", "--out", "out")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert place in done.stderr
+    assert words in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
+
+
 def test_growth_needs_the_toughness(tmp_path: Path) -> None:
     scene = varied(("toughness = 0.3e6", ""), ("intensities = .true.", "enabled = .true."))
     (tmp_path / "faulty.nml").write_text(scene)

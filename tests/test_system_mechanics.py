@@ -366,3 +366,16 @@ def test_refusals(tmp_path: Path, old: str, new: str, words: str) -> None:
     assert done.returncode == 2
     assert words in done.stderr.splitlines()[-1]
     assert not (tmp_path / "out").exists()
+
+
+def test_nearly_incompressible_rock_is_warned_of(tmp_path: Path) -> None:
+    """The tips' elements are too stiff then; the estimated error says so too, and covers it."""
+    changes = (("poisson = 0.3", "poisson = 0.4999"), ("plane = 'stress'", "plane = 'strain'"))
+    out = run_input(tmp_path, "paper_b/edge_mode1.nml", *changes)
+    (warning,) = record(out)["warnings"]  # type: ignore[misc]
+    assert "&adaptive" in str(warning)
+    exact = 2.825457622e6 * math.sqrt(math.pi * 0.5)
+    (tip,) = rows(out / "tips.csv")
+    error = abs(float(tip["k1_pa_sqrtm"]) - exact)
+    assert error < float(tip["k1_error_pa_sqrtm"])
+    assert error < 0.02 * exact

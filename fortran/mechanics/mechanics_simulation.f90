@@ -253,7 +253,7 @@ contains
             if (.not. applied > 0.0_rk) cycle
             to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
             call meet_target(self, tip, tip%xy, to)
-            if (.not. norm2(to - tip%xy) > nothing*applied) cycle  ! another tip has come to this one
+            if (.not. norm2(to - tip%xy) > nothing*applied) cycle  ! something has come to it
             call extend(self%network, tip%fracture, tip%end, to)
             call tip%move(to, tip%drive%angle)
             any_grew = .true.
