@@ -7,7 +7,7 @@ module twolevel_tips
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use tips_growth, only: growth_drive
+   use tips_growth, only: growth_drive, new_tip
    use tips_increment, only: begin_increment, plan_increment, reach
    use tips_network, only: extend, move_end, other_distance
    use tips_state, only: tip_state_t
@@ -108,7 +108,7 @@ contains
       real(rk), intent(in) :: increment  !< l_max [m]
       logical, intent(out) :: any_grew
 
-      real(rk) :: radius(size(self%tip)), to(2, size(self%tip))
+      real(rk) :: advance(size(self%tip)), radius(size(self%tip)), to(2)
       logical :: grows(size(self%tip))
       integer(ik) :: i
 
@@ -123,16 +123,17 @@ contains
             radius(i) = window%mesh%fracture%tip_radius(window%tip)
          end associate
       end do
-      call plan_increment(self%tip, increment, scene%growth%exponent, radius, grows, to)
+      call plan_increment(self%tip, grows, increment, scene%growth%exponent, radius, advance)
       do i = 1, size(self%tip)
-         if (.not. grows(i)) cycle
+         if (.not. advance(i) > 0.0_rk) cycle
          associate (tip => self%tip(i))
-            call find_obstacle(self%network, scene, tip, to(:, i))
+            to = new_tip(tip%xy, tip%direction, tip%drive%angle, advance(i))
+            call find_obstacle(self%network, scene, tip, to)
             if (tip%arrested) cycle
-            call extend(self%network, tip%fracture, tip%end, to(:, i))
-            call forget_windows(self, tip%xy, to(:, i))
-            tip%pending = tip%pending + norm2(to(:, i) - tip%xy)
-            call tip%move(to(:, i), tip%drive%angle)
+            call extend(self%network, tip%fracture, tip%end, to)
+            call forget_windows(self, tip%xy, to)
+            call tip%move(to, tip%drive%angle)
+            tip%pending = tip%pending + advance(i)
             tip%pending_vertices = tip%pending_vertices + 1
             any_grew = .true.
          end associate
