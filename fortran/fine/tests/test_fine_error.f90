@@ -3,21 +3,16 @@ program test_fine_error
    use base_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use exact_cracks, only: centre_crack
-   use fine_elasticity, only: elasticity_t
-   use fine_element, only: evaluate_element
+   use exact_fields, only: angle, rock, solve_exact, true_errors
    use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, triangle_rule_7
    use fine_recovery, only: recover_by_averages, recover_by_patches, recovery_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
    implicit none(type, external)
    type(checks_t) :: checks
-   type(elasticity_t), parameter :: rock = elasticity_t(1.0_rk, 0.3_rk, 0.0_rk, .false.)
-   real(rk), parameter :: angle = 0.3_rk  ! of the crack [rad]
 
    call exact_in_the_elements()
    call smooth_field()
@@ -27,121 +22,17 @@ program test_fine_error
 
 contains
 
-   !> Exact field: a smooth one (Muskhelishvili's functions phi = psi = exp(z)), or a crack |x| < 1
-   !! at an angle under tension across it.
-   pure function exact_displacement(cracked, xy) result(displacement)
-      logical, intent(in) :: cracked
-      real(rk), intent(in) :: xy(2)
-      real(rk) :: displacement(2)
-      real(rk) :: rotation(2, 2)
-      complex(rk) :: z, value
-
-      if (cracked) then
-         rotation = turn()
-         displacement = matmul(rotation, centre_crack(rock, 1.0_rk, 1.0_rk, 0.0_rk, &
-                                                      matmul(transpose(rotation), xy), .true.))
-      else
-         z = cmplx(xy(1), xy(2), rk)
-         value = (rock%kolosov()*exp(z) - z*conjg(exp(z)) - conjg(exp(z))) &
-                 /(2.0_rk*rock%shear_modulus())
-         displacement = [real(value, rk), aimag(value)]
-      end if
-   end function exact_displacement
-
-   pure function turn() result(rotation)
-      real(rk) :: rotation(2, 2)
-
-      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
-   end function turn
-
-   !> Stress tensor of the same fields.
-   pure function exact_stress(cracked, xy) result(stress)
-      logical, intent(in) :: cracked
-      real(rk), intent(in) :: xy(2)
-      real(rk) :: stress(2, 2)
-      real(rk) :: place(2)
-      complex(rk) :: z, root, phi, phi_slope, traction
-
-      if (cracked) then
-         place = matmul(transpose(turn()), xy)
-         z = cmplx(place(1), place(2), rk)
-         root = sqrt(z - 1.0_rk)*sqrt(z + 1.0_rk)
-         phi = 0.5_rk*(z/root - 1.0_rk)
-         phi_slope = -0.5_rk/root**3
-         traction = phi + conjg(phi) + (z - conjg(z))*conjg(phi_slope)
-         stress(2, 2) = real(traction, rk)
-         stress(1, 2) = -aimag(traction)
-         stress(1, 1) = 4.0_rk*real(phi, rk) - stress(2, 2)
-         stress(2, 1) = stress(1, 2)
-         stress = matmul(turn(), matmul(stress, transpose(turn())))
-      else
-         z = cmplx(xy(1), xy(2), rk)
-         traction = 2.0_rk*(conjg(z)*exp(z) + exp(z))  ! s_yy - s_xx + 2 i s_xy
-         stress(1, 1) = 2.0_rk*real(exp(z), rk) - 0.5_rk*real(traction, rk)
-         stress(2, 2) = 2.0_rk*real(exp(z), rk) + 0.5_rk*real(traction, rk)
-         stress(1, 2) = 0.5_rk*aimag(traction)
-         stress(2, 1) = stress(1, 2)
-      end if
-   end function exact_stress
-
-   !> Solve with the exact displacement on the edges.
-   subroutine solve(mesh, cracked, model, displacement)
+   !> The exact problem, solved.
+   subroutine solved(mesh, cracked, model, displacement)
       type(mesh_t), intent(in) :: mesh
       logical, intent(in) :: cracked
       type(fine_model_t), intent(inout) :: model
       real(rk), allocatable, intent(out) :: displacement(:, :)
-      type(fine_loads_t) :: loads
       type(error_t), allocatable :: error
-      integer(ik) :: node
 
-      call model%set_mesh(mesh, rock, error)
-      call model%prepare(loaded_everywhere(model%mesh), error)
-      loads = no_loads(model%mesh)
-      do node = 1, model%mesh%n_nodes
-         loads%boundary_displacement(:, node) = exact_displacement(cracked, model%mesh%xy(:, node))
-      end do
-      if (cracked) loads%fluid_pressure = 1.0_rk
-      call model%solve(loads, displacement, error)
+      call solve_exact(mesh, cracked, model, displacement, error)
       call checks%no_error(error, "body is solved")
-   end subroutine solve
-
-   !> True errors in the energy norm.
-   function true_error(model, displacement, cracked) result(element)
-      type(fine_model_t), intent(in) :: model
-      real(rk), intent(in) :: displacement(:, :)
-      logical, intent(in) :: cracked
-      real(rk) :: element(model%mesh%n_cells)
-      integer(ik), parameter :: n_t = 6, n_w = 8
-      real(rk) :: points(3, n_t*n_w), weights(n_t*n_w), values(6), gradients(2, 6)
-      real(rk) :: area_coordinates(3), determinant, difference(2, 2), share
-      integer(ik) :: cell, n_points, point
-
-      share = rock%lame_lambda()/(2.0_rk*(rock%lame_lambda() + rock%shear_modulus()))
-      do cell = 1, model%mesh%n_cells
-         n_points = 7
-         call triangle_rule_7(points(:, 1:7), weights(1:7))
-         if (model%mesh%tip_corner(cell) > 0) then
-            n_points = n_t*n_w
-            call collapsed_rule(model%mesh%tip_corner(cell), n_t, n_w, points, weights)
-         end if
-         element(cell) = 0.0_rk
-         associate (nodes => model%mesh%cell_nodes(:, cell))
-            do point = 1, n_points
-               call evaluate_element(model%mesh%xy(:, nodes), model%mesh%tip_corner(cell), &
-                                     points(:, point), values, gradients, area_coordinates, &
-                                     determinant)
-               difference = model%elasticity%total_stress(matmul(displacement(:, nodes), &
-                                                                 transpose(gradients)), 0.0_rk) &
-                            - exact_stress(cracked, matmul(model%mesh%xy(:, nodes), values))
-               element(cell) = element(cell) + weights(point)*determinant &
-                               *(sum(difference**2) - share*(difference(1, 1) &
-                                                             + difference(2, 2))**2) &
-                               /(2.0_rk*rock%shear_modulus())
-            end do
-         end associate
-      end do
-      element = sqrt(element)
-   end function true_error
+   end subroutine solved
 
    !> A displacement that the elements hold has no error, and none is estimated.
    subroutine exact_in_the_elements()
@@ -175,15 +66,16 @@ contains
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate, averaged
       real(rk), allocatable :: displacement(:, :)
-      real(rk) :: effectivity, before, total
+      real(rk) :: effectivity, before, total, recovered, coarser
       integer(ik) :: level
 
       before = 1.0_rk
+      coarser = 0.0_rk
       do level = 2, 4
          mesh = cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [1_ik, 1_ik]*2_ik**level, &
                                   1_ik, 1_ik, 0_ik)
-         call solve(mesh, .false., model, displacement)
-         total = norm2(true_error(model, displacement, .false.))
+         call solved(mesh, .false., model, displacement)
+         total = norm2(true_errors(model, displacement, .false.))
          call recover_by_averages(model, displacement, recovery)
          call estimate_error(model, displacement, recovery, averaged)
          call recover_by_patches(model, displacement, recovery)
@@ -195,6 +87,15 @@ contains
                              "smooth field: effectivity")
          call checks%is_true(abs(effectivity - 1.0_rk) < before, "smooth field: it gets better")
          before = abs(effectivity - 1.0_rk)
+         recovered = norm2(true_errors(model, displacement, .false., recovery))
+         print "(2(a,f8.4))", "smooth: error of the recovered stress over that of the elements", &
+            recovered/total, ", order", log(max(coarser, recovered)/recovered)/log(2.0_rk)
+         call checks%is_true(recovered < total, "smooth field: recovered stresses are nearer")
+         if (level > 2) then
+            call checks%is_true(recovered < 0.25_rk*coarser, &
+                                "smooth field: recovered stresses converge faster than order 2")
+         end if
+         coarser = recovered
       end do
       call checks%is_close(effectivity, 1.0_rk, 0.05_rk, "smooth field: finest mesh")
    end subroutine smooth_field
@@ -214,8 +115,8 @@ contains
          b = 3_ik*2_ik**level
          mesh = cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [4*b, 4*b], 2*b, b + 1, 3*b)
          call rotate_mesh(mesh, angle, .false.)
-         call solve(mesh, .true., model, displacement)
-         true = true_error(model, displacement, .true.)
+         call solved(mesh, .true., model, displacement)
+         true = true_errors(model, displacement, .true.)
          at_tip = model%mesh%tip_corner > 0
          call recover_by_averages(model, displacement, recovery)
          call estimate_error(model, displacement, recovery, averaged)
@@ -243,8 +144,8 @@ contains
       real(rk) :: now, allowed
       logical, allocatable :: is_tip(:)
 
-      call solve(cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [8_ik, 8_ik], 1_ik, 1_ik, &
-                                   0_ik), .false., model, displacement)
+      call solved(cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [8_ik, 8_ik], 1_ik, 1_ik, &
+                                    0_ik), .false., model, displacement)
       call recover_by_patches(model, displacement, recovery)
       call estimate_error(model, displacement, recovery, estimate)
       estimate%element = estimate%total/sqrt(real(size(estimate%element), rk))
@@ -264,8 +165,8 @@ contains
                            /(2.0_rk*model%strain_energy(displacement)), 1.0_rk, 1.0e-12_rk, &
                            "elements that are left out have no energy")
 
-      call solve(cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [16_ik, 16_ik], 8_ik, &
-                                   5_ik, 12_ik), .true., model, displacement)
+      call solved(cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [16_ik, 16_ik], 8_ik, &
+                                    5_ik, 12_ik), .true., model, displacement)
       is_tip = model%mesh%tip_corner > 0
       deallocate (estimate%element, estimate%left_out)
       allocate (estimate%element(model%mesh%n_cells), source=1.0_rk)
