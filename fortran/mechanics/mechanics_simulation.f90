@@ -19,6 +19,8 @@ module mechanics_simulation
 
    !> Share of the toughness within which the first tip is at its onset.
    real(rk), parameter :: at_onset = 1.0e-9_rk
+   !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
+   real(rk), parameter :: at_jump = 1.0e-13_rk
    !> Share of the toughness that tips may lack to grow together with the first: about the error of
    !! the intensities, so that equal tips stay equal.
    real(rk), parameter :: together = 2.0e-3_rk
@@ -180,6 +182,11 @@ contains
             if (middle > low) excess_high = 0.5_rk*excess_high
             low = middle
             excess_low = excess
+         end if
+         ! Where contact changes, the intensity may jump past the toughness: at this load.
+         if (high - low <= at_jump*abs(high)) then
+            call self%respond(high, timers, error)
+            return
          end if
       end do
       call raise_error(error, "", "the load at which the next tip grows was not found")
