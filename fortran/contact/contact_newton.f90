@@ -67,8 +67,8 @@ module contact_newton
 
 contains
 
-   !> Whether x fulfils the law within a tolerance though states have changed, which they do for
-   !! ever where a point lies between two. A system that cannot tell says no.
+   !> Whether x fulfils the law within a tolerance though states go on changing, as they do where a
+   !! point lies between two. A system that cannot tell says no.
    logical function obeys_law(self, x, tolerance)
       class(contact_system_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]
@@ -105,7 +105,9 @@ contains
       if (report%outcome /= outcome_converged) report%outcome = first_outcome
    end subroutine iterate
 
-   !> Iterate until convergence or failure.
+   !> Iterate until convergence or failure. A start that is good enough is not accepted as it is: a
+   !! state would not follow a load that changes by less than the tolerance, and the search for an
+   !! onset of growth would not end.
    subroutine iterate_from(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)
@@ -115,9 +117,10 @@ contains
       integer(ik) :: seen(2*size(system%state), 0:settings%iterations_max)
       real(rk) :: seen_worst(0:settings%iterations_max), step(size(x)), worst
       integer(ik) :: k
-      logical :: is_small
+      logical :: is_small, was_small
 
       before = system%state
+      was_small = .false.
       do k = 0, settings%iterations_max
          call system%evaluate(x)
          worst = maxval(abs(system%residual))
@@ -131,11 +134,12 @@ contains
             if (.not. is_small .and. settings%allows_rounding) then
                is_small = is_rounding(system, x, settings%tolerance)
             end if
-         else if (is_small) then
-            is_small = system%obeys_law(x, settings%tolerance)
+            if (is_small) report%outcome = outcome_converged
+         else if (is_small .and. was_small) then
+            if (system%obeys_law(x, settings%tolerance)) report%outcome = outcome_converged
          end if
-         if (is_small) report%outcome = outcome_converged
-         if (is_small .or. k == settings%iterations_max) return
+         if (report%outcome == outcome_converged .or. k == settings%iterations_max) return
+         was_small = is_small
          if (has_been(system, worst, seen(:, :k - 1), seen_worst(:k - 1))) return
          seen(:, k) = [system%state, system%way]
          seen_worst(k) = worst
