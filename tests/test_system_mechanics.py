@@ -379,3 +379,18 @@ def test_nearly_incompressible_rock_is_warned_of(tmp_path: Path) -> None:
     error = abs(float(tip["k1_pa_sqrtm"]) - exact)
     assert error < float(tip["k1_error_pa_sqrtm"])
     assert error < 0.02 * exact
+
+
+def test_a_crack_crosses_a_polygon(tmp_path: Path) -> None:
+    """From the re-entrant corner of an L-shaped panel to the side across, which breaks it."""
+    out = run_input(
+        tmp_path,
+        "examples/l_panel.nml",
+        ("stop_gain = 0.2", "stop_gain = 2.0"),
+        ("to = 4.0", "to = 40.0"),
+    )
+    assert record(out)["reason"] == "a piece of the body has come loose"
+    (joint,) = [row for row in rows(out / "events.csv") if row["kind"] == "joint"]
+    assert joint["detail"] == "joins the outer boundary"
+    assert float(joint["x_m"]) == 0.0
+    assert 0.25 < float(joint["y_m"]) < 0.35
