@@ -8,7 +8,8 @@
 !! Such an iteration may cycle between states (the primal-dual active set is monotone for
 !! M-matrices only, and the condensed stiffness of a body is none; Hintermueller, Ito and Kunisch
 !! 2003). A cycle, a singular matrix or too many iterations make it ask the system for another
-!! start, once; a system may know a slower way that always leads to a solution (contact_pairs).
+!! start, once; a system may know a slower way that always leads to a solution (contact_pairs). If
+!! that is one of many, as for a piece that floats, the system counts as singular.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_lapack, only: dgecon, dgetrf, dgetrs
@@ -35,6 +36,7 @@ module contact_newton
       procedure(evaluate_system), deferred :: evaluate
       procedure :: obeys_law
       procedure :: restart
+      procedure :: end_restart
    end type contact_system_t
 
    type :: iteration_settings_t
@@ -86,6 +88,13 @@ contains
       has_start = size(x) == 0 .and. size(self%state) == 0
    end subroutine restart
 
+   !> Take back what `restart` may have changed in the derivatives. Here that is nothing.
+   subroutine end_restart(self)
+      class(contact_system_t), intent(inout) :: self
+
+      self%stress_scale = max(self%stress_scale, 0.0_rk)
+   end subroutine end_restart
+
    !> Solve the system, from the x and the states that it has at the start.
    subroutine iterate(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
@@ -102,8 +111,28 @@ contains
       if (.not. has_start) return
       report%was_restarted = .true.
       call iterate_from(system, x, settings, report)
-      if (report%outcome /= outcome_converged) report%outcome = first_outcome
+      if (report%outcome == outcome_converged) then
+         if (is_loose(system, x)) report%outcome = outcome_singular
+      else
+         report%outcome = first_outcome
+      end if
    end subroutine iterate
+
+   !> Whether the solution found from another start is one of many: a part that only contact could
+   !! hold is free to move.
+   logical function is_loose(system, x)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(in) :: x(:)
+      real(rk), parameter :: largest_condition = 1.0e12_rk
+      type(iteration_report_t) :: report
+      real(rk) :: step(size(x))
+
+      call system%end_restart()
+      call system%evaluate(x)
+      call newton_step(system, step, .true., report)
+      is_loose = report%outcome == outcome_singular
+      if (.not. is_loose) is_loose = .not. report%condition <= largest_condition
+   end function is_loose
 
    !> Iterate until convergence or failure. A start that is good enough is not accepted as it is: a
    !! state would not follow a load that changes by less than the tolerance, and the search for an

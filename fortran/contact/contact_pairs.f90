@@ -33,6 +33,7 @@ module contact_pairs
       procedure :: law_residual
       procedure :: obeys_law
       procedure :: restart
+      procedure :: end_restart
    end type contact_pairs_t
 
 contains
@@ -141,5 +142,12 @@ contains
       self%state = -1
       has_start = .true.
    end subroutine restart
+
+   !> Without the foundation.
+   subroutine end_restart(self)
+      class(contact_pairs_t), intent(inout) :: self
+
+      self%spring = 0.0_rk
+   end subroutine end_restart
 
 end module contact_pairs

@@ -121,15 +121,16 @@ contains
       call checks%no_error(error, "the body is numbered")
    end subroutine set_body
 
-   !> A line keeps clear of the others, or meets them at a large angle and away from ends.
+   !> A line keeps clear of the others, or meets them at a large angle and away from ends: one at
+   !! most, the boundary counted, so that no piece is cut out of the body.
    logical function fits(line, network)
       real(rk), intent(in) :: line(:, :)
       type(network_t), intent(in) :: network
       integer(ik) :: f, i, k, n_met
 
       fits = .false.
+      n_met = merge(1, 0, abs(line(1, 1) + half) < 1.0e-9_rk)
       do f = 1, size(network%s_start, kind=ik)
-         n_met = 0
          do k = network%first(f), network%first(f + 1) - 2
             do i = 1, size(line, 2) - 1
                if (.not. pair_fits(line(:, i:i + 1), network%xy(:, k:k + 1), n_met)) return
