@@ -31,6 +31,23 @@ std::vector<int> nodes_of_corners(const Domain& domain, const Graph& graph,
 
 } // namespace
 
+void divide_boundary(int start, int stop, const SizeField& size, std::vector<Vec2>& xy,
+                     std::vector<int>& loop) {
+    const Vec2 a = xy[start], b = xy[stop];
+    const std::vector<double> t = divide_segment(a, b, size);
+    loop.push_back(start);
+    for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+        Vec2 p = along(a, b, t[i]);
+        // exactly on the side, which is how boundary faces are recognized
+        if (a.x == b.x)
+            p.x = a.x;
+        if (a.y == b.y)
+            p.y = a.y;
+        loop.push_back(static_cast<int>(xy.size()));
+        xy.push_back(p);
+    }
+}
+
 std::vector<int> mesh_boundary(const Domain& domain, const Graph& graph, const SizeField& size,
                                std::vector<Vec2>& xy) {
     std::vector<int> on_boundary;
@@ -50,21 +67,8 @@ std::vector<int> mesh_boundary(const Domain& domain, const Graph& graph, const S
         std::sort(stops.begin() + 1, stops.end(),
                   [&](int p, int q) { return distance(a, xy[p]) < distance(a, xy[q]); });
         stops.push_back(corner_node[(edge + 1) % domain.edge_count()]);
-        for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
-            const Vec2 start = xy[stops[k]], stop = xy[stops[k + 1]];
-            const std::vector<double> t = divide_segment(start, stop, size);
-            loop.push_back(stops[k]);
-            for (std::size_t i = 1; i + 1 < t.size(); ++i) {
-                Vec2 p = along(start, stop, t[i]);
-                // exactly on the side, which is how boundary faces are recognized
-                if (a.x == b.x)
-                    p.x = a.x;
-                if (a.y == b.y)
-                    p.y = a.y;
-                loop.push_back(static_cast<int>(xy.size()));
-                xy.push_back(p);
-            }
-        }
+        for (std::size_t k = 0; k + 1 < stops.size(); ++k)
+            divide_boundary(stops[k], stops[k + 1], size, xy, loop);
     }
     return loop;
 }

@@ -84,6 +84,13 @@ Domain domain_from(const cm_spec& given) {
                   std::vector<int>(given.edge_side, given.edge_side + given.n_corners));
 }
 
+std::vector<std::array<double, 2>> radii_at_ends(int n_fractures, const double* end_radius) {
+    std::vector<std::array<double, 2>> radii;
+    for (int f = 0; f < n_fractures; ++f)
+        radii.push_back({end_radius[2 * f], end_radius[2 * f + 1]});
+    return radii;
+}
+
 Specification specification_from(const cm_spec* given, int n_fractures) {
     require(given != nullptr, "no specification was given");
     Specification spec;
@@ -95,9 +102,7 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.rosette_radii.usual = given->rosette_radius;
     spec.rosette_radii.leave_no_short_piece = !spec.is_window;
     if (given->end_radius != nullptr)
-        for (int f = 0; f < n_fractures; ++f)
-            spec.rosette_radii.at_end.push_back(
-                {given->end_radius[2 * f], given->end_radius[2 * f + 1]});
+        spec.rosette_radii.at_end = radii_at_ends(n_fractures, given->end_radius);
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
     return spec;
 }
@@ -255,6 +260,21 @@ int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_cent
         require(old_mesh != nullptr, "no mesh was given");
         *new_mesh = new cm_mesh{remesh(old_mesh->mesh, network_from(network),
                                        points_from(n_centres, centres), radius, size)};
+    });
+}
+
+int cm_grow(const cm_mesh* old_mesh, const cm_network* network, const double* end_radius,
+            cm_mesh** new_mesh) {
+    return guarded([&] {
+        require(new_mesh != nullptr, "no place was given for the mesh");
+        *new_mesh = nullptr;
+        require(old_mesh != nullptr, "no mesh was given");
+        const Network fractures = network_from(network);
+        RosetteRadii radii = old_mesh->mesh.specification.rosette_radii;
+        radii.at_end.clear();
+        if (end_radius != nullptr)
+            radii.at_end = radii_at_ends(fractures.size(), end_radius);
+        *new_mesh = new cm_mesh{grow_mesh(old_mesh->mesh, fractures, radii)};
     });
 }
 

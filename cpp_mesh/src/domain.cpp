@@ -55,6 +55,13 @@ Domain::Domain(std::vector<Vec2> corners, std::vector<int> edge_sides)
     rounding_ = relative_rounding * std::max({box_.diagonal(), std::abs(low.x), std::abs(low.y),
                                               std::abs(high.x), std::abs(high.y)});
     check();
+    find_core();
+}
+
+// Around the middle of the box, which is that of a disc.
+void Domain::find_core() {
+    core_centre_ = {0.5 * (box_.x_min + box_.x_max), 0.5 * (box_.y_min + box_.y_max)};
+    core_radius_ = depth(core_centre_) - 2.0 * rounding_;
 }
 
 // Edges meet only in the corners that they share, and run counter-clockwise.
@@ -118,6 +125,8 @@ bool Domain::is_on_edge(Vec2 p, int edge) const {
 int Domain::common_side(Vec2 a, Vec2 b) const {
     if (is_rectangle_)
         return box_.common_side(a, b);
+    if (is_deeper(a, 0.0) || is_deeper(b, 0.0))
+        return 0;
     for (int k = 0; k < edge_count(); ++k)
         if (is_on_edge(a, k) && is_on_edge(b, k))
             return side(k);
@@ -125,6 +134,8 @@ int Domain::common_side(Vec2 a, Vec2 b) const {
 }
 
 Vec2 Domain::snapped(Vec2 p, double tolerance) const {
+    if (is_deeper(p, tolerance))
+        return p;
     if (is_rectangle_) {
         const auto snap = [tolerance](double& coordinate, double side) {
             if (std::abs(coordinate - side) <= tolerance)
@@ -162,6 +173,8 @@ double Domain::angle_with_boundary(Vec2 p, Vec2 direction) const {
 }
 
 bool Domain::is_left_by(Vec2 a, Vec2 b) const {
+    if (is_deeper(a, 0.0) && is_deeper(b, 0.0))
+        return false;
     if (depth(a) < 0.0 || depth(b) < 0.0)
         return true;
     if (is_rectangle_)

@@ -30,6 +30,13 @@ public:
     // Distance to the boundary: 0 on it, negative outside.
     double depth(Vec2 p) const;
 
+    // Is that distance certainly larger than a given one? A quick answer for most points.
+    bool is_deeper(Vec2 p, double depth) const {
+        return distance(p, core_centre_) < core_radius_ - depth;
+    }
+
+    bool is_on_boundary(Vec2 p) const { return !is_deeper(p, 0.0) && depth(p) == 0.0; }
+
     // Does the point lie on the edge? Its ends belong to it.
     bool is_on_edge(Vec2 p, int edge) const;
 
@@ -50,6 +57,7 @@ public:
 
 private:
     void check() const;
+    void find_core();
     bool contains(Vec2 p) const;
 
     Rectangle box_;
@@ -57,6 +65,8 @@ private:
     std::vector<Vec2> corners_;
     std::vector<int> edge_sides_;
     double area_ = 0.0;
+    Vec2 core_centre_;        // of a disc within a polygon, about which no edge need be asked
+    double core_radius_ = -1.0; // [m]
     double rounding_ = 0.0; // points so near to the boundary lie on it [m]
 };
 

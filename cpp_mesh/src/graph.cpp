@@ -65,7 +65,7 @@ private:
             if (distance(at(k), p) <= tolerances_.same)
                 return k;
         p = snapped(p);
-        graph_.points.push_back({p, domain_.depth(p) == 0.0});
+        graph_.points.push_back({p, domain_.is_on_boundary(p)});
         return static_cast<int>(graph_.points.size()) - 1;
     }
 
@@ -194,6 +194,7 @@ private:
 
     void check_depth(const Segment& segment, int point) const {
         if (segment.old_cell < 0 && !graph_.points[point].on_boundary &&
+            !domain_.is_deeper(at(point), tolerances_.near_miss) &&
             domain_.depth(at(point)) < tolerances_.near_miss)
             throw MeshError(fracture_name(segment.fracture) + " comes within " +
                             number_text(domain_.depth(at(point))) + " m of the boundary" +

@@ -32,7 +32,7 @@ void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, Size
             if (edge.point[0] != p && edge.point[1] != p)
                 gap = std::min(gap, distance_to_segment(place, graph.points[edge.point[0]].xy,
                                                         graph.points[edge.point[1]].xy));
-        if (!graph.points[p].on_boundary)
+        if (!graph.points[p].on_boundary && !domain.is_deeper(place, gap))
             gap = std::min(gap, domain.depth(place));
         if (gap < narrow_share * wanted)
             discs.push_back({place, gap, gap, growth});

@@ -23,7 +23,7 @@ int number_parts(const PlaneMesh& mesh, const EdgeTable& edges, const std::vecto
             const int c = waiting.back();
             waiting.pop_back();
             for (int k = 0; k < 3; ++k) {
-                const int d = edges.cell(mesh.cells[c][(k + 1) % 3], mesh.cells[c][k]);
+                const int d = edges.across(c, k);
                 if (d >= 0 && marked[d] == mark && part[d] < 0) {
                     part[d] = n_parts;
                     waiting.push_back(d);
@@ -36,9 +36,8 @@ int number_parts(const PlaneMesh& mesh, const EdgeTable& edges, const std::vecto
 }
 
 // Does the cell's edge k bound the patch?
-bool is_rim(const PlaneMesh& mesh, const EdgeTable& edges, const std::vector<char>& marked, int c,
-            int k) {
-    const int d = edges.cell(mesh.cells[c][(k + 1) % 3], mesh.cells[c][k]);
+bool is_rim(const EdgeTable& edges, const std::vector<char>& marked, int c, int k) {
+    const int d = edges.across(c, k);
     return d < 0 || !marked[d];
 }
 
@@ -46,7 +45,7 @@ bool close_pinches(const PlaneMesh& mesh, const EdgeTable& edges, std::vector<ch
     std::vector<int> leaving(mesh.xy.size(), 0);
     for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c)
         for (int k = 0; k < 3; ++k)
-            if (marked[c] && is_rim(mesh, edges, marked, c, k))
+            if (marked[c] && is_rim(edges, marked, c, k))
                 ++leaving[mesh.cells[c][k]];
     bool has_changed = false;
     for (int node = 0; node < static_cast<int>(mesh.xy.size()); ++node) {
@@ -65,7 +64,7 @@ bool fill_islands(const PlaneMesh& mesh, const EdgeTable& edges, std::vector<cha
     std::vector<char> is_island(n_parts, 1);
     for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c)
         for (int k = 0; k < 3; ++k)
-            if (part[c] >= 0 && edges.cell(mesh.cells[c][(k + 1) % 3], mesh.cells[c][k]) < 0)
+            if (part[c] >= 0 && edges.across(c, k) < 0)
                 is_island[part[c]] = 0;
     bool has_changed = false;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -136,7 +135,7 @@ std::vector<PatchPart> patch_parts(const PlaneMesh& mesh, const EdgeTable& edges
             continue;
         parts[part[c]].cells.push_back(c);
         for (int k = 0; k < 3; ++k)
-            if (is_rim(mesh, edges, marked, c, k))
+            if (is_rim(edges, marked, c, k))
                 next[mesh.cells[c][k]] = {mesh.cells[c][(k + 1) % 3], part[c]};
     }
     while (!next.empty()) {

@@ -1,8 +1,42 @@
 #include "plane_mesh.hpp"
 
+#include "errors.hpp"
+
 #include <algorithm>
 
 namespace cpp_mesh {
+
+int drop_unused_nodes(PlaneMesh& mesh, int watched) {
+    const int n_before = static_cast<int>(mesh.xy.size());
+    std::vector<int> number(n_before, -1);
+    for (const Triangle& cell : mesh.cells)
+        for (int node : cell)
+            number[node] = 0;
+    int n = 0, watched_now = n_before;
+    for (int node = 0; node < n_before; ++node) {
+        if (node == watched)
+            watched_now = n;
+        if (number[node] < 0)
+            continue;
+        mesh.xy[n] = mesh.xy[node];
+        number[node] = n++;
+    }
+    mesh.xy.resize(n);
+    for (Triangle& cell : mesh.cells)
+        for (int& node : cell)
+            node = number[node];
+    for (FractureCell& cell : mesh.fracture_cells) {
+        for (int& node : cell.node) {
+            node = number[node];
+            if (node < 0)
+                throw MeshError("a node of " + fracture_name(cell.fracture) +
+                                " is missing in the new triangles");
+        }
+    }
+    for (Rosette& rosette : mesh.rosettes)
+        rosette.tip_node = number[rosette.tip_node];
+    return std::min(watched_now, n);
+}
 
 void sort_fracture_cells(std::vector<FractureCell>& cells) {
     std::stable_sort(cells.begin(), cells.end(), [](const FractureCell& a, const FractureCell& b) {
@@ -35,6 +69,13 @@ EdgeTable::EdgeTable(const std::vector<Triangle>& cells, int n_nodes)
     for (int c = 0; c < static_cast<int>(cells.size()); ++c)
         for (int node : cells[c])
             around_[next[node]++] = c;
+}
+
+void EdgeTable::find_neighbours() const {
+    across_.resize(3 * cells_.size());
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+        for (int k = 0; k < 3; ++k)
+            across_[3 * c + k] = cell(cells_[c][(k + 1) % 3], cells_[c][k]);
 }
 
 int EdgeTable::cell(int a, int b) const {

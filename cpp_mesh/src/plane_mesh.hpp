@@ -40,6 +40,10 @@ struct Quality {
 
 Quality quality_of(const PlaneMesh& mesh);
 
+// Leave out the nodes that no cell uses; node `watched` or the first used one after it becomes the
+// node whose number is returned.
+int drop_unused_nodes(PlaneMesh& mesh, int watched);
+
 // By fracture, then by arc length.
 void sort_fracture_cells(std::vector<FractureCell>& cells);
 
@@ -49,13 +53,22 @@ public:
     explicit EdgeTable(const std::vector<Triangle>& cells, int n_nodes);
     // Cell whose boundary runs from a to b, or -1.
     int cell(int a, int b) const;
+    // The cell on the other side of edge k of a cell, or -1.
+    int across(int cell, int k) const {
+        if (across_.empty())
+            find_neighbours();
+        return across_[3 * cell + k];
+    }
     // Cells around a node.
     const int* begin(int node) const { return around_.data() + first_[node]; }
     const int* end(int node) const { return around_.data() + first_[node + 1]; }
 
 private:
+    void find_neighbours() const;
+
     const std::vector<Triangle>& cells_;
     std::vector<int> first_, around_;
+    mutable std::vector<int> across_; // made when first asked for
 };
 
 } // namespace cpp_mesh

@@ -258,31 +258,8 @@ private:
         map.cell_old.resize(plane.cells.size(), -1);
         plane.fracture_cells = std::move(skeleton_.cells);
 
-        std::vector<int> number(xy_.size(), -1);
-        for (const Triangle& cell : plane.cells)
-            for (int node : cell)
-                number[node] = 0;
-        int first_free = 0;
-        for (int node = 0; node < static_cast<int>(xy_.size()); ++node) {
-            if (node == first_free_)
-                first_free = static_cast<int>(plane.xy.size());
-            if (number[node] < 0)
-                continue;
-            number[node] = static_cast<int>(plane.xy.size());
-            plane.xy.push_back(xy_[node]);
-        }
-        for (Triangle& cell : plane.cells)
-            for (int& node : cell)
-                node = number[node];
-        for (FractureCell& cell : plane.fracture_cells)
-            for (int& node : cell.node) {
-                node = number[node];
-                if (node < 0)
-                    throw MeshError("a node of " + fracture_name(cell.fracture) +
-                                    " is missing in the new triangles");
-            }
-        if (first_free_ < static_cast<int>(xy_.size()))
-            smooth(plane, first_free);
+        plane.xy = std::move(xy_);
+        smooth(plane, drop_unused_nodes(plane, first_free_));
         find_overlaps(old_.plane, patch, plane, map);
         new_.map = std::move(map);
     }

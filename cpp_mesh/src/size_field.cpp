@@ -29,18 +29,37 @@ SizeField::SizeField(std::vector<SizeSource> sources, const Domain& domain, doub
         for (int j = 0; j <= search_intervals; ++j) {
             const Vec2 p = {rectangle.x_min + rectangle.width() * i / search_intervals,
                             rectangle.y_min + rectangle.height() * j / search_intervals};
-            if (!domain.is_rectangle() && domain.depth(p) < 0.0)
-                continue;
             double nearest = std::numeric_limits<double>::max();
-            for (const SizeSource& source : sources_)
+            for (const SizeSource& source : sources_) {
                 nearest = std::min(nearest, distance_to_segment(p, source.a, source.b));
-            farthest = std::max(farthest, nearest);
+                if (nearest <= farthest)
+                    break;
+            }
+            if (nearest > farthest && (domain.is_rectangle() || domain.depth(p) >= 0.0))
+                farthest = nearest;
         }
     }
     double smallest = size_far;
     for (const SizeSource& source : sources_)
         smallest = std::min(smallest, source.size);
     slope_ = (size_far - smallest) / (reach * farthest);
+}
+
+SizeField SizeField::less(const SizeField& other) const {
+    SizeField rest;
+    rest.largest_ = std::numeric_limits<double>::max();
+    rest.slope_ = slope_;
+    for (const SizeSource& source : sources_)
+        if (std::none_of(other.sources_.begin(), other.sources_.end(), [&](const SizeSource& s) {
+                return s.a == source.a && s.b == source.b && s.size == source.size;
+            }))
+            rest.sources_.push_back(source);
+    for (const SizeDisc& disc : discs_)
+        if (std::none_of(other.discs_.begin(), other.discs_.end(), [&](const SizeDisc& d) {
+                return d.centre == disc.centre && d.radius == disc.radius && d.size == disc.size;
+            }))
+            rest.discs_.push_back(disc);
+    return rest;
 }
 
 double SizeField::operator()(Vec2 p) const {

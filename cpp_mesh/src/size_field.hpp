@@ -44,6 +44,9 @@ public:
     bool is_scale_free() const { return is_scale_free_; }
     void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
 
+    // What this field has and another one lacks; without limit elsewhere.
+    SizeField less(const SizeField& other) const;
+
 private:
     std::vector<SizeSource> sources_;
     std::vector<SizeDisc> discs_;

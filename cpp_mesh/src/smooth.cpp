@@ -19,9 +19,16 @@ double worst_shape_around(const PlaneMesh& mesh, const EdgeTable& edges, int nod
 } // namespace
 
 void smooth(PlaneMesh& mesh, int first_free) {
+    std::vector<int> nodes;
+    for (int node = first_free; node < static_cast<int>(mesh.xy.size()); ++node)
+        nodes.push_back(node);
+    smooth(mesh, nodes);
+}
+
+void smooth(PlaneMesh& mesh, const std::vector<int>& nodes) {
     const EdgeTable edges(mesh.cells, static_cast<int>(mesh.xy.size()));
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (int node = first_free; node < static_cast<int>(mesh.xy.size()); ++node) {
+        for (int node : nodes) {
             Vec2 sum;
             int n_cells = 0;
             for (const int* c = edges.begin(node); c != edges.end(node); ++c, ++n_cells)

@@ -10,6 +10,9 @@ namespace cpp_mesh {
 // smallest angle around it grows (Freitag, Jones and Plassmann 1995: "smart" smoothing).
 void smooth(PlaneMesh& mesh, int first_free);
 
+// The same for the given nodes.
+void smooth(PlaneMesh& mesh, const std::vector<int>& nodes);
+
 } // namespace cpp_mesh
 
 #endif

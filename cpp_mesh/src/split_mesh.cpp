@@ -135,7 +135,7 @@ private:
         }
     }
 
-    bool is_on_boundary(Vec2 p) const { return domain_.depth(p) == 0.0; }
+    bool is_on_boundary(Vec2 p) const { return domain_.is_on_boundary(p); }
 
     // Where a polyline begins or ends, or is cut by the boundary, its chain of cells breaks.
     bool starts_chain(int i) const { return i == 0 || !follow(i - 1, i); }

@@ -71,6 +71,14 @@ public:
                                     &handle));
     }
 
+    bool grow(const ApiMesh& old_mesh, TestNetwork network,
+              const std::vector<double>& end_radius = {}) {
+        cm_destroy(&handle);
+        const cm_network view = network.view();
+        return read(cm_grow(old_mesh.handle, &view,
+                            end_radius.empty() ? nullptr : end_radius.data(), &handle));
+    }
+
     bool remesh(const ApiMesh& old_mesh, TestNetwork network, const std::vector<Point>& centres,
                 double radius, double size) {
         cm_destroy(&handle);

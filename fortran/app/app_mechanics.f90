@@ -118,6 +118,9 @@ contains
          row%dt = row%time - self%told_time
          self%told_time = row%time
          record%contact_residual = max(record%contact_residual, body%contact%residual)
+         record%has_growth = simulation%scene%growth%enabled
+         record%meshes_whole = body%whole_meshes
+         record%meshes_patched = body%patched_meshes
          record%cells = body%mesh%n_cells
          record%fracture_cells = body%mesh%fracture%n_cells
          if (record%smallest_angle > body%smallest_angle .or. &
@@ -186,6 +189,7 @@ contains
          call journal%growth_done(simulation%time(), scene, simulation%tip)
          if (any_grew) then
             call journal%mesh_done(simulation%time(), simulation%network, simulation%body%mesh)
+            journal%record%increments = journal%record%increments + 1
          end if
          call timers%stop(phase_output)
          if (any_grew .and. .not. simulation%is_cut) then

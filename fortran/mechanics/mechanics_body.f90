@@ -2,7 +2,7 @@
 module mechanics_body
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_assemble, phase_factorize, phase_remesh, phase_solve, &
+   use base_timers, only: phase_assemble, phase_factorize, phase_mesh, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
@@ -14,8 +14,8 @@ module mechanics_body
    use mechanics_faces, only: face_conditions, face_pressure, given_slip, transfer_contact
    use mechanics_loads, only: body_loads, held_boundary
    use mechanics_outline, only: outline_of_scene, outline_t
-   use mesh_builder, only: build_mesh, build_mesh_sized, mesh_quality, mesh_spec_t, mesher_t, &
-                           transfer_mesher
+   use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
+                           mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use tips_dual, only: correct_intensity, has_dual
@@ -25,6 +25,13 @@ module mechanics_body
    private
 
    public :: body_t
+
+   !> What is kept of the mesh before an increment of growth.
+   type :: before_t
+      type(mesher_t) :: mesher
+      type(fine_mesh_t) :: fine
+      type(contact_t) :: contact
+   end type before_t
 
    !> A body on one mesh, and its state under a load.
    type :: body_t
@@ -39,8 +46,13 @@ module mechanics_body
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
       type(energy_error_t) :: estimate  !< of the error; on adaptive meshes only
       real(rk) :: smallest_angle = 0.0_rk  !< of the mesh [rad]
+      type(before_t) :: before
+      integer(ik) :: whole_meshes = 0  !< made of the whole body so far
+      integer(ik) :: patched_meshes = 0  !< made anew around tips only
    contains
       procedure :: build
+      procedure :: remember
+      procedure :: grow
       procedure :: refine
       procedure :: estimate_body
       procedure :: respond
@@ -49,21 +61,67 @@ module mechanics_body
 
 contains
 
-   !> Mesh the body with its fractures, assemble and factorize. Contact is carried over from the
-   !! mesh before, if there was one.
-   subroutine build(self, scene, start, network, mesh_phase, timers, error)
+   !> Mesh the body with its fractures, assemble and factorize.
+   subroutine build(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
-      integer, intent(in) :: mesh_phase  !< of the timers: the first mesh or a later one
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      call timers%start(mesh_phase)
+      call timers%start(phase_mesh)
       call build_mesh(body_spec(scene, network), network, self%mesher, self%mesh, error)
-      call timers%stop(mesh_phase)
-      if (.not. allocated(error)) call set_up(self, scene, start, network, timers, error)
+      self%whole_meshes = self%whole_meshes + 1
+      call timers%stop(phase_mesh)
+      if (allocated(error)) return
+      call set_up(self, scene, start, network, timers, error)
    end subroutine build
+
+   !> Keep the present mesh: growth starts from it, however often its direction is corrected.
+   subroutine remember(self)
+      class(body_t), intent(inout) :: self
+
+      call transfer_mesher(self%mesher, self%before%mesher)
+      self%before%fine = self%model%mesh
+      self%before%contact = self%contact
+   end subroutine remember
+
+   !> The body with fractures that have grown since `remember`: meshed anew around their ends, or as
+   !! a whole where that does not go, assembled and factorized. Contact is carried over.
+   subroutine grow(self, scene, start, network, timers, error)
+      class(body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: no_patch
+      real(rk) :: radii(2, size(network%first) - 1)
+      integer(ik) :: tip
+
+      call timers%start(phase_remesh)
+      radii = end_radii(scene, network)
+      if (scene%adaptive%enabled) then  ! rosettes are as small as the error has asked for
+         associate (fracture => self%before%fine%fracture)
+            do tip = 1, fracture%n_tips
+               associate (radius => radii(fracture%tip_end(tip), fracture%tip_fracture(tip)))
+                  radius = min(radius, fracture%tip_radius(tip))
+               end associate
+            end do
+         end associate
+      end if
+      call grow_mesh(self%before%mesher, network, radii, self%mesher, self%mesh, no_patch)
+      if (allocated(no_patch)) then
+         call build_mesh(body_spec(scene, network), network, self%mesher, self%mesh, error)
+         self%whole_meshes = self%whole_meshes + 1
+      else
+         self%patched_meshes = self%patched_meshes + 1
+      end if
+      call timers%stop(phase_remesh)
+      if (.not. allocated(error)) then
+         call set_up(self, scene, start, network, timers, error, self%before%fine, &
+                     self%before%contact)
+      end if
+   end subroutine grow
 
    !> A mesh whose elements have the sizes that make the error of the present state, where they
    !! lie, as small as the scene wants.
@@ -77,6 +135,8 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
+      type(fine_mesh_t) :: fine_before
+      type(contact_t) :: contact_before
       real(rk), allocatable :: sizes(:), shrinkage(:)
 
       call timers%start(phase_remesh)
@@ -88,7 +148,10 @@ contains
       if (allocated(error)) return
       call transfer_mesher(mesher, self%mesher)
       self%mesh = mesh
-      call set_up(self, scene, start, network, timers, error)
+      self%whole_meshes = self%whole_meshes + 1
+      fine_before = self%model%mesh
+      contact_before = self%contact
+      call set_up(self, scene, start, network, timers, error, fine_before, contact_before)
    end subroutine refine
 
    !> Rosettes as much smaller as the error around the tips asks for.
@@ -107,27 +170,22 @@ contains
       end associate
    end subroutine fit_rosettes
 
-   !> Elements, contact, conditions and factors on the present mesh.
-   subroutine set_up(self, scene, start, network, timers, error)
-      class(body_t), intent(inout) :: self
+   !> Elements, contact, conditions and factors on the present mesh; contact is carried over from
+   !! another mesh if there is one.
+   subroutine set_up(self, scene, start, network, timers, error, fine_before, contact_before)
+      type(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start, network
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      type(fine_mesh_t), intent(in), optional :: fine_before
+      type(contact_t), intent(in), optional :: contact_before
       type(elasticity_t) :: elasticity
-      type(fine_mesh_t) :: fine_before
-      type(contact_t) :: contact_before
-      logical :: has_before
       integer(ik) :: worst
 
       call mesh_quality(self%mesher, self%smallest_angle, worst, error)
       if (allocated(error)) return
-      has_before = allocated(self%displacement)
-      if (has_before) then
-         deallocate (self%displacement)
-         fine_before = self%model%mesh
-         contact_before = self%contact
-      end if
+      if (allocated(self%displacement)) deallocate (self%displacement)
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
                                 plane_stress=scene%material%plane_stress)
       call timers%start(phase_assemble)
@@ -136,7 +194,7 @@ contains
       call timers%stop(phase_assemble)
       if (allocated(error)) return
       associate (fine => self%model%mesh)
-         if (has_before) then
+         if (present(fine_before) .and. present(contact_before)) then
             call timers%start(phase_transfer)
             call transfer_contact(fine_before, contact_before, fine, self%contact)
             call timers%stop(phase_transfer)
@@ -208,7 +266,6 @@ contains
       type(network_t), intent(in) :: network
       type(mesh_spec_t) :: spec
       type(outline_t) :: outline
-      integer :: f
 
       outline = outline_of_scene(scene)
       spec%corners = outline%corners
@@ -220,17 +277,30 @@ contains
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       if (.not. spec%rosette_radius > 0.0_rk) spec%rosette_radius = spec%size_fracture
-      ! Two elements fit on the last straight piece, for the domain of the interaction integral
-      ! ends at a kink.
-      allocate (spec%end_radius(2, size(network%first) - 1))
+      spec%end_radius = end_radii(scene, network)
+   end function body_spec
+
+   !> Radii of the rosettes at the starts and ends of the fractures, unless something is near [m].
+   !! Two elements fit on the last straight piece, for the domain of the interaction integral ends
+   !! at a kink.
+   pure function end_radii(scene, network) result(radii)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      real(rk) :: radii(2, size(network%first) - 1)
+      real(rk) :: largest
+      integer :: f
+
       do f = 1, size(network%first) - 1
          associate (first => network%first(f), last => network%first(f + 1) - 1)
-            spec%end_radius(1, f) = norm2(network%xy(:, first + 1) - network%xy(:, first))
-            spec%end_radius(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
+            radii(1, f) = norm2(network%xy(:, first + 1) - network%xy(:, first))
+            radii(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
          end associate
       end do
-      spec%end_radius = min(spec%rosette_radius, 0.5_rk*spec%end_radius)
-   end function body_spec
+      largest = scene%discretization%rosette_radius
+      if (.not. largest > 0.0_rk) largest = scene%discretization%size_fracture
+      if (.not. largest > 0.0_rk) largest = scene%discretization%size_boundary
+      radii = min(largest, 0.5_rk*radii)
+   end function end_radii
 
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.
    subroutine respond(self, scene, factor, timers, error)

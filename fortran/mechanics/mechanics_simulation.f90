@@ -3,8 +3,9 @@
 module mechanics_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_mesh, phase_remesh, timers_t
+   use base_timers, only: timers_t
    use mechanics_body, only: body_t
+   use mechanics_onset, only: foreseen_onset, reading_t
    use mechanics_outline, only: outline_of_scene, outline_t
    use mechanics_targets, only: cuts_through, find_target, target_boundary, target_none
    use mesh_types, only: network_t
@@ -68,7 +69,7 @@ contains
       self%start = network_of_scene(scene)
       self%network = self%start
       self%outline = outline_of_scene(scene)
-      call self%body%build(scene, self%start, self%network, phase_mesh, timers, error)
+      call self%body%build(scene, self%start, self%network, timers, error)
       if (allocated(error)) return
       associate (fracture => self%body%mesh%fracture)
          allocate (self%tip(fracture%n_tips))
@@ -130,24 +131,22 @@ contains
    !!
    !! Without contact the intensities are linear in the factor. The equivalent intensity, the
    !! largest over all angles of linear functions, is then convex: where it is below the toughness
-   !! at both ends of an interval, it is so within. Its root is found by regula falsi with the
-   !! Illinois rule (Dowell and Jarratt 1971), which keeps it bracketed.
+   !! at both ends of an interval, it is so within.
    subroutine rise(self, target, has_onset, timers, error)
       class(simulation_t), intent(inout) :: self
       real(rk), intent(in) :: target  !< [-]
       logical, intent(out) :: has_onset
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: iterations = 60
-      real(rk) :: low, high, excess_low, excess_high, excess, middle
-      integer :: k
+      type(reading_t) :: low, high
+      real(rk) :: onset
 
       has_onset = .false.
-      low = self%factor
       if (.not. allocated(self%body%displacement)) then
+         low%factor = self%factor
          call adapt(self, target, timers, error)
          if (allocated(error)) return
-         call self%respond(low, timers, error)
+         call self%respond(low%factor, timers, error)
          if (allocated(error)) return
       end if
       call accept(self)
@@ -158,39 +157,88 @@ contains
          if (.not. allocated(error)) call take_intensities(self)
          return
       end if
-      excess_low = largest_excess(self)
-      has_onset = excess_low >= -at_onset
+      has_onset = largest_excess(self) >= -at_onset
       if (has_onset) return
-      call self%respond(target, timers, error)
-      if (allocated(error)) return
-      high = target
-      excess_high = largest_excess(self)
-      if (excess_high < -at_onset) return
+      low = reading(self)
+      ! Where all loads rise in proportion, the intensities do so until contact changes.
+      onset = target
+      if (all_loads_rise(self%scene) .and. low%factor > 0.0_rk .and. &
+          largest_excess(self) > -1.0_rk) onset = low%factor/(1.0_rk + largest_excess(self))
+      if (onset < target) then
+         call self%respond(onset, timers, error)
+         if (allocated(error)) return
+         has_onset = abs(largest_excess(self)) <= at_onset
+         if (has_onset) return
+         if (largest_excess(self) < 0.0_rk) low = reading(self)
+      end if
+      if (.not. largest_excess(self) >= 0.0_rk) then
+         call self%respond(target, timers, error)
+         if (allocated(error)) return
+         if (largest_excess(self) < -at_onset) return
+      end if
       has_onset = .true.
+      high = reading(self)
+      call find_onset(self, low, high, timers, error)
+   end subroutine rise
+
+   !> The load between one at which no tip grows and one at which some do, the present one.
+   subroutine find_onset(self, low, high, timers, error)
+      class(simulation_t), intent(inout) :: self
+      type(reading_t), intent(inout) :: low, high
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: iterations = 60
+      type(reading_t) :: last, next
+      real(rk) :: width(0:iterations)
+      integer :: k
+
+      last = low
+      next = high
+      width = huge(1.0_rk)
       do k = 1, iterations
          if (abs(largest_excess(self)) <= at_onset) return
-         ! From the lower end, which may be nearer to the root by all the digits there are.
-         middle = low - excess_low*(high - low)/(excess_high - excess_low)
-         call self%respond(middle, timers, error)
-         if (allocated(error)) return
-         excess = largest_excess(self)
-         if (excess >= 0.0_rk) then
-            if (excess_low < 0.0_rk .and. middle < high) excess_low = 0.5_rk*excess_low
-            high = middle
-            excess_high = excess
+         width(k) = high%factor - low%factor
+         if (k > 3 .and. width(k) > 0.5_rk*width(max(k - 3, 0))) then
+            next%factor = 0.5_rk*(low%factor + high%factor)  ! the lines lead nowhere
          else
-            if (middle > low) excess_high = 0.5_rk*excess_high
-            low = middle
-            excess_low = excess
+            next%factor = foreseen_onset(last, next, low%factor, high%factor, &
+                                         self%scene%material%toughness)
+         end if
+         last = reading(self)
+         call self%respond(next%factor, timers, error)
+         if (allocated(error)) return
+         next = reading(self)
+         if (largest_excess(self) < 0.0_rk) then
+            low = next
+         else
+            high = next
          end if
          ! Where contact changes, the intensity may jump past the toughness: at this load.
-         if (high - low <= at_jump*abs(high)) then
-            call self%respond(high, timers, error)
+         if (high%factor - low%factor <= at_jump*abs(high%factor)) then
+            call self%respond(high%factor, timers, error)
             return
          end if
       end do
       call raise_error(error, "", "the load at which the next tip grows was not found")
-   end subroutine rise
+   end subroutine find_onset
+
+   !> The intensities of the tips that may grow.
+   pure function reading(self)
+      class(simulation_t), intent(in) :: self
+      type(reading_t) :: reading
+
+      reading%factor = self%factor
+      reading%k1 = pack(self%tip%intensity%k1, .not. self%tip%arrested)
+      reading%k2 = pack(self%tip%intensity%k2, .not. self%tip%arrested)
+   end function reading
+
+   !> No load but those that the factor multiplies.
+   pure logical function all_loads_rise(scene)
+      type(scene_t), intent(in) :: scene
+
+      all_loads_rise = .not. any(abs([scene%material%density*scene%gravity, &
+                                      scene%in_situ%stress, scene%in_situ%per_y]) > 0.0_rk)
+   end function all_loads_rise
 
    !> What the faces have slipped so far becomes the history of their next slip.
    subroutine accept(self)
@@ -238,7 +286,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: corrections = 8
       real(rk), parameter :: nothing = 1.0e-9_rk  ! of an advance
-      real(rk) :: wanted(size(self%tip)), applied, left, to(2)
+      real(rk) :: wanted(size(self%tip)), applied, left, kink, to(2)
       logical :: grows(size(self%tip)), any_turned, has_turned
       integer(ik) :: i, k, at
 
@@ -258,15 +306,18 @@ contains
             call carry_over(wanted(i), tip%carried, tip%rosette_radius, applied, left)
             tip%carried = left
             if (.not. applied > 0.0_rk) cycle
-            to = new_tip(tip%xy, tip%direction, tip%drive%angle, applied)
+            call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, applied, &
+                             kink)
+            to = new_tip(tip%xy, tip%direction, kink, applied)
             call meet_target(self, tip, tip%xy, to)
             if (.not. norm2(to - tip%xy) > nothing*applied) cycle  ! something has come to it
             call extend(self%network, tip%fracture, tip%end, to)
-            call tip%move(to, tip%drive%angle)
+            call tip%move(to, kink)
             any_grew = .true.
          end associate
       end do
       if (.not. any_grew) return
+      call self%body%remember()
       call rebuild(self, timers, error)
       do k = 1, corrections
          if (allocated(error)) return
@@ -274,7 +325,7 @@ contains
          do i = 1, size(self%tip)
             associate (tip => self%tip(i))
                if (tip%arrested) cycle
-               call tip%correct(tip%drive%angle, has_turned)
+               call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
                if (.not. has_turned) cycle
                call meet_target(self, tip, tip%origin, tip%xy)
                at = merge(self%network%first(tip%fracture), &
@@ -286,7 +337,9 @@ contains
          if (.not. any_turned) exit
          call rebuild(self, timers, error)
       end do
-      where (self%tip%advance > 0.0_rk) self%tip%has_wing = .true.
+      do i = 1, size(self%tip)
+         call self%tip(i)%settle(-self%tip(i)%intensity%k2)
+      end do
    end subroutine grow
 
    !> Let the mesh follow the error at a load, if the scene wants it. A coarse mesh shows the error
@@ -313,15 +366,21 @@ contains
       end do
    end subroutine adapt
 
-   !> The state on a new mesh of the present network, at the same load.
+   !> The state on a mesh of the present network, made from the one before the increment, at the
+   !! same load.
    subroutine rebuild(self, timers, error)
       type(simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      call self%body%build(self%scene, self%start, self%network, phase_remesh, timers, error)
-      if (.not. allocated(error)) call self%respond(self%factor, timers, error)
-      if (.not. allocated(error)) call adapt(self, self%factor, timers, error)
+      call self%body%grow(self%scene, self%start, self%network, timers, error)
+      if (.not. allocated(error)) then
+         if (self%scene%adaptive%enabled) then
+            call adapt(self, self%factor, timers, error)
+         else
+            call self%respond(self%factor, timers, error)
+         end if
+      end if
       if (allocated(error)) self%is_cut = cuts_through(self%body%mesh%fracture)
    end subroutine rebuild
 

@@ -2,18 +2,18 @@
 module mesh_builder
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_locate, &
+   use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_grow, cm_locate, &
                              cm_nearest_target, cm_network_t, cm_quality, cm_remesh, cm_spec_t, &
                              cm_target_t
    use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
    use mesh_c_outputs, only: copy_map, copy_mesh, raise_library_error
    use mesh_types, only: mesh_map_t, mesh_t, network_t
-   use, intrinsic :: iso_c_binding, only: c_associated, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    implicit none(type, external)
    private
 
    public :: join_target_t, mesh_spec_t, mesher_t
-   public :: build_mesh, build_mesh_sized, locate, mesh_quality, nearest_target, remesh
+   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, nearest_target, remesh
    public :: transfer_mesher
 
    !> Where a growing end may join a fracture or the boundary.
@@ -128,6 +128,37 @@ contains
       if (allocated(error)) return
       call copy_map(mesher_new%handle, mesh, map, error)
    end subroutine remesh
+
+   !> A mesh of a grown network for a body with rosettes, made anew only in patches around the ends
+   !! that have grown; sizes and new rosettes are those of a new mesh. An error says that this does
+   !! not go: make a new mesh then. The old mesher stays as it is.
+   subroutine grow_mesh(mesher_old, network, end_radius, mesher_new, mesh, error)
+      type(mesher_t), intent(in) :: mesher_old
+      type(network_t), intent(in) :: network  !< the old one, vertices added at its ends
+      real(rk), intent(in), target, contiguous :: end_radius(:, :)  !< as in mesh_spec_t [m]
+      type(mesher_t), intent(inout) :: mesher_new  !< what it held before is released
+      type(mesh_t), intent(out) :: mesh
+      type(error_t), allocatable, intent(out) :: error
+      type(cm_network_t) :: c_network
+      type(c_network_arrays_t), target :: arrays
+
+      call destroy_mesher(mesher_new)
+      if (.not. c_associated(mesher_old%handle)) then
+         call raise_error(error, "grow_mesh", "there is no old mesh; build one first")
+         return
+      end if
+      call prepare_network(network, arrays, c_network, error)
+      if (allocated(error)) return
+      if (ubound(end_radius, 1) /= 2 .or. ubound(end_radius, 2) /= c_network%n_fractures) then
+         call raise_error(error, "grow_mesh", "every fracture has two rosette radii")
+         return
+      end if
+      if (cm_grow(mesher_old%handle, c_network, c_loc(end_radius), mesher_new%handle) /= 0) then
+         call raise_library_error(error, "grow_mesh")
+         return
+      end if
+      call copy_mesh(mesher_new%handle, mesh, error)
+   end subroutine grow_mesh
 
    !> The cell that holds each point; 0 outside.
    subroutine locate(mesher, xy, cells, error)

@@ -6,7 +6,7 @@ module mesh_c_binding
    private
 
    public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t, cm_target_t
-   public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_last_error, cm_locate
+   public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
    public :: cm_map_copy, cm_map_sizes, cm_nearest_target, cm_quality, cm_remesh, cm_sizes
    public :: c_string_length
 
@@ -137,6 +137,18 @@ module mesh_c_binding
          type(c_ptr), intent(out) :: new_mesh
          integer(c_int) :: status
       end function cm_remesh
+
+      !> end_radius is (2, n_fractures) or null.
+      function cm_grow(old_mesh, network, end_radius, new_mesh) result(status) &
+         bind(C, name="cm_grow")
+         import :: c_int, c_ptr, cm_network_t
+         implicit none(type, external)
+         type(c_ptr), value :: old_mesh
+         type(cm_network_t), intent(in) :: network
+         type(c_ptr), value :: end_radius
+         type(c_ptr), intent(out) :: new_mesh
+         integer(c_int) :: status
+      end function cm_grow
 
       function cm_sizes(mesh, counts) result(status) bind(C, name="cm_sizes")
          import :: c_int, c_ptr, cm_counts_t

@@ -40,6 +40,10 @@ module output_record
       integer(ik) :: newton_total = 0  !< iterations
       integer(ik) :: newton_max = 0  !< iterations in one step
       integer(ik) :: step_cuts = 0
+      logical :: has_growth = .false.  !< the three below are known
+      integer(ik) :: increments = 0  !< of growth, of any number of tips at once
+      integer(ik) :: meshes_whole = 0  !< made of the whole body
+      integer(ik) :: meshes_patched = 0  !< made anew around growing tips only
       type(dof_block_t), allocatable, private :: dofs(:)
       type(text_t), allocatable, private :: used(:)
       type(text_t), allocatable, private :: left_out(:)
@@ -168,6 +172,13 @@ contains
       call json%add("max", self%newton_max)
       call json%end_object()
       call json%add("step_cuts", self%step_cuts)
+      if (self%has_growth) then
+         call json%add("increments", self%increments)
+         call json%begin_object("meshes")
+         call json%add("whole", self%meshes_whole)
+         call json%add("patched", self%meshes_patched)
+         call json%end_object()
+      end if
       call add_list(json, "warnings", self%warnings)
       call json%end_object()
       call write_text_file(path, json%text(), error)

@@ -154,7 +154,7 @@ contains
       do i = 1, size(self%tip)
          associate (tip => self%tip(i))
             before = tip%xy
-            call tip%correct(tip%drive%angle, has_turned)
+            call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             call forget_windows(self, tip%origin, before)
             call forget_windows(self, tip%origin, tip%xy)
