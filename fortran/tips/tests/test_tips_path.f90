@@ -2,6 +2,7 @@
 program test_tips_path
    use base_checks, only: checks_t
    use base_kinds, only: rk
+   use tips_growth, only: kink_angle
    use tips_path, only: path_t
    implicit none(type, external)
 
@@ -14,6 +15,7 @@ program test_tips_path
    call finds_direction(-1.0_rk, "as the criterion foretells")
    call finds_direction(-0.3_rk, "mild")
    call finds_direction(-40.0_rk, "saturated")
+   call foresees()
    call checks%finish()
 
 contains
@@ -44,32 +46,67 @@ contains
       logical :: has_turned
 
       call start(path, 70.0_rk*degree, .false.)
-      call path%correct(-30.0_rk*degree, has_turned)
+      call path%correct(-30.0_rk*degree, -0.25_rk, has_turned)
       call checks%is_true(.not. has_turned, "the first kink is the criterion's")
    end subroutine keeps_the_first_kink
 
-   !> The drive at the new end answers to the kink like slope*(kink - right), at most by pure
-   !! sliding: the search must end within two degrees of zero drive or half a degree of the right
-   !! kink.
+   !> -K_II at the new end answers to the kink like slope*(kink - right) for a K_I of 1, so the
+   !! criterion's angle saturates at pure sliding: the search must end within two degrees of that
+   !! angle or half a degree of the right kink.
    subroutine finds_direction(slope, name)
       real(rk), intent(in) :: slope  !< d drive / d kink [-]
       character(len=*), intent(in) :: name
       real(rk), parameter :: right = -3.0_rk*degree
       type(path_t) :: path
-      real(rk) :: drive
+      real(rk) :: drive, angle
       logical :: has_turned
       integer :: tries
 
       call start(path, 20.0_rk*degree, .true.)
       do tries = 0, 8
-         drive = max(-1.23_rk, min(1.23_rk, slope*(path%kink - right)))
-         call path%correct(drive, has_turned)
+         drive = 0.5_rk*slope*(path%kink - right)
+         angle = kink_angle(1.0_rk, -drive)
+         call path%correct(angle, drive, has_turned)
          if (.not. has_turned) exit
       end do
       call checks%is_true(tries <= 8, name//": found in eight tries")
-      call checks%is_true(abs(drive) <= 2.01_rk*degree .or. abs(path%kink - right) <= 0.5_rk &
+      call checks%is_true(abs(angle) <= 2.01_rk*degree .or. abs(path%kink - right) <= 0.5_rk &
                           *degree, name//": goes on straight")
       call checks%is_close(norm2(path%xy - path%origin), 0.1_rk, 1.0e-14_rk, name//": length kept")
    end subroutine finds_direction
+
+   !> On a path of constant curvature, with -K_II falling by `slope` per kink, the first increments
+   !! teach what the next ones need: they go the right way without a correction.
+   subroutine foresees()
+      real(rk), parameter :: turn = 6.0_rk*degree, slope = 2.5_rk
+      type(path_t) :: path
+      real(rk) :: drive, kink, left
+      logical :: has_turned
+      integer :: increment, tries, corrections
+
+      path%direction = [1.0_rk, 0.0_rk]
+      path%has_wing = .true.
+      left = 0.0_rk  ! what the direction of the last increment lacks [rad]
+      do increment = 1, 6
+         drive = slope*left
+         call path%foresee(kink_angle(1.0_rk, -drive), drive, 1.0_rk, 0.1_rk, kink)
+         call path%move(path%xy + 0.1_rk*(cos(kink)*path%direction &
+                                          + sin(kink)*[-path%direction(2), path%direction(1)]), &
+                        kink)
+         corrections = 0
+         do tries = 1, 8
+            drive = slope*(left + turn - path%kink)
+            call path%correct(kink_angle(1.0_rk, -drive), drive, has_turned)
+            if (.not. has_turned) exit
+            corrections = corrections + 1
+         end do
+         left = left + turn - path%kink
+         call path%settle(slope*left)
+         if (increment == 1) call checks%is_true(corrections > 0, "the first has to be corrected")
+         if (increment < 3) cycle
+         call checks%is_true(corrections == 0, "later ones are foreseen")
+         call checks%is_close(path%kink, turn, 0.2_rk*degree, "as the path turns")
+      end do
+   end subroutine foresees
 
 end program test_tips_path
