@@ -65,9 +65,9 @@ private:
     std::vector<Vec2> corners_;
     std::vector<int> edge_sides_;
     double area_ = 0.0;
-    Vec2 core_centre_;        // of a disc within a polygon, about which no edge need be asked
+    Vec2 core_centre_;          // of a disc within a polygon, about which no edge need be asked
     double core_radius_ = -1.0; // [m]
-    double rounding_ = 0.0; // points so near to the boundary lie on it [m]
+    double rounding_ = 0.0;     // points so near to the boundary lie on it [m]
 };
 
 } // namespace cpp_mesh

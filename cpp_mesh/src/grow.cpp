@@ -22,14 +22,14 @@ namespace {
 // Widths of the patch around new segments and rosettes, in cells of the size wanted there: the
 // second is tried where the first leaves no room for cells of good shape. No whole numbers, lest
 // rounding errors decide about cells.
-constexpr double narrow_margin = 1.53;
-constexpr double wide_margin = 3.17;
+constexpr double narrow_margin = 2.53;
+constexpr double wide_margin = 4.17;
 
 // Cells longer than this times the size that is now wanted are taken into the patch.
 constexpr double largest_ratio = 1.83;
 
-// Cells shorter than this times the size that is now wanted are taken into the patch: they have been
-// made around a tip that has moved on.
+// Cells shorter than this times the size that is now wanted are taken into the patch: they have
+// been made around a tip that has moved on.
 constexpr double smallest_ratio = 0.77;
 
 // So far around them, in radii.
@@ -81,8 +81,8 @@ private:
     void make_graph() {
         const Specification& spec = new_.specification;
         grown_ = grown_segments(old_.network, new_.network);
-        graph_ = build_graph(segments_of(new_.network), spec.fixed_points, domain_, false,
-                             tolerances_);
+        graph_ =
+            build_graph(segments_of(new_.network), spec.fixed_points, domain_, false, tolerances_);
         new_.size = old_.size;
         if (!new_.size.follows_other_mesh())
             for (const Segment& segment : grown_)
@@ -176,9 +176,12 @@ private:
             const double longest = std::max({distance(p, q), distance(q, r), distance(r, p)});
             if (longest > largest_ratio * added(centre))
                 marked_[c] = 1;
-            else if (std::any_of(gone.begin(), gone.end(), [&](const SizeDisc& disc) {
-                         return distance(centre, disc.centre) < reach_of_rosettes * disc.radius;
-                     }) && longest < smallest_ratio * new_.size(centre))
+            else if (std::any_of(gone.begin(), gone.end(),
+                                 [&](const SizeDisc& disc) {
+                                     return distance(centre, disc.centre) <
+                                            reach_of_rosettes * disc.radius;
+                                 }) &&
+                     longest < smallest_ratio * new_.size(centre))
                 marked_[c] = 1;
         }
     }
@@ -187,8 +190,9 @@ private:
     void leave_small_parts(const std::vector<char>& is_at_growth) {
         const auto is_small = [&](const PatchPart& part) {
             return static_cast<int>(part.cells.size()) < smallest_part &&
-                   std::none_of(part.cells.begin(), part.cells.end(),
-                                [&](int c) { return is_at_growth[c] != 0; });
+                   std::none_of(
+                       part.cells.begin(), part.cells.end(),
+                       [&](int c) { return is_at_growth[c] != 0; });
         };
         for (const PatchPart& part : parts_)
             if (is_small(part))
@@ -346,7 +350,8 @@ private:
                 add_piece(edge.point[1], edge.s[1], -1);
         }
         if (n_found != n_kept)
-            throw MeshError("a joint lies on a fracture cell outside the patch that is meshed anew");
+            throw MeshError(
+                "a joint lies on a fracture cell outside the patch that is meshed anew");
         check_room(pieces, plans);
         skeleton_ = divide_graph(pieces, node_of_point, plans, new_.specification.rosette_sectors,
                                  new_.size, xy_);
@@ -521,8 +526,8 @@ private:
     bool is_inside(int node) const {
         for (const int* c = edges_.begin(node); c != edges_.end(node); ++c)
             for (int k = 0; k < 3; ++k)
-                if (edges_.across(*c, k) < 0 && (old_.plane.cells[*c][k] == node ||
-                                                 old_.plane.cells[*c][(k + 1) % 3] == node))
+                if (edges_.across(*c, k) < 0 &&
+                    (old_.plane.cells[*c][k] == node || old_.plane.cells[*c][(k + 1) % 3] == node))
                     return false;
         return true;
     }

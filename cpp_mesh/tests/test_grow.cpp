@@ -104,8 +104,7 @@ void check_like_new(Checks& checks, const ApiMesh& grown, const ApiMesh& anew,
     for (int i = 0; i < anew.counts.n_fracture_cells; ++i)
         s_anew += anew.fcell_s[2 * i + 1] - anew.fcell_s[2 * i];
     checks.is_close(s, s_anew, 1e-12 * s_anew, name + ": arc length");
-    checks.is_true(grown.smallest_angle() >= 22.0,
-                    name + ": smallest angle");
+    checks.is_true(grown.smallest_angle() >= 22.0, name + ": smallest angle");
     const double cells = static_cast<double>(grown.counts.n_cells) / anew.counts.n_cells;
     checks.is_close(cells, 1.05, 0.2, name + ": number of cells against a new mesh");
 }

@@ -228,8 +228,8 @@ contains
       type(reading_t) :: reading
 
       reading%factor = self%factor
-      reading%k1 = pack(self%tip%intensity%k1, .not. self%tip%arrested)
-      reading%k2 = pack(self%tip%intensity%k2, .not. self%tip%arrested)
+      reading%k1 = pack(self%tip%intensity%k1,.not. self%tip%arrested)
+      reading%k2 = pack(self%tip%intensity%k2,.not. self%tip%arrested)
    end function reading
 
    !> No load but those that the factor multiplies.
