@@ -199,7 +199,7 @@ def test_wings_join_their_neighbours(tmp_path: Path) -> None:
         "paper_a/imposed_slip.nml",
         ("size_fracture = 0.0125", "size_fracture = 0.02"),
         ("increment = 0.02", "increment = 0.05"),
-        ("to = 1.0, steps = 10", "to = 0.22"),
+        ("to = 0.26, steps = 13", "to = 0.22"),
     )
     joints = [event for event in rows(out / "events.csv") if event["kind"] == "joint"]
     assert sorted(event["detail"] for event in joints) == [

@@ -20,9 +20,9 @@ FORMATS = ("png", "pdf")
 _EPILOG = """\
 groups of figures (--only), written to DIR/figures:
   network    the fractures at the start and what has grown, coloured by its order
-  maps       pore pressure at several times, fractures coloured by stick, slip, open
+  maps       pore pressure, or without a fluid stress, at several times, with the contact states
   fractures  opening, slip, aperture, pressure and tractions along each fracture
-  tips       stress intensities; length, well pressure and states; fluid balance
+  tips       stress intensities; load and growth; length, well pressure, states; fluid balance
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, drawn by pyvista (PNG only)
 

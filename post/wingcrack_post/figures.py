@@ -12,11 +12,13 @@ from matplotlib.figure import Figure
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError
 from wingcrack_post.history import balance, development, intensities
+from wingcrack_post.load import load_figure
 from wingcrack_post.maps import pressure_maps
 from wingcrack_post.network import network_figure
 from wingcrack_post.probes import probe_histories
 from wingcrack_post.profiles import fracture_profiles
 from wingcrack_post.read import Run
+from wingcrack_post.stress import stress_maps
 from wingcrack_post.view import draw_view
 
 
@@ -61,8 +63,10 @@ def _one(
 _FIGURES = (
     _Figures("network", "network", _one(network_figure)),
     _Figures("maps", "pressure_maps", _one(pressure_maps, timed=True)),
+    _Figures("maps", "stress_maps", _one(stress_maps, timed=True)),
     _Figures("fractures", "fracture", fracture_profiles),
     _Figures("tips", "intensities", _one(intensities)),
+    _Figures("tips", "load", _one(load_figure)),
     _Figures("tips", "development", _one(development)),
     _Figures("tips", "balance", _one(balance)),
     _Figures("probes", "probes", _one(probe_histories)),

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
+from wingcrack_post.load import STEP_LABEL, abscissa, has_load, tip_steps
 from wingcrack_post.read import Run, needed
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.times import growth_start
@@ -19,24 +22,17 @@ from wingcrack_post.units import (
     INTENSITY,
     MEGAPASCAL,
     METRE,
-    Unit,
     area_unit,
     displacement_unit,
-    time_unit,
 )
 
 _MODES = (
-    ("mode I", r"$K_\mathrm{I}$", "k1_pa_sqrtm", "k1_dc_pa_sqrtm"),
-    ("mode II", r"$K_\mathrm{II}$", "k2_pa_sqrtm", "k2_dc_pa_sqrtm"),
-    ("equivalent", r"$K_\mathrm{eq}$", "keq_pa_sqrtm", None),
+    ("mode I", r"$K_\mathrm{I}$", "k1_pa_sqrtm", "k1_dc_pa_sqrtm", "k1_error_pa_sqrtm"),
+    ("mode II", r"$K_\mathrm{II}$", "k2_pa_sqrtm", "k2_dc_pa_sqrtm", "k2_error_pa_sqrtm"),
+    ("equivalent", r"$K_\mathrm{eq}$", "keq_pa_sqrtm", None, None),
 )
 _MOST_MARKERS = 25  # per line: more run into each other
 _LEGEND_COLUMNS = 4
-
-
-def clock_of(run: Run) -> Unit:
-    """Unit of the time axis of all figures of a run."""
-    return time_unit(float(run.history.number("time_s")[-1]))
 
 
 @style.styled
@@ -49,19 +45,31 @@ def intensities(run: Run) -> Figure:
         If the run has no tips.
     """
     table = needed(run.tips, "tips.csv", "stress intensity factors")
-    clock = clock_of(run)
-    time = clock.of(table.number("time_s"))
+    time, label = abscissa(run, table.number("time_s"))
+    if has_load(run) and growth_start(run) is not None:
+        time, label = tip_steps(run, table), STEP_LABEL
     tips = _tips(table)
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     handles = _tip_handles(run, tips, toughness)
     legend_rows = -(-len(handles) // _LEGEND_COLUMNS)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.45 + 0.17 * legend_rows)
     panels = list(figure.subplots(1, len(_MODES)))
-    for axes, (title, symbol, integral, correlation) in zip(panels, _MODES, strict=True):
+    for axes, (title, symbol, integral, correlation, error) in zip(panels, _MODES, strict=True):
         for index, (_, rows) in enumerate(tips):
             look = style.line_look(index)
             marker = style.lone_marker(int(rows.sum()))
-            axes.plot(time[rows], INTENSITY.of(table.number(integral)[rows]), marker=marker, **look)
+            values = INTENSITY.of(table.number(integral)[rows])
+            axes.plot(time[rows], values, marker=marker, **look)
+            if error is not None and table.has(error):
+                spread = INTENSITY.of(table.number(error)[rows])
+                axes.fill_between(
+                    time[rows],
+                    values - spread,
+                    values + spread,
+                    color=look["color"],
+                    alpha=0.25,
+                    linewidth=0.0,
+                )
             if correlation is not None:
                 every = max(1, int(rows.sum()) // _MOST_MARKERS)
                 axes.plot(
@@ -74,7 +82,7 @@ def intensities(run: Run) -> Figure:
                     markeredgewidth=0.7,
                     markevery=every,
                 )
-        _finish(axes, title, f"{symbol} [{INTENSITY.name}]", clock)
+        _finish(axes, title, f"{symbol} [{INTENSITY.name}]", label)
     if toughness is not None:
         panels[-1].axhline(float(INTENSITY.of(toughness)), color="#555555", linewidth=0.8, ls="--")
     style.letter(panels)
@@ -86,8 +94,7 @@ def intensities(run: Run) -> Figure:
 def development(run: Run) -> Figure:
     """Fracture length, well pressure (with a fluid), largest slip and opening, and the states."""
     table = run.history
-    clock = clock_of(run)
-    time = clock.of(table.number("time_s"))
+    time, label = abscissa(run, table.number("time_s"))
     marker = style.lone_marker(time.size)
     fluid = table.has("well_pressure_pa")
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
@@ -95,24 +102,24 @@ def development(run: Run) -> Figure:
     length, jumps, states = panels[0], panels[-2], panels[-1]
     values = METRE.of(table.number("fracture_length_m"))
     length.plot(time, values, color=style.CYCLE[0], marker=marker)
-    _finish(length, "fracture length", "total length [m]", clock)
+    _finish(length, "fracture length", "total length [m]", label)
     if fluid:
         values = MEGAPASCAL.of(table.number("well_pressure_pa"))
         panels[1].plot(time, values, color=style.CYCLE[0], marker=marker)
-        _finish(panels[1], "well pressure", "pressure [MPa]", clock)
+        _finish(panels[1], "well pressure", "pressure [MPa]", label)
     slip, opening = table.number("max_slip_m"), table.number("max_opening_m")
     unit = displacement_unit(slip, opening)
     # the colours of the states that go with them
-    for label, jump, colour, dashes in (
+    for name, jump, colour, dashes in (
         ("slip", slip, style.STATE_COLOURS["slip"], "-"),
         ("opening", opening, style.STATE_COLOURS["open"], "--"),
     ):
-        jumps.plot(time, unit.of(jump), dashes, color=colour, label=label, marker=marker)
+        jumps.plot(time, unit.of(jump), dashes, color=colour, label=name, marker=marker)
     jumps.legend()
-    _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", clock)
+    _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", label)
     _draw_states(states, table, time)
-    _finish(states, "contact state", "fracture cells [-]", clock)
-    _mark_growth(run, length, panels, clock)
+    _finish(states, "contact state", "fracture cells [-]", label)
+    _mark_growth(run, length, panels)
     style.letter(panels)
     return figure
 
@@ -134,15 +141,16 @@ def _draw_states(axes: Axes, table: Table, time: FloatArray) -> None:
     axes.legend()
 
 
-def _mark_growth(run: Run, first: Axes, panels: Sequence[Axes], clock: Unit) -> None:
-    start = growth_start(run)
-    if start is None:
+def _mark_growth(run: Run, first: Axes, panels: Sequence[Axes]) -> None:
+    moment = growth_start(run)
+    if moment is None:
         return
+    start = float(abscissa(run, np.array([moment]))[0][0])
     for axes in panels:
-        axes.axvline(float(clock.of(start)), color="#999999", linewidth=0.7, linestyle=":")
+        axes.axvline(start, color="#999999", linewidth=0.7, linestyle=":")
     first.annotate(
         "first growth",
-        (float(clock.of(start)), 0.97),
+        (start, 0.97),
         xycoords=("data", "axes fraction"),
         rotation=90,
         va="top",
@@ -164,8 +172,7 @@ def balance(run: Run) -> Figure:
     table = run.history
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
-    clock = clock_of(run)
-    time = clock.of(table.number("time_s"))
+    time, below = abscissa(run, table.number("time_s"))
     volume = table.number("fracture_volume_m2")
     series: list[tuple[str, FloatArray]] = [
         ("injected", table.number("injected_m2")),
@@ -184,12 +191,12 @@ def balance(run: Run) -> Figure:
             time, unit.of(values), dashes, color=style.CYCLE[index], label=label, marker=marker
         )
     volumes.legend()
-    _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", clock)
+    _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", below)
     error = np.abs(table.number("mass_error_relative"))
     # zero cannot stand on a logarithmic axis; such steps are exact to round-off
     shown = np.maximum(error, np.finfo(float).eps)
     errors.semilogy(time, shown, color=style.CYCLE[0], marker=marker)
-    _finish(errors, "mass conservation", "relative mass error [-]", clock)
+    _finish(errors, "mass conservation", "relative mass error [-]", below)
     style.letter([volumes, errors])
     return figure
 
@@ -202,10 +209,10 @@ def _tips(table: Table) -> list[tuple[str, BoolArray]]:
 
 def _tip_handles(
     run: Run, tips: Sequence[tuple[str, BoolArray]], toughness: float | None
-) -> list[Line2D]:
+) -> list[Artist]:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     fractures = table.text("fracture")
-    handles = [
+    handles: list[Artist] = [
         Line2D(
             [],
             [],
@@ -226,6 +233,8 @@ def _tip_handles(
             label="circles: displacement correlation",
         )
     )
+    if table.has("k1_error_pa_sqrtm"):
+        handles.append(Patch(facecolor="#555555", alpha=0.25, label="bands: estimated error"))
     if toughness is not None:
         handles.append(
             Line2D([], [], color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
@@ -233,7 +242,7 @@ def _tip_handles(
     return handles
 
 
-def _finish(axes: Axes, title: str, label: str, clock: Unit) -> None:
+def _finish(axes: Axes, title: str, label: str, below: str) -> None:
     axes.set_title(title)
     axes.set_ylabel(label)
-    axes.set_xlabel(f"time [{clock.name}]")
+    axes.set_xlabel(below)

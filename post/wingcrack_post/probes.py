@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
-from wingcrack_post.history import clock_of
+from wingcrack_post.load import abscissa
 from wingcrack_post.read import Run, needed
 from wingcrack_post.table import Table
 from wingcrack_post.units import MEGAPASCAL, displacement_unit
@@ -60,8 +60,7 @@ def probe_histories(run: Run) -> Figure:
     if not names:
         raise AbsentError("probes.csv has no probe points")
     quantities = [q for q in _QUANTITIES if any(table.has(names[0] + end) for end, _ in q.parts)]
-    clock = clock_of(run)
-    time = clock.of(table.number("time_s"))
+    time, below = abscissa(run, table.number("time_s"))
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
     panels = list(figure.subplots(1, len(quantities), squeeze=False).flat)
     for axes, quantity in zip(panels, quantities, strict=True):
@@ -82,7 +81,7 @@ def probe_histories(run: Run) -> Figure:
                 )
         axes.set_title(quantity.title)
         axes.set_ylabel(f"{quantity.label} [{unit.name}]")
-        axes.set_xlabel(f"time [{clock.name}]")
+        axes.set_xlabel(below)
     style.letter(panels)
     style.outside_legend(figure, _handles(names, quantities), 6)
     return figure

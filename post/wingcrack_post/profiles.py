@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from wingcrack_post import style
+from wingcrack_post.load import moment_label
 from wingcrack_post.read import Run, needed
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.times import select_times
-from wingcrack_post.units import MEGAPASCAL, Unit, displacement_unit, time_unit
+from wingcrack_post.units import MEGAPASCAL, displacement_unit
 
 DEFAULT_COUNT = 8
 
@@ -118,8 +119,8 @@ def _profile(
         axis.set_xlabel("distance along the fracture [m]")
     style.letter(axes)
     figure.suptitle(run.fracture_name(label), fontsize=9)
-    clock = time_unit(float(run.history.number("time_s")[-1]))
-    style.outside_legend(figure, _time_handles(times, colours, clock, friction), 5)
+    names = [moment_label(run, moment) for moment in times]
+    style.outside_legend(figure, _time_handles(names, colours, friction), 4)
     return figure
 
 
@@ -162,14 +163,13 @@ def _draw_bound(
 
 
 def _time_handles(
-    times: Sequence[float],
+    names: Sequence[str],
     colours: Sequence[tuple[float, float, float, float]],
-    clock: Unit,
     friction: float | None,
 ) -> list[Line2D]:
     handles = [
-        Line2D([], [], color=colour, label=f"$t$ = {float(clock.of(time)):.4g} {clock.name}")
-        for time, colour in zip(times, colours, strict=True)
+        Line2D([], [], color=colour, label=name)
+        for name, colour in zip(names, colours, strict=True)
     ]
     if friction is not None:
         bound = rf"friction bound $\mu_s |f_n|$, $\mu_s$ = {friction:g}"

@@ -13,7 +13,7 @@ import numpy as np
 from wingcrack_post import style
 from wingcrack_post.errors import EnvironmentLacksError, RunError
 from wingcrack_post.fields import cell_values, fracture_field, load_pyvista, nearest, read_grid
-from wingcrack_post.history import clock_of
+from wingcrack_post.load import moment_label
 from wingcrack_post.maps import Window, zoom_window
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.table import FloatArray
@@ -62,10 +62,9 @@ def render(run: Run, target: Path, time_s: float) -> None:
     for panel in range(panels):
         plotter.subplot(0, panel)
         _draw_panel(plotter, scenery, panel)
-    clock = clock_of(run)
     plotter.subplot(0, 0)
     plotter.add_text(
-        f"{run.name}, t = {float(clock.of(time_s)):.4g} {clock.name}, "
+        f"{run.name}, {moment_label(run, time_s).replace('$', '')}, "
         f"displacements x {scenery.factor:.3g}",
         position=(0.06, 0.95),
         viewport=True,

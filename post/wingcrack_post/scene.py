@@ -110,6 +110,8 @@ def _outline(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
     if shape == "disc":
         names = ("x_centre", "y_centre", "radius")
     found = [_number(path, "domain", values, name) for name in names]
+    if shape == "polygon":
+        return _polygon(path, values)
     if shape not in ("rectangle", "disc") or any(value is None for value in found):
         return None
     numbers = np.array(found, dtype=np.float64)
@@ -120,6 +122,18 @@ def _outline(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
     (left, right), (bottom, top) = numbers[:2], numbers[2:]
     corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
     return np.array(corners, dtype=np.float64)
+
+
+def _polygon(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
+    """Closed line through the corners of a polygon [m]."""
+    corners = [
+        [_number(path, "domain", {name: [raw]}, name) for raw in values.get(name, [])]
+        for name in ("x", "y")
+    ]
+    if len(corners[0]) < 3 or len(corners[0]) != len(corners[1]):
+        return None
+    points = np.array(corners, dtype=np.float64).T
+    return np.concatenate((points, points[:1]))
 
 
 def _text(values: dict[str, list[str]], key: str) -> str:

@@ -29,6 +29,7 @@ MEGAPASCAL = Unit("MPa", 1e6)
 INTENSITY = Unit(r"MPa$\,\sqrt{\mathrm{m}}$", 1e6)
 
 _SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9))
+_STRESSES = (Unit("GPa", 1e9), MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
 _AREAS = (Unit("m²", 1.0), Unit("cm²", 1e-4), Unit("mm²", 1e-6))
 _TIMES = tuple(Unit(name, SECONDS[name]) for name in ("h", "min", "s"))
 
@@ -47,6 +48,11 @@ def length_unit(*values: npt.ArrayLike) -> Unit:
 def displacement_unit(*values: npt.ArrayLike) -> Unit:
     """Unit in which the largest displacement or opening is at least one tenth."""
     return _fitting(_SMALL_LENGTHS, values)
+
+
+def stress_unit(*values: npt.ArrayLike) -> Unit:
+    """Unit in which the largest stress is at least one tenth."""
+    return _fitting(_STRESSES, values)
 
 
 def area_unit(*values: npt.ArrayLike) -> Unit:

@@ -1,0 +1,81 @@
+"""Mechanics-only runs: load against growth, stress maps, and load factors instead of times."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection, TriMesh
+
+from wingcrack_post import AbsentError, Run, read_run, style
+from wingcrack_post.fields import read_matrix
+from wingcrack_post.history import development, intensities
+from wingcrack_post.load import abscissa, load_figure, moment_label
+from wingcrack_post.stress import stress_maps
+
+
+@pytest.fixture
+def loaded(dry_run: Path, tmp_path: Path) -> Run:
+    """Give a mechanics-only run with a load factor, twice the time."""
+    for item in dry_run.iterdir():
+        (tmp_path / item.name).symlink_to(item)
+    lines = (dry_run / "history.csv").read_text().splitlines()
+    head = lines[0].split(",").index("time_s")
+    rows = [f"{line},{2.0 * float(line.split(',')[head])}" for line in lines[1:]]
+    (tmp_path / "history.csv").unlink()
+    (tmp_path / "history.csv").write_text("\n".join([f"{lines[0]},load_factor", *rows, ""]))
+    return read_run(tmp_path)
+
+
+def test_load_factor_stands_for_time(loaded: Run, wet_run: Path) -> None:
+    time = loaded.history.number("time_s")
+    values, label = abscissa(loaded, time)
+    assert values == pytest.approx(2.0 * time)
+    assert label == "load factor [-]"
+    assert moment_label(loaded, float(time[-1])) == f"load factor {2.0 * time[-1]:.4g}"
+    assert abscissa(read_run(wet_run), time)[1] == "time [h]"
+
+
+def test_load_against_length(loaded: Run) -> None:
+    against, rising, growing = load_figure(loaded).axes
+    length = loaded.history.number("fracture_length_m")
+    line = against.lines[0]
+    assert np.asarray(line.get_ydata()) == pytest.approx(2.0 * loaded.history.number("time_s"))
+    assert against.get_xlabel() == "total length [mm]"
+    assert np.asarray(line.get_xdata()) == pytest.approx(1.0e3 * length)
+    assert rising.get_ylabel() == "load factor [-]"
+    assert growing.get_xlabel() == "step [-]"
+
+
+def test_intensities_by_step_and_the_rest_by_load(loaded: Run) -> None:
+    assert intensities(loaded).axes[0].get_xlabel() == "step [-]"
+    assert development(loaded).axes[0].get_xlabel() == "load factor [-]"
+
+
+def test_no_load_no_figure(wet_run: Path) -> None:
+    with pytest.raises(AbsentError, match="no load factor"):
+        load_figure(read_run(wet_run))
+
+
+def test_stress_maps_show_mean_and_shear(loaded: Run) -> None:
+    figure = stress_maps(loaded)
+    panels = [axes for axes in figure.axes if axes.get_aspect() == 1.0]
+    assert len(panels) in (2, 4, 6)
+    labels = [axes.get_ylabel() for axes in figure.axes if axes not in panels]
+    assert [label.split(" [")[0] for label in labels] == ["mean stress", "largest shear stress"]
+    last = panels[len(panels) // 2 - 1]
+    field = next(c for c in last.collections if isinstance(c, (PolyCollection, TriMesh)))
+    stress = read_matrix(loaded.matrix[-1].path).cell["stress"]
+    drawn = np.asarray(field.get_array())
+    ratio = 0.5 * (stress[:, 0] + stress[:, 1]) / drawn
+    assert ratio == pytest.approx(ratio[0])  # one unit
+    low, high = field.get_clim()
+    assert low == -high
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == list(style.STATES)
+
+
+def test_stress_maps_leave_pressure_to_others(wet_run: Path) -> None:
+    with pytest.raises(AbsentError, match="pore pressure"):
+        stress_maps(read_run(wet_run))

@@ -1,0 +1,87 @@
+"""Mechanics-only runs: the load against growth, and what figures have instead of a time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from wingcrack_post import style
+from wingcrack_post.errors import AbsentError
+from wingcrack_post.read import Run
+from wingcrack_post.table import FloatArray, Table
+from wingcrack_post.times import growth_start
+from wingcrack_post.units import length_unit, time_unit
+
+LOAD_LABEL = "load factor [-]"
+STEP_LABEL = "step [-]"
+
+
+def has_load(run: Run) -> bool:
+    """Whether a load factor drives the run, and time is only a parameter."""
+    return run.history.has("load_factor")
+
+
+def abscissa(run: Run, time_s: FloatArray) -> tuple[FloatArray, str]:
+    """Give what stands below curves: time in a unit that reads well, or the load factor."""
+    if has_load(run):
+        history = run.history
+        load = np.interp(time_s, history.number("time_s"), history.number("load_factor"))
+        return np.asarray(load), LOAD_LABEL
+    clock = time_unit(float(run.history.number("time_s")[-1]))
+    return clock.of(time_s), f"time [{clock.name}]"
+
+
+def moment_label(run: Run, time_s: float) -> str:
+    """How a title calls a moment of the run."""
+    value, label = abscissa(run, np.array([time_s]))
+    if has_load(run):
+        return f"load factor {value[0]:.4g}"
+    return f"$t$ = {value[0]:.4g} {label[6:-1]}"
+
+
+def tip_steps(run: Run, table: Table) -> FloatArray:
+    """Number of the step, from 1, of each row of tips.csv: every tip has one row in each."""
+    tips = table.text("tip")
+    steps = np.zeros(table.rows)
+    for tip in np.unique(tips):
+        rows = np.flatnonzero(tips == tip)
+        steps[rows] = np.arange(1, rows.size + 1)
+    return steps
+
+
+@style.styled
+def load_figure(run: Run) -> Figure:
+    """Load factor against the fractures' length, and both against the step.
+
+    Raises
+    ------
+    AbsentError
+        If no load factor drives the run, or nothing has grown.
+    """
+    if not has_load(run):
+        raise AbsentError("no load factor drives the run")
+    if growth_start(run) is None:
+        raise AbsentError("nothing has grown")
+    load = run.history.number("load_factor")
+    length = run.history.number("fracture_length_m")
+    unit = length_unit(length)
+    steps = np.arange(1, load.size + 1)
+    figure = style.new_figure(style.DOUBLE_COLUMN, 2.5)
+    against, rising, growing = figure.subplots(1, 3)
+    against.plot(unit.of(length), load, color=style.CYCLE[0], marker=".", markersize=2)
+    against.set_title("load against length")
+    against.set_xlabel(f"total length [{unit.name}]")
+    rising.plot(steps, load, color=style.CYCLE[0])
+    rising.set_title("load")
+    for axes in (against, rising):
+        axes.set_ylabel(LOAD_LABEL)
+        axes.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)
+    growing.plot(steps, unit.of(length), color=style.CYCLE[1])
+    growing.set_title("growth")
+    growing.set_ylabel(f"total length [{unit.name}]")
+    for axes in (rising, growing):
+        axes.set_xlabel(STEP_LABEL)
+        axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+    style.letter([against, rising, growing])
+    return figure
