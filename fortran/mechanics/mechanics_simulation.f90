@@ -11,7 +11,7 @@ module mechanics_simulation
    use mesh_types, only: network_t
    use scene_types, only: scene_t
    use tips_growth, only: advances, carry_over, growth_drive, new_tip
-   use tips_network, only: extend, network_of_scene
+   use tips_network, only: extend, move_end, network_of_scene
    use tips_state, only: tip_state_t
    implicit none(type, external)
    private
@@ -288,7 +288,7 @@ contains
       real(rk), parameter :: nothing = 1.0e-9_rk  ! of an advance
       real(rk) :: wanted(size(self%tip)), applied, left, kink, to(2)
       logical :: grows(size(self%tip)), any_turned, has_turned
-      integer(ik) :: i, k, at
+      integer(ik) :: i, k
 
       any_grew = .false.
       self%tip%advance = 0.0_rk
@@ -328,9 +328,8 @@ contains
                call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
                if (.not. has_turned) cycle
                call meet_target(self, tip, tip%origin, tip%xy)
-               at = merge(self%network%first(tip%fracture), &
-                          self%network%first(tip%fracture + 1) - 1, tip%end == 1)
-               self%network%xy(:, at) = tip%xy
+               tip%advance = norm2(tip%xy - tip%origin)
+               call move_end(self%network, tip%fracture, tip%end, tip%xy)
                any_turned = .true.
             end associate
          end do

@@ -56,14 +56,22 @@ contains
       network%first(fracture + 1:) = network%first(fracture + 1:) + 1
    end subroutine extend
 
-   !> Move one end of a fracture.
+   !> Move one end of a fracture; the arc lengths of its other vertices stay.
    pure subroutine move_end(network, fracture, end, xy)
       type(network_t), intent(inout) :: network
       integer(ik), intent(in) :: fracture
       integer(ik), intent(in) :: end  !< 1: its first vertex, 2: its last
       real(rk), intent(in) :: xy(2)  !< where to [m]
+      integer(ik) :: v
 
-      network%xy(:, merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1)) = xy
+      v = network%first(fracture + 1) - 1
+      if (end == 1) then
+         v = network%first(fracture)
+         network%s_start(fracture) = network%s_start(fracture) &
+                                     + norm2(network%xy(:, v + 1) - network%xy(:, v)) &
+                                     - norm2(network%xy(:, v + 1) - xy)
+      end if
+      network%xy(:, v) = xy
    end subroutine move_end
 
    pure function same_network(a, b) result(same)

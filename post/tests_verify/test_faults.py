@@ -185,6 +185,22 @@ def test_a_missing_file_or_key_is_an_error(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("key", "verdict"),
+    [
+        ("mass_error_relative*1e-3 + 0*cpu_s", PASSED),
+        ("cpu_s + mass_error_relative", FAILED),
+        ("mass_error_relative/cpu", ERROR),
+        ("mass_error_relative/0", ERROR),
+        ("mass_error_relative +", ERROR),
+    ],
+)
+def test_a_key_may_be_arithmetic(tmp_path: Path, key: str, verdict: str) -> None:
+    case = small_case(tmp_path, "residual")
+    case.toml = case.toml.replace("mass_error_relative", key)
+    assert case.judge().verdict == verdict
+
+
+@pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
         ('metric = "absolute"', 'metric = "eyeballed"', "'eyeballed' is no metric"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -33,6 +34,9 @@ TAKES: dict[str, Callable[[Array], float]] = {
     "mean": lambda values: float(np.mean(values)),
     "sum": lambda values: float(np.sum(values)),
 }
+
+# A path into a JSON file; not the exponent of a number.
+_KEY = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 
 EQUAL = 1.0e-9  # relative difference up to which a number in a file is the one asked for
 
@@ -241,18 +245,35 @@ def _numbers(table: Table, name: str) -> Array:
 
 
 def _json_number(selection: Selection, folder: Path) -> float:
-    name = f"{selection.file}: '{selection.key}'"
+    """Value of the key, or of the arithmetic that it is: names are paths into the file."""
     try:
-        found: Any = json.loads((folder / selection.file).read_text(encoding="utf-8"))
-        for part in str(selection.key).split("."):
-            found = found[part]
+        content: Any = json.loads((folder / selection.file).read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise CaseError(f"{selection.file}: the file is missing") from None
-    except (KeyError, TypeError):
-        raise CaseError(f"{name} is missing") from None
     except ValueError as reason:
         raise CaseError(f"{selection.file}: this is no JSON ({reason})") from None
-    return as_number(found, name)
+    values: dict[str, float] = {}
+
+    def named(path: re.Match[str]) -> str:
+        if path.group() in FUNCTIONS or path.group() == "pi":
+            return path.group()
+        name = path.group().replace(".", "__")
+        values[name] = _json_value(content, path.group(), selection.file)
+        return name
+
+    key = str(selection.key)
+    value = float(evaluate(_KEY.sub(named, key), values))
+    return as_number(value, f"{selection.file}: '{key}'")
+
+
+def _json_value(content: Any, path: str, file: str) -> float:
+    name = f"{file}: '{path}'"
+    try:
+        for part in path.split("."):
+            content = content[part]
+    except (KeyError, TypeError):
+        raise CaseError(f"{name} is missing") from None
+    return as_number(content, name)
 
 
 def _table(path: Path) -> Table:

@@ -3,11 +3,13 @@
 Two straight wings, vertical, from the ends of a fracture of 1 m with a uniform slip, upwards on the
 left and downwards on the right, in an infinite plane; the neighbours are closed and glide without
 friction. Wings and neighbours are continuous distributions of edge dislocations (Hills, Kelly, Dai
-and Korsunsky 1996, Solution of Crack Problems): the slip enters each wing as its net Burgers vector.
-Gauss-Chebyshev collocation, square roots at both ends. Writes dislocations.csv.
+and Korsunsky 1996, Solution of Crack Problems): the slip enters each wing as its net Burgers
+vector. Gauss-Chebyshev collocation, square roots at both ends. Writes dislocations.csv.
 """
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -78,8 +80,7 @@ def main() -> None:
                 closing = opening_intensity(length, 0.0, pressure, lines)
                 found.append(1.0e3 * (TOUGHNESS - closing) / per_slip)
         rows.append(f"{length:.2f}," + ",".join(f"{value:.6f}" for value in found))
-    with open("dislocations.csv", "w", encoding="utf-8") as file:
-        file.write("\n".join(rows) + "\n")
+    Path("dislocations.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

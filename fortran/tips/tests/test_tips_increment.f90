@@ -77,6 +77,8 @@ contains
       call checks%is_close(norm2(network%xy(:, 3) - [-1.0_rk, 3.0_rk]), 0.0_rk, 0.0_rk, "start")
       call checks%is_close(norm2(network%xy(:, 5) - [4.0_rk, 5.0_rk]), 0.0_rk, 0.0_rk, "end")
       call checks%is_close(norm2(network%xy(:, 4) - [1.0_rk, 1.0_rk]), 0.0_rk, 0.0_rk, "between")
+      ! The first segment was 1 long, and is sqrt(8): the arc length of the vertex after it stays.
+      call checks%is_close(network%s_start(2), 1.0_rk - sqrt(8.0_rk), exact, "arc length")
    end subroutine test_move_end
 
 end program test_tips_increment
