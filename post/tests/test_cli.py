@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -68,11 +69,14 @@ def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFi
     assert figures == ["balance.png", "development.png", "fracture_1.png"]
 
 
-def test_nothing_to_draw_is_an_error(dry_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (dry_run / "matrix.pvd").unlink()
-    assert main(["plot", str(dry_run), "--only", "maps", "--quiet"]) == 2
+def test_nothing_to_draw_is_an_error(
+    dry_run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = shutil.copytree(dry_run, tmp_path / "run")
+    (run / "matrix.pvd").unlink()
+    assert main(["plot", str(run), "--only", "maps", "--quiet"]) == 2
     assert capsys.readouterr().err == (
-        f"wingcrack plot: {dry_run}: nothing was drawn: the run has no matrix.pvd (VTU output"
+        f"wingcrack plot: {run}: nothing was drawn: the run has no matrix.pvd (VTU output"
         " off, or no step written yet).\n"
     )
 
