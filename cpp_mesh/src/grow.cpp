@@ -9,10 +9,10 @@
 #include "mesh.hpp"
 #include "narrow_places.hpp"
 #include "patch.hpp"
+#include "region_edges.hpp"
 #include "skeleton.hpp"
 #include "smooth.hpp"
 
-#include <limits>
 #include <set>
 
 namespace cpp_mesh {
@@ -43,9 +43,6 @@ constexpr int smallest_part = 30;
 
 // New cells may have smaller angles than those that they replace, down to this one [rad].
 constexpr double fair_angle = 0.384;
-
-// Edges that share no node are at least so far apart, in lengths of the shorter one.
-constexpr double least_room = 0.05;
 
 // Rosettes are the same if their radii differ by no more than rounding errors.
 constexpr double same_radius = 1e-6;
@@ -367,27 +364,6 @@ private:
         }
     }
 
-    int part_around(Vec2 p) const {
-        int best = -1;
-        double depth = -std::numeric_limits<double>::max();
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
-            for (int c : parts_[i].cells) {
-                const Triangle& node = old_.plane.cells[c];
-                const Vec2 a = xy_[node[0]], b = xy_[node[1]], d = xy_[node[2]];
-                const double inside =
-                    std::min({twice_area(a, b, p), twice_area(b, d, p), twice_area(d, a, p)}) /
-                    twice_area(a, b, d);
-                if (inside > depth) {
-                    depth = inside;
-                    best = static_cast<int>(i);
-                }
-            }
-        }
-        if (!(depth >= -1e-6))
-            throw MeshError("growth reaches beyond the patch that is meshed anew");
-        return best;
-    }
-
     void mesh_patch() {
         std::vector<Region> regions(parts_.size());
         for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -395,18 +371,20 @@ private:
         std::set<int> tips;
         for (std::size_t k = 0; k < skeleton_.rosettes.size(); ++k) {
             tips.insert(skeleton_.rosettes[k].tip_node);
-            regions[part_around(xy_[skeleton_.rosettes[k].tip_node])].loops.push_back(
-                skeleton_.rings[k]);
+            regions[part_around(old_.plane, parts_, xy_[skeleton_.rosettes[k].tip_node])]
+                .loops.push_back(skeleton_.rings[k]);
         }
         for (const FractureCell& cell : skeleton_.cells)
             if (cell.old_cell < 0 && tips.count(cell.node[0]) == 0 && tips.count(cell.node[1]) == 0)
-                regions[part_around(0.5 * (xy_[cell.node[0]] + xy_[cell.node[1]]))]
+                regions[part_around(old_.plane, parts_,
+                                    0.5 * (xy_[cell.node[0]] + xy_[cell.node[1]]))]
                     .embedded.push_back(cell.node);
         add_fixed_points(regions);
         first_free_ = static_cast<int>(xy_.size());
         for (const Region& region : regions) {
-            check_region(region);
-            limit_sizes_at_rim(region);
+            check_region_edges(region, xy_, tolerances_.angle);
+            // As at the outer boundary: cells start from the length of short edges there.
+            limit_sizes_at_short_edges(domain_, region.loops[0], xy_, new_.size);
             const std::vector<Triangle> cells =
                 GmshSession::shared()->triangulate(region, new_.size, xy_);
             new_cells_.insert(new_cells_.end(), cells.begin(), cells.end());
@@ -426,49 +404,8 @@ private:
             if (is_alone && !graph_.points[p].on_boundary &&
                 std::all_of(edges_.begin(node), edges_.end(node),
                             [&](int c) { return marked_[c] != 0; }))
-                regions[part_around(xy_[node])].points.push_back(node);
+                regions[part_around(old_.plane, parts_, xy_[node])].points.push_back(node);
         }
-    }
-
-    // Edges meet in common nodes only, and at angles that leave room for cells: gmsh would not come
-    // to an end otherwise.
-    void check_region(const Region& region) const {
-        std::vector<std::array<int, 2>> edges = region.embedded;
-        for (const std::vector<int>& loop : region.loops)
-            for (std::size_t k = 0; k < loop.size(); ++k)
-                edges.push_back({loop[k], loop[(k + 1) % loop.size()]});
-        for (std::size_t i = 0; i < edges.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (!fit_together(edges[i], edges[j]))
-                    throw MeshError("edges of the patch meet");
-    }
-
-    bool fit_together(std::array<int, 2> p, std::array<int, 2> q) const {
-        const Vec2 a = xy_[p[0]], b = xy_[p[1]], c = xy_[q[0]], d = xy_[q[1]];
-        const double room = least_room * std::min(distance(a, b), distance(c, d));
-        if (std::max(a.x, b.x) + room < std::min(c.x, d.x) ||
-            std::max(c.x, d.x) + room < std::min(a.x, b.x) ||
-            std::max(a.y, b.y) + room < std::min(c.y, d.y) ||
-            std::max(c.y, d.y) + room < std::min(a.y, b.y))
-            return true;
-        int n_shared = 0;
-        double angle = 1.0;
-        for (int k = 0; k < 2; ++k) {
-            for (int l = 0; l < 2; ++l) {
-                if (p[k] != q[l])
-                    continue;
-                ++n_shared;
-                angle = angle_between(xy_[p[1 - k]] - xy_[p[k]], xy_[q[1 - l]] - xy_[q[l]]);
-            }
-        }
-        if (n_shared == 0)
-            return segment_distance(a, b, c, d) > room;
-        return n_shared == 1 && angle > tolerances_.angle;
-    }
-
-    // As at the outer boundary: cells start from the length of short edges there.
-    void limit_sizes_at_rim(const Region& region) {
-        limit_sizes_at_short_edges(domain_, region.loops[0], xy_, new_.size);
     }
 
     // Old cells that stay, then new ones.
@@ -513,23 +450,13 @@ private:
         for (const PatchPart& part : parts_) {
             for (const std::vector<int>& loop : part.loops) {
                 for (int node : loop)
-                    if (is_old(node) && !is_held[node] && is_inside(node))
+                    if (is_old(node) && !is_held[node] && is_inside(old_.plane, edges_, node))
                         nodes.push_back(node);
             }
         }
         for (int node = first_free_; node < static_cast<int>(plane.xy.size()); ++node)
             nodes.push_back(node);
         return nodes;
-    }
-
-    // No old cell at the node has an edge of the boundary there.
-    bool is_inside(int node) const {
-        for (const int* c = edges_.begin(node); c != edges_.end(node); ++c)
-            for (int k = 0; k < 3; ++k)
-                if (edges_.across(*c, k) < 0 &&
-                    (old_.plane.cells[*c][k] == node || old_.plane.cells[*c][(k + 1) % 3] == node))
-                    return false;
-        return true;
     }
 
     void check_shapes(std::size_t first) const {

@@ -2,6 +2,7 @@
 
 #include "errors.hpp"
 
+#include <limits>
 #include <map>
 
 namespace cpp_mesh {
@@ -154,6 +155,36 @@ std::vector<PatchPart> patch_parts(const PlaneMesh& mesh, const EdgeTable& edges
             loops.push_back(std::move(loop));
     }
     return parts;
+}
+
+int part_around(const PlaneMesh& mesh, const std::vector<PatchPart>& parts, Vec2 p) {
+    int best = -1;
+    double depth = -std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        for (int c : parts[i].cells) {
+            const Triangle& node = mesh.cells[c];
+            const Vec2 a = mesh.xy[node[0]], b = mesh.xy[node[1]], d = mesh.xy[node[2]];
+            const double inside =
+                std::min({twice_area(a, b, p), twice_area(b, d, p), twice_area(d, a, p)}) /
+                twice_area(a, b, d);
+            if (inside > depth) {
+                depth = inside;
+                best = static_cast<int>(i);
+            }
+        }
+    }
+    if (!(depth >= -1e-6))
+        throw MeshError("growth reaches beyond the patch that is meshed anew");
+    return best;
+}
+
+bool is_inside(const PlaneMesh& mesh, const EdgeTable& edges, int node) {
+    for (const int* c = edges.begin(node); c != edges.end(node); ++c)
+        for (int k = 0; k < 3; ++k)
+            if (edges.across(*c, k) < 0 &&
+                (mesh.cells[*c][k] == node || mesh.cells[*c][(k + 1) % 3] == node))
+                return false;
+    return true;
 }
 
 } // namespace cpp_mesh

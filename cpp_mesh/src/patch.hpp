@@ -30,6 +30,12 @@ struct PatchPart {
 std::vector<PatchPart> patch_parts(const PlaneMesh& mesh, const EdgeTable& edges,
                                    const std::vector<char>& marked);
 
+// The part that holds a place. Throws MeshError if none does.
+int part_around(const PlaneMesh& mesh, const std::vector<PatchPart>& parts, Vec2 p);
+
+// No edge at the node is one of the boundary.
+bool is_inside(const PlaneMesh& mesh, const EdgeTable& edges, int node);
+
 } // namespace cpp_mesh
 
 #endif
