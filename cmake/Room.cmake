@@ -1,17 +1,27 @@
-# A room is a library whose modules can be used only by those that link it: the module files of each
-# room lie in a folder of their own, so a `use` that USES does not allow fails to compile.
+# A room is a library whose modules can be used only by those that name it: the module files of each
+# room lie in a folder of their own, and USES is not handed on, so a `use` that USES does not list
+# fails to compile. tools/rooms.py also finds what is listed in vain.
 #
-#   add_room(coarse USES mesh)          every .f90 file of the calling folder
-#   add_room_test(test_x USES coarse)   test_x.f90 of the room's tests/ folder, run by CTest
+#   add_room(coarse USES mesh)              every .f90 file of the calling folder
+#   add_room_samples(coarse sample_bodies USES coarse)   tests/sample_bodies.f90, for several tests
+#   add_room_test(test_x USES coarse)       test_x.f90 of the room's tests/ folder, run by CTest
 function(add_room name)
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.f90)
-  set(mod_dir ${CMAKE_CURRENT_BINARY_DIR}/mod)
   add_library(${name} STATIC ${sources})
-  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${mod_dir})
-  target_include_directories(${name} PUBLIC ${mod_dir})
-  target_link_libraries(${name} PUBLIC ${ARG_USES})
+  room_modules(${name} mod)
+  target_link_libraries(${name} PRIVATE ${ARG_USES})
   room_compile_options(${name})
+endfunction()
+
+# A library of small bodies, meshes or closed solutions that tests share: NAME_samples.
+function(add_room_samples name)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  list(TRANSFORM ARG_UNPARSED_ARGUMENTS REPLACE "(.+)" "tests/\\1.f90" OUTPUT_VARIABLE sources)
+  add_library(${name}_samples STATIC ${sources})
+  room_modules(${name}_samples mod_samples)
+  target_link_libraries(${name}_samples PRIVATE ${ARG_USES})
+  room_compile_options(${name}_samples)
 endfunction()
 
 function(add_room_test name)
@@ -23,6 +33,12 @@ function(add_room_test name)
   target_link_libraries(${name} PRIVATE ${ARG_USES})
   room_compile_options(${name})
   add_test(NAME ${name} COMMAND ${name})
+endfunction()
+
+function(room_modules name folder)
+  set(mod_dir ${CMAKE_CURRENT_BINARY_DIR}/${folder})
+  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${mod_dir})
+  target_include_directories(${name} PUBLIC ${mod_dir})
 endfunction()
 
 function(room_compile_options name)

@@ -16,6 +16,7 @@ run_tests() {
 
     step 'shell syntax' shell_syntax
     step 'fprettify' fortran_format
+    step 'rooms' "$venv_python" tools/rooms.py
     step 'fortitude' "$venv_python" -m fortitude check --output-format concise fortran
     step 'clang-format' cpp_format
     step 'ruff check' "$venv_python" -m ruff check "${python_folders[@]}"

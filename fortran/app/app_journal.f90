@@ -5,7 +5,7 @@ module app_journal
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_slip
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
-   use output_fields, only: history_row_t, tip_row_t
+   use results_rows, only: history_row_t, tip_row_t
    use output_progress, only: progress_t, progress_values_t
    use output_record, only: run_record_t
    use output_run, only: run_output_t

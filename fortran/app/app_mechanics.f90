@@ -8,7 +8,8 @@ module app_mechanics
    use base_number, only: brief_text
    use base_timers, only: phase_output, timers_t
    use mechanics_simulation, only: simulation_t
-   use output_fields, only: history_row_t, intersection_fields_t
+   use results_fields, only: intersection_fields_t
+   use results_rows, only: history_row_t
    use output_progress, only: progress_values_t
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -8,7 +8,8 @@ module app_mechanics_fields
    use mechanics_simulation, only: simulation_t
    use mesh_builder, only: locate
    use mesh_types, only: mesh_t, point_boundary, point_interior, point_tip
-   use output_fields, only: fracture_fields_t, history_row_t, matrix_fields_t
+   use results_fields, only: fracture_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t
    use scene_types, only: fracture_t
    use tips_network, only: total_length
    implicit none(type, external)

@@ -10,8 +10,8 @@ module app_twolevel
    use base_timers, only: phase_output, timers_t
    use coarse_fields, only: cell_stresses
    use coarse_state, only: step_report_t
-   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-                            matrix_fields_t
+   use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t
    use output_progress, only: progress_values_t
    use output_tables, only: event_step_cut
    use scene_types, only: scene_t

@@ -4,7 +4,8 @@ module app_twolevel_fields
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_slip, state_stick
    use mesh_builder, only: locate
-   use output_fields, only: fracture_fields_t, history_row_t, matrix_fields_t
+   use results_fields, only: fracture_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t
    use output_record, only: run_record_t
    use tips_network, only: total_length
    use twolevel_simulation, only: simulation_t

@@ -11,7 +11,7 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_mumps, only: mumps_indefinite, mumps_t
+   use algebra_mumps, only: mumps_indefinite, mumps_t
    use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
    implicit none(type, external)

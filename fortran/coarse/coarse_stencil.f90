@@ -14,7 +14,7 @@
 !! content takes its volume change from the same tractions: these are the stabilizing terms.
 module coarse_stencil
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgesv
+   use algebra_lapack, only: dgesv
    use coarse_regions, only: corner_geometry, face_length, fracture_end_region, regions_t, &
                              traction_face
    use coarse_rock, only: rock_t

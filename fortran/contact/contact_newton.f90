@@ -12,7 +12,7 @@
 !! that is one of many, as for a piece that floats, the system counts as singular.
 module contact_newton
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgecon, dgetrf, dgetrs
+   use algebra_lapack, only: dgecon, dgetrf, dgetrs
    implicit none(type, external)
    private
 

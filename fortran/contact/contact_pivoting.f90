@@ -19,7 +19,7 @@
 !!   tension the result is a start for the iteration, not its solution.
 module contact_pivoting
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgetrf, dgetrs
+   use algebra_lapack, only: dgetrf, dgetrs
    use contact_law, only: contact_law_t
    implicit none(type, external)
    private

@@ -2,7 +2,7 @@
 module fine_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_mumps, only: mumps_definite, mumps_t
+   use algebra_mumps, only: mumps_definite, mumps_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, fine_boundary_t
    use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
                            set_contact_problem, solve_contact

@@ -1,7 +1,7 @@
 !> Stress samples in the elements, and polynomials fitted to those around a node.
 module fine_patches
    use base_kinds, only: ik, rk
-   use base_lapack, only: dpotrf, dpotrs
+   use algebra_lapack, only: dpotrf, dpotrs
    use fine_model, only: fine_model_t
    use fine_quadrature, only: triangle_rule_3
    implicit none(type, external)

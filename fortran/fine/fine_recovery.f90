@@ -10,7 +10,7 @@
 !! around a node, weighted with their areas, instead of the fit.
 module fine_recovery
    use base_kinds, only: ik, rk
-   use base_lapack, only: dpotrf, dpotrs
+   use algebra_lapack, only: dpotrf, dpotrs
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, &

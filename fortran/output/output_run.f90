@@ -7,8 +7,8 @@ module output_run
    use base_kinds, only: ik, lk, rk
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
-   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-      & matrix_fields_t, tip_row_t
+   use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t, tip_row_t
    use output_files, only: make_directory, remove_file, rename_file
    use output_network, only: network_record_t
    use output_record, only: run_record_t

@@ -3,8 +3,9 @@ module output_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, mesh_t
-   use output_fields, only: displacement_3d, fracture_fields_t, intersection_fields_t, &
-      & matrix_fields_t, permeability_tensor, stress_tensor, tensor_components
+   use output_tensors, only: displacement_3d, permeability_tensor, stress_tensor, &
+                             tensor_components
+   use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use output_files, only: make_directory, remove_file
    use output_pvd, only: collection_t
    use output_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t

@@ -4,7 +4,8 @@ module output_tables
    use base_kinds, only: ik, rk
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
-   use output_fields, only: fracture_fields_t, history_row_t, tip_row_t
+   use results_fields, only: fracture_fields_t
+   use results_rows, only: history_row_t, tip_row_t
    use output_series, only: series_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)

@@ -1,8 +1,8 @@
 !> The journal: rows of tips of which some have grown, and events that are told once.
 program test_app_journal
    use app_journal, only: journal_t
-   use base_check_files, only: file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use sample_scenes, only: add_fracture, squeezed_body

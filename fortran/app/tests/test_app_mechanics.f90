@@ -1,8 +1,8 @@
 !> Mechanics-only runs that end before their load programme: what they leave on disk.
 program test_app_mechanics
    use app_run, only: run_scene
-   use base_check_files, only: file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_types, only: fracture_t, restraint_t, scene_t

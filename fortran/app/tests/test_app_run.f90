@@ -3,8 +3,8 @@
 program test_app_run
    use app_run, only: run_scene
    use app_twolevel_fields, only: cell_state
-   use base_check_files, only: file_exists, file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_slip, state_stick

@@ -1,6 +1,6 @@
 !> Tests of base_number: the text is short, and reads back as the same number, bit for bit.
 program test_base_number
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text, integer_text, real_text
    use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &

@@ -1,6 +1,6 @@
 !> Small bodies, fracture networks and helpers for the tests of the coarse level and of both levels.
 module sample_bodies
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

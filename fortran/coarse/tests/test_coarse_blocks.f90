@@ -1,7 +1,7 @@
 !> Blocks of a body that a fracture cuts in two: they stick, slide and separate exactly as they
 !! should.
 program test_coarse_blocks
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

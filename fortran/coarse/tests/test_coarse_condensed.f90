@@ -1,10 +1,10 @@
 !> The rock condensed onto its fractures: the same solution as that of the whole system, for any
 !! tractions and fluxes on the fractures, for several time steps, and without fractures.
 program test_coarse_condensed
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgesv
+   use algebra_lapack, only: dgesv
    use coarse_condensed, only: condensed_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_regions, only: regions_t

@@ -1,7 +1,7 @@
 !> The equations on the fractures: all derivatives against central differences, in states without
 !! any pattern; flow along fractures takes from one cell what it gives to the next.
 program test_coarse_equations
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

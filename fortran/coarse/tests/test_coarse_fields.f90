@@ -1,7 +1,7 @@
 !> Fields from the unknowns: exact where displacement and pressure are linear, also at loaded
 !! corners of the body, beside fractures, and where blocks of the body move against each other.
 program test_coarse_fields
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, nodal_values

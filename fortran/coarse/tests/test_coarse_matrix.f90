@@ -1,10 +1,10 @@
 !> The coarse matrix on cells of irregular shape: exact for uniform stress and for linear pressure,
 !! the same as the tractions and fluxes that it stands for, symmetric and quasi-definite.
 program test_coarse_matrix
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_lapack, only: dpotrf
+   use algebra_lapack, only: dpotrf
    use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
    use coarse_matrix, only: cell_area, discretize, matrix_t
    use coarse_regions, only: corner_geometry, face_length, regions_t, traction_face, &

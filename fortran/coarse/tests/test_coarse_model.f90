@@ -1,7 +1,7 @@
 !> The coarse level against exact states: uniform stress and pressure, linear pressure, a sticking
 !! fracture, a slipping one, fluid mass.
 program test_coarse_model
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

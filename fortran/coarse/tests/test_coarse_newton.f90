@@ -1,7 +1,7 @@
 !> Newton's method on the fractures: the cubic law, pressure equilibrium, quadratic convergence, and
 !! steps that are refused.
 program test_coarse_newton
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

@@ -1,7 +1,7 @@
 !> Interaction regions: what meets around each vertex, at tips, joints, kinks and on the boundary;
 !! corners of cells.
 program test_coarse_regions
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use coarse_regions, only: corner_geometry, face_length, find_regions, fracture_end_region, &
                              regions_t, traction_face, traction_position

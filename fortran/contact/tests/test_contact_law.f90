@@ -1,6 +1,6 @@
 !> The law of contact and friction: derivatives, states, what fulfils the law and what does not.
 program test_contact_law
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_equations, contact_law_t, contact_residual
    use contact_states, only: state_name, state_open, state_slip, state_stick

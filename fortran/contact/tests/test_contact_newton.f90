@@ -5,7 +5,7 @@
 !! opening and slip are coupled as strongly as that allows. Reference: the law as it is stated
 !! (model.md section 4), written out here anew.
 program test_contact_newton
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &

@@ -1,6 +1,6 @@
 !> Bodies held and loaded at their boundary, against exact solutions that the elements contain.
 program test_fine_boundary
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field

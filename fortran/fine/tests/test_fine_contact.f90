@@ -1,7 +1,7 @@
 !> Contact on node pairs against fields that fulfil its law exactly, and against cracks that are
 !! closed, slip, or are open in part.
 program test_fine_contact
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t

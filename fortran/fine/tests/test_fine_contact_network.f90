@@ -2,7 +2,7 @@
 !! that the faces can carry, and under loads that change their direction from step to step, when the
 !! law must hold at every pair, with its whole history.
 program test_fine_contact_network
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t, contact_residual

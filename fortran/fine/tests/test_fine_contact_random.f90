@@ -3,7 +3,7 @@
 !! traction. Friction from none to 2, with dilation and without, T and X joints, kinks, fractures
 !! that end on the boundary.
 program test_fine_contact_random
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t

@@ -1,6 +1,6 @@
 !> The six-node triangle against exact fields and integrals.
 program test_fine_element
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use fine_element, only: evaluate_element, shape_values, stiffness_matrix
    use fine_quadrature, only: collapsed_rule

@@ -1,6 +1,6 @@
 !> Recovered stresses and estimated errors against exact fields.
 program test_fine_error
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_fields, only: angle, rock, solve_exact, true_errors

@@ -1,7 +1,7 @@
 !> Conditions on fracture faces against fields that hold them exactly: two blocks in contact that
 !! slide and turn on each other under a uniform stress.
 program test_fine_faces
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field

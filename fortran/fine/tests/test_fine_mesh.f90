@@ -1,6 +1,6 @@
 !> Numbering and placing of the six-node mesh, and what it refuses.
 program test_fine_mesh
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use fine_mesh, only: build_fine_mesh, fine_mesh_t

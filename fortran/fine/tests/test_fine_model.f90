@@ -1,6 +1,6 @@
 !> The fine problem against exact fields: patch tests, convergence, initial stress, refusals.
 program test_fine_model
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field

@@ -1,6 +1,6 @@
 !> Rules of integration against the integrals of monomials.
 program test_fine_quadrature
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use fine_quadrature, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
    implicit none(type, external)

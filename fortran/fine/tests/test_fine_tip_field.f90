@@ -1,7 +1,7 @@
 !> The field of unit intensity against the polar formulas of Williams (1957) and against
 !! differences.
 program test_fine_tip_field
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t
    implicit none(type, external)

@@ -1,7 +1,7 @@
 !> Scenes on polygons and discs, with tractions along sides, gravity and a stress that grows
 !! downwards, against exact solutions.
 program test_mechanics_bodies
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

@@ -1,7 +1,7 @@
 !> Face laws of a scene: a pressure on the faces does what the opposite stress in the body does
 !! (superposition, exact on any mesh), faces held closed slide and do not part, their wings do.
 program test_mechanics_faces
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

@@ -1,6 +1,6 @@
 !> Onsets on straight lines through two states, against closed forms.
 program test_mechanics_onset
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use mechanics_onset, only: foreseen_onset, reading_t
    implicit none(type, external)

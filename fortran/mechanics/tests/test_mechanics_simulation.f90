@@ -1,6 +1,6 @@
 !> The load programme: the onset of growth is found where linearity says, and never stepped over.
 program test_mechanics_simulation
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_timers, only: timers_t

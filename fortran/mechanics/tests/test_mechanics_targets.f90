@@ -1,6 +1,6 @@
 !> Where growing tips meet fractures and the boundary, and when fractures cut a body.
 program test_mechanics_targets
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mechanics_outline, only: outline_t
    use mechanics_targets, only: cuts_through, find_target, target_boundary, target_none

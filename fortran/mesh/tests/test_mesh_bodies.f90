@@ -1,7 +1,7 @@
 !> Whole bodies through the Fortran interface: polygons, fixed points, rosettes, wanted sizes,
 !! quality and targets of growth. The meshes themselves are tested in C++ (cpp_mesh/tests).
 program test_mesh_bodies
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use mesh_builder, only: build_mesh, build_mesh_sized, join_target_t, mesh_quality, mesh_spec_t, &

@@ -1,7 +1,7 @@
 !> Meshes through the Fortran interface: indices from 1, shapes, maps, ownership. The meshes
 !! themselves are tested in C++ (cpp_mesh/tests).
 program test_mesh_builder
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher

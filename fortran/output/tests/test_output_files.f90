@@ -1,7 +1,7 @@
 !> Tests of output_files: a name belongs to a whole file or to none, also when writing fails.
 program test_output_files
-   use base_check_files, only: file_exists, file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use output_files, only: make_directory, remove_file, rename_file, whole_file_t, write_text_file
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char

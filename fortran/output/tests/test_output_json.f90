@@ -1,6 +1,6 @@
 !> Tests of output_json: the escape rules of RFC 8259, and the shape of the text.
 program test_output_json
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
    use output_json, only: escaped, json_t
    use output_text, only: text_t

@@ -1,8 +1,8 @@
 !> Tests of output_network: changes are kept with their times, joints with the time they were first
 !! seen.
 program test_output_network
-   use base_check_files, only: file_exists, file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_interior, &

@@ -1,6 +1,6 @@
 !> Tests of output_progress: what the line says, and that it says nothing where nobody looks.
 program test_output_progress
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use output_progress, only: progress_line, progress_t, progress_values_t
    implicit none(type, external)

@@ -1,7 +1,7 @@
 !> Tests of output_record: run.json has every name of the contract, in its place.
 program test_output_record
-   use base_check_files, only: file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_timers, only: phase_count, phase_names, phase_solve, timers_t

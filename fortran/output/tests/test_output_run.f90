@@ -1,15 +1,15 @@
 !> Tests of output_run: a small run writes every file with the contract's names, and only whole
 !! files.
 program test_output_run
-   use base_check_files, only: file_exists, file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_output, timers_t
    use contact_states, only: state_open, state_slip, state_stick
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
-   use output_fields, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-      & matrix_fields_t, tip_row_t
+   use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t, tip_row_t
    use output_files, only: make_directory, write_text_file
    use output_record, only: run_record_t, status_finished
    use output_run, only: run_output_t

@@ -1,7 +1,7 @@
 !> Tests of output_vtu: the bytes in the file are the numbers given, where the header says.
 program test_output_vtu
-   use base_check_files, only: file_exists, file_text
-   use base_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use output_files, only: make_directory

@@ -1,6 +1,6 @@
 !> Polygons, arcs of discs and gravity: what is accepted, and what is refused with which words.
 program test_scene_bodies
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene

@@ -1,6 +1,6 @@
 !> docs/input.md is what the table of parameters says.
 program test_scene_describe
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use scene_describe, only: describe_input
    use scene_test_files, only: source_path
    implicit none(type, external)

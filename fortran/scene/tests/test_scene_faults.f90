@@ -2,7 +2,7 @@
 !>
 !> Each case replaces one line of a good scene; the messages are compared whole.
 program test_scene_faults
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_lines

@@ -1,6 +1,6 @@
 !> Whatever a file holds, reading it ends with a scene or with a message, never in a crash.
 program test_scene_fuzz
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: lk
    use scene_namelist, only: read_scene

@@ -1,6 +1,6 @@
 !> Mechanics-only scenes: what they must not say, and what must go together.
 program test_scene_mechanics
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_lines

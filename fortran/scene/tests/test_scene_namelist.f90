@@ -1,6 +1,6 @@
 !> What a file says arrives in the scene, and what it leaves out has its default.
 program test_scene_namelist
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene

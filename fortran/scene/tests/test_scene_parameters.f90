@@ -1,6 +1,6 @@
 !> The table of parameters is consistent in itself.
 program test_scene_parameters
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use scene_intervals, only: in_words
    use scene_parameters, only: groups, kind_choice, kind_logical, kind_name, kind_text, &
                                need_always, need_never, parameter_t, parameters

@@ -1,6 +1,6 @@
 !> The text of a scene file falls into the right tokens on the right lines.
 program test_scene_tokens
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
                            token_slash, token_text, token_word, tokenize, unquoted

@@ -1,6 +1,6 @@
 !> Which words are numbers, logicals and texts, and which are refused.
 program test_scene_values
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use scene_intervals, only: in_words, interval_t, holds, poisson_range, positive, share
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &

@@ -1,6 +1,6 @@
 !> Numbers as texts are exact and short; likeness of words; what a name may be.
 program test_scene_words
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: lk, rk
    use scene_words, only: edit_distance, is_identifier, lower_case, real_text, rounded_text
    implicit none(type, external)

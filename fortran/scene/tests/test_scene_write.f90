@@ -1,6 +1,6 @@
 !> A written scene reads back to the same scene, bit for bit, and names every parameter.
 program test_scene_write
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene

@@ -1,7 +1,7 @@
 !> Stress intensity factors of cracks whose faces touch, and of cracks under in-situ stress and
 !! weight, against closed solutions (catalogue 1.9, 3.1, 3.6).
 program test_tips_contact
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t

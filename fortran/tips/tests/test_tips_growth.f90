@@ -1,6 +1,6 @@
 !> Growth law against closed values (catalogue 2.1, 2.3, 2.4).
 program test_tips_growth
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use tips_growth, only: advances, carry_over, energy_release_rate, equivalent_intensity, &
                           growth_drive, &

@@ -1,7 +1,7 @@
 !> Stress intensity factors of a straight crack in a window whose edges carry the displacement of
 !! the exact solution for the infinite plane (catalogue 1.1, 3.1, 3.3, 3.6).
 program test_tips_intensity
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: centre_crack, uniform_field

@@ -1,6 +1,6 @@
 !> Turning or mirroring the whole problem turns or mirrors the result, on a mesh that goes with it.
 program test_tips_invariance
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: centre_crack

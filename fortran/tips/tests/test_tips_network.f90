@@ -1,6 +1,6 @@
 !> Networks that grow: vertices at both ends, arc lengths, gains, distances.
 program test_tips_network
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t
    use scene_types, only: scene_t

@@ -2,7 +2,7 @@
 !! its edges may carry the uniform remote strain (catalogue 1.2, 1.8), and of a crossing that is
 !! held together.
 program test_tips_networks
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field

@@ -1,6 +1,6 @@
 !> The path of a tip: moving, and the search for the direction in which it goes on straight.
 program test_tips_path
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use tips_growth, only: kink_angle
    use tips_path, only: path_t

@@ -2,7 +2,7 @@
 !! rate and strain energy with all three kinds of elements at the tip; other units; rock that is
 !! nearly incompressible.
 program test_tips_plate
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side, &

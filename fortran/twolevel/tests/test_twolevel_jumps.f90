@@ -1,6 +1,6 @@
 !> The record of jumps: linear between its points, silent beyond them.
 program test_twolevel_jumps
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use twolevel_jumps, only: jump_record_t, recall_jump
    implicit none(type, external)

@@ -1,6 +1,6 @@
 !> Whole scenes: wells, growth of both ends alike, fluid that is neither made nor lost by growth.
 program test_twolevel_simulation
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

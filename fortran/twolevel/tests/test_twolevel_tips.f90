@@ -1,7 +1,7 @@
 !> Tips: which of them grow and how far, what stops them, what the coarse level learns of it, and
 !! the direction that a small scene's tips settle for.
 program test_twolevel_tips
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

@@ -1,7 +1,7 @@
 !> Transfer of a state without any pattern to a mesh on which a fracture has grown at both ends:
 !! what is kept exactly, what is conserved, and what new fracture cells start with.
 program test_twolevel_transfer
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_matrix, only: cell_area

@@ -1,7 +1,7 @@
 !> Windows: where they lie in the coarse mesh, uniform stress without intensities, what holds on
 !! their faces, and jumps that outlive a new mesh.
 program test_twolevel_window
-   use base_checks, only: checks_t
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t

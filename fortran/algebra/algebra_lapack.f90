@@ -4,7 +4,7 @@
 !! the arrays have. `info` is 0 for success, -i where argument i is wrong, and i where pivot i is
 !! exactly zero or, for Cholesky, not positive (LAPACK Users' Guide, third edition, Anderson and
 !! others 1999).
-module base_lapack
+module algebra_lapack
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
@@ -80,4 +80,4 @@ module base_lapack
       end subroutine dpotrs
    end interface
 
-end module base_lapack
+end module algebra_lapack

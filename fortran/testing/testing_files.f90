@@ -1,5 +1,5 @@
 !> What the test programs need to look at files.
-module base_check_files
+module testing_files
    implicit none(type, external)
    private
 
@@ -35,4 +35,4 @@ contains
       close (unit)
    end function file_text
 
-end module base_check_files
+end module testing_files

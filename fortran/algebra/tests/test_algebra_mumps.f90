@@ -1,10 +1,10 @@
 !> MUMPS wrapper: known solutions, the Schur complement against dense elimination, singular
 !! matrices.
-program test_base_mumps
-   use base_checks, only: checks_t
+program test_algebra_mumps
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_mumps, only: mumps_definite, mumps_indefinite, mumps_t
+   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -96,4 +96,4 @@ contains
       call checks%fails_with(error, "finite", "NaN in the matrix")
    end subroutine refuses_singular
 
-end program test_base_mumps
+end program test_algebra_mumps

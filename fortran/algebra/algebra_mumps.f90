@@ -4,7 +4,7 @@
 !! Settings follow measurements on systems of this kind: approximate minimum degree (a better
 !! ordering costs more than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS
 !! reports an exactly singular matrix only with null-pivot detection, which is therefore on.
-module base_mumps
+module algebra_mumps
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -251,4 +251,4 @@ contains
       end select
    end subroutine check_status
 
-end module base_mumps
+end module algebra_mumps

@@ -1,5 +1,5 @@
 !> What the test programs need: named checks that count failures and set the exit status.
-module base_checks
+module testing_checks
    use base_errors, only: error_t
    use base_kinds, only: rk
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -87,4 +87,4 @@ contains
       if (self%n_failed > 0 .or. self%n_passed == 0) error stop 1, quiet = .true.
    end subroutine finish
 
-end module base_checks
+end module testing_checks

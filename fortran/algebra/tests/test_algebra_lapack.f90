@@ -1,8 +1,8 @@
 !> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses.
-program test_base_lapack
-   use base_checks, only: checks_t
+program test_algebra_lapack
+   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use base_lapack, only: dgesv, dgetrf, dgetrs, dpotrf, dpotrs
+   use algebra_lapack, only: dgesv, dgetrf, dgetrs, dpotrf, dpotrs
    implicit none(type, external)
 
    real(rk), parameter :: tolerance = 1.0e-14_rk  !< relative to solutions of size 3
@@ -91,4 +91,4 @@ contains
       call checks%is_true(info == 2, "an indefinite matrix")
    end subroutine refused
 
-end program test_base_lapack
+end program test_algebra_lapack

@@ -1,0 +1,55 @@
+!> A state in numbers: the rows of the tables of a run.
+module results_rows
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: history_row_t, tip_row_t
+
+   !> An accepted time step, a row of history.csv.
+   type :: history_row_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      real(rk) :: dt = 0.0_rk  !< [s]
+      integer(ik) :: newton_iterations = 0
+      real(rk) :: well_pressure = 0.0_rk  !< mean over the injected cells [Pa]
+      real(rk) :: injected = 0.0_rk  !< fluid injected so far [m2]
+      real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
+      real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
+      real(rk) :: fracture_volume = 0.0_rk  !< [m2]
+      real(rk) :: mass_error_relative = 0.0_rk  !< [-]
+      real(rk) :: max_slip = 0.0_rk  !< [m]
+      real(rk) :: max_opening = 0.0_rk  !< [m]
+      integer(ik) :: n_stick = 0
+      integer(ik) :: n_slip = 0
+      integer(ik) :: n_open = 0
+      real(rk) :: fracture_length = 0.0_rk  !< [m]
+      integer(ik) :: n_tips = 0
+      integer(ik) :: n_intersections = 0
+      real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
+      ! Only in mechanics-only runs.
+      real(rk) :: load_factor = 0.0_rk  !< [-]
+      real(rk) :: strain_energy = 0.0_rk  !< per metre of thickness [J/m]
+   end type history_row_t
+
+   !> A free tip after a step or an increment, a row of tips.csv.
+   type :: tip_row_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      integer(ik) :: tip = 0
+      integer(ik) :: fracture = 0
+      real(rk) :: xy(2) = 0.0_rk  !< [m]
+      real(rk) :: k1 = 0.0_rk  !< opening intensity, interaction integral [Pa m^1/2]
+      real(rk) :: k2 = 0.0_rk  !< sliding intensity, interaction integral [Pa m^1/2]
+      real(rk) :: k1_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
+      real(rk) :: k2_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
+      real(rk) :: keq = 0.0_rk  !< equivalent intensity [Pa m^1/2]
+      real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
+      real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
+      real(rk) :: advance = 0.0_rk  !< length grown [m]
+      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
+      real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
+      real(rk) :: g_error = 0.0_rk  !< its estimated error [J/m2]
+      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< those of k1_dc, k2_dc [Pa m^1/2]
+      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< with what they lack [Pa m^1/2]
+   end type tip_row_t
+
+end module results_rows
