@@ -79,7 +79,7 @@ SCENES = {
 # Modules, or the beginnings of their names, that a scene has no use for. Those of growth: what
 # evaluates tips and moves them.
 FLUID = ("coarse_", "twolevel_")
-TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "tips_growth")
+TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "growth_law")
 CONTACT = ("contact_law",)
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_jumps")
 FILES = ("output_vtu",)

@@ -17,7 +17,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 def order_of_rooms() -> list[str]:
     """The rooms, each after those that it may use."""
-    found = re.search(r"set\(rooms\s+([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())
+    found = re.search(r"set\(\s*rooms\s+([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())
     if found is None:
         raise SystemExit("CMakeLists.txt: no set(rooms ...)")
     return found.group(1).split()

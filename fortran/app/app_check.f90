@@ -2,7 +2,7 @@
 module app_check
    use base_kinds, only: ik, rk
    use scene_types, only: scene_t
-   use tips_network, only: network_of_scene, total_length
+   use growth_network, only: network_of_scene, total_length
    implicit none(type, external)
    private
 

@@ -12,7 +12,7 @@ module mechanics_faces
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: network_t
    use scene_types, only: fracture_t, scene_t
-   use tips_network, only: fracture_length
+   use growth_network, only: fracture_length
    implicit none(type, external)
    private
 

@@ -4,7 +4,7 @@
 !! straight lines through two states is then the onset itself; across such changes it is a guess.
 module mechanics_onset
    use base_kinds, only: rk
-   use tips_growth, only: growth_drive, growth_drive_t
+   use growth_law, only: growth_drive, growth_drive_t
    implicit none(type, external)
    private
 

@@ -4,7 +4,8 @@ module output_json
    use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
    use base_utf8, only: utf8_length
-   use output_text, only: newline, text_buffer_t, text_t
+   use base_texts, only: text_t
+   use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private
 

@@ -6,7 +6,8 @@ module output_network
       & point_joint_x
    use output_files, only: write_text_file
    use output_json, only: json_t
-   use output_text, only: newline, text_buffer_t, text_t
+   use base_texts, only: text_t
+   use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private
 

@@ -1,11 +1,12 @@
 !> run.json: what a run was, how it ended and what it cost.
 module output_record
    use base_errors, only: error_t
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: rk
+   use base_texts, only: text_t
    use base_timers, only: phase_count, phase_names, timers_t
    use output_files, only: write_text_file
    use output_json, only: json_t
-   use output_text, only: add_text, text_t
+   use results_summary, only: summary_t
    implicit none(type, external)
    private
 
@@ -15,110 +16,17 @@ module output_record
    character(len=*), parameter :: status_stopped = "stopped"  !< interrupted from outside
    character(len=*), parameter :: status_failed = "failed"  !< could not go on
 
-   !> Unknowns of one kind.
-   type :: dof_block_t
-      character(len=:), allocatable :: name
-      integer(lk) :: n = 0_lk
-   end type dof_block_t
-
    !> All that run.json holds but the timers. Components without default must be set.
-   type :: run_record_t
+   type, extends(summary_t) :: run_record_t
       character(len=:), allocatable :: scene  !< its name
       character(len=:), allocatable :: version  !< of this program
       character(len=:), allocatable :: status  !< status_finished, status_stopped or status_failed
       character(len=:), allocatable :: reason  !< why it ended
-      integer(ik) :: steps = 0  !< accepted time steps
-      integer(ik) :: cells = 0  !< matrix cells at the end
-      integer(ik) :: fracture_cells = 0  !< at the end
-      real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
-      real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
-      real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
-      !> of their solutions, relative; with the one above [-]
-      real(rk) :: forward_error_bound = 0.0_rk
-      real(rk) :: smallest_angle = 0.0_rk  !< of all meshes; 0: left out [rad]
-      real(rk) :: energy_error = 0.0_rk  !< estimate on the last mesh, relative; 0: left out [-]
-      integer(ik) :: newton_total = 0  !< iterations
-      integer(ik) :: newton_max = 0  !< iterations in one step
-      integer(ik) :: step_cuts = 0
-      logical :: has_growth = .false.  !< the three below are known
-      integer(ik) :: increments = 0  !< of growth, of any number of tips at once
-      integer(ik) :: meshes_whole = 0  !< made of the whole body
-      integer(ik) :: meshes_patched = 0  !< made anew around growing tips only
-      type(dof_block_t), allocatable, private :: dofs(:)
-      type(text_t), allocatable, private :: used(:)
-      type(text_t), allocatable, private :: left_out(:)
-      type(text_t), allocatable, private :: warnings(:)
    contains
-      procedure :: count_dofs
-      procedure :: use_feature
-      procedure :: leave_out_feature
-      procedure :: note => note_feature
-      procedure :: warn
       procedure :: write => write_record
    end type run_record_t
 
 contains
-
-   !> Set the number of unknowns of a block, e.g. "displacement"; a later count replaces an earlier
-   !! one.
-   subroutine count_dofs(self, block_name, n)
-      class(run_record_t), intent(inout) :: self
-      character(len=*), intent(in) :: block_name
-      integer, intent(in) :: n
-      type(dof_block_t), allocatable :: longer(:)
-      integer :: i
-
-      if (.not. allocated(self%dofs)) allocate (self%dofs(0))
-      do i = 1, size(self%dofs)
-         if (self%dofs(i)%name == block_name) then
-            self%dofs(i)%n = int(n, lk)
-            return
-         end if
-      end do
-      allocate (longer(size(self%dofs) + 1))
-      longer(1:size(self%dofs)) = self%dofs
-      longer(size(longer))%name = block_name
-      longer(size(longer))%n = int(n, lk)
-      call move_alloc(longer, self%dofs)
-   end subroutine count_dofs
-
-   !> Note a feature that the run uses.
-   subroutine use_feature(self, feature)
-      class(run_record_t), intent(inout) :: self
-      character(len=*), intent(in) :: feature
-
-      call add_once(self%used, feature)
-   end subroutine use_feature
-
-   !> Note a feature that the run leaves out.
-   subroutine leave_out_feature(self, feature)
-      class(run_record_t), intent(inout) :: self
-      character(len=*), intent(in) :: feature
-
-      call add_once(self%left_out, feature)
-   end subroutine leave_out_feature
-
-   !> Note a feature that the run uses or else leaves out.
-   subroutine note_feature(self, is_used, used, left_out)
-      class(run_record_t), intent(inout) :: self
-      logical, intent(in) :: is_used
-      character(len=*), intent(in) :: used  !< in words, if it is used
-      character(len=*), intent(in) :: left_out  !< and if it is not
-
-      if (is_used) then
-         call self%use_feature(used)
-      else
-         call self%leave_out_feature(left_out)
-      end if
-   end subroutine note_feature
-
-   !> Note a warning; the same words are kept once.
-   subroutine warn(self, warning)
-      class(run_record_t), intent(inout) :: self
-      character(len=*), intent(in) :: warning
-
-      call add_once(self%warnings, warning)
-   end subroutine warn
 
    !> Write run.json.
    subroutine write_record(self, path, timers, error)
@@ -207,20 +115,6 @@ contains
       end do
       close (unit)
    end function peak_memory_mb
-
-   !> Add a string to a list that does not have it yet.
-   subroutine add_once(list, text)
-      type(text_t), allocatable, intent(inout) :: list(:)
-      character(len=*), intent(in) :: text
-      integer :: i
-
-      if (allocated(list)) then
-         do i = 1, size(list)
-            if (list(i)%text == text) return
-         end do
-      end if
-      call add_text(list, text)
-   end subroutine add_once
 
    subroutine add_list(json, key, list)
       type(json_t), intent(inout) :: json

@@ -14,7 +14,8 @@ module output_run
    use output_record, only: run_record_t
    use output_snapshots, only: snapshots_t
    use output_tables, only: tables_t
-   use output_text, only: add_text, newline, text_buffer_t, text_t
+   use base_texts, only: add_text, text_t
+   use output_text, only: newline, text_buffer_t
    use scene_types, only: scene_t
    use scene_write, only: write_scene
    implicit none(type, external)

@@ -12,17 +12,6 @@ module output_tables
    private
 
    public :: tables_t
-   public :: event_arrest, event_growth, event_joint, event_opening, event_remesh, event_slip_onset
-   public :: event_step_cut
-
-   ! Kinds of events.
-   character(len=*), parameter :: event_slip_onset = "slip_onset"
-   character(len=*), parameter :: event_opening = "opening"
-   character(len=*), parameter :: event_growth = "growth"
-   character(len=*), parameter :: event_joint = "joint"
-   character(len=*), parameter :: event_arrest = "arrest"
-   character(len=*), parameter :: event_step_cut = "step_cut"
-   character(len=*), parameter :: event_remesh = "remesh"
 
    integer, parameter :: column_length = name_length + 8
    real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  !< per radian

@@ -1,4 +1,4 @@
-!> Text that grows: a buffer with room to spare, and lists of strings.
+!> Text that grows: a buffer with room to spare.
 module output_text
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -7,14 +7,9 @@ module output_text
    implicit none(type, external)
    private
 
-   public :: add_text, newline, text_buffer_t, text_t
+   public :: newline, text_buffer_t
 
    character(len=*), parameter :: newline = achar(10)
-
-   !> A string of its own length.
-   type :: text_t
-      character(len=:), allocatable :: text
-   end type text_t
 
    !> A long text, built piece by piece.
    type :: text_buffer_t
@@ -80,20 +75,5 @@ contains
          call write_text_file(path, "", error)
       end if
    end subroutine write_file
-
-   !> Add a string to a list.
-   pure subroutine add_text(list, text)
-      type(text_t), allocatable, intent(inout) :: list(:)
-      character(len=*), intent(in) :: text
-      type(text_t), allocatable :: longer(:)
-      integer :: n
-
-      n = 0
-      if (allocated(list)) n = size(list)
-      allocate (longer(n + 1))
-      if (n > 0) longer(1:n) = list
-      longer(n + 1)%text = text
-      call move_alloc(longer, list)
-   end subroutine add_text
 
 end module output_text

@@ -4,7 +4,7 @@ module results_rows
    implicit none(type, external)
    private
 
-   public :: history_row_t, tip_row_t
+   public :: history_row_t, probe_row_t, tip_row_t
 
    !> An accepted time step, a row of history.csv.
    type :: history_row_t
@@ -30,6 +30,13 @@ module results_rows
       real(rk) :: load_factor = 0.0_rk  !< [-]
       real(rk) :: strain_energy = 0.0_rk  !< per metre of thickness [J/m]
    end type history_row_t
+
+   !> A state at the probes, a row of probes.csv.
+   type :: probe_row_t
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_probes) [m]
+      real(rk), allocatable :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
+      real(rk), allocatable :: pressure(:)  !< (n_probes) [Pa]; only with a fluid
+   end type probe_row_t
 
    !> A free tip after a step or an increment, a row of tips.csv.
    type :: tip_row_t

@@ -2,7 +2,7 @@
 !! for the rows of the catalogue's tables 2.1, 2.3 and 2.4.
 program growth_laws
    use base_kinds, only: ik, rk
-   use tips_growth, only: advances, energy_release_rate, equivalent_intensity, kink_angle
+   use growth_law, only: advances, energy_release_rate, equivalent_intensity, kink_angle
    use verification_files, only: finish, table_t
    implicit none(type, external)
 

@@ -2,12 +2,10 @@
 !! their reason and the last good state on disk.
 program test_app_run
    use app_run, only: run_scene
-   use app_twolevel_fields, only: cell_state
    use testing_files, only: file_exists, file_text
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use contact_states, only: state_open, state_slip, state_stick
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
@@ -16,7 +14,6 @@ program test_app_run
 
    call test_switches()
    call test_failure()
-   call test_cell_state()
    call checks%finish()
 
 contains
@@ -139,20 +136,5 @@ contains
          at = at + step + len(word) - 1
       end do
    end function occurrences
-
-   !> A cell is open or sticks only where both of its ends do.
-   subroutine test_cell_state()
-      integer(ik), parameter :: all_states(3) = [state_stick, state_slip, state_open]
-      integer :: i, j
-
-      do i = 1, 3
-         call checks%is_true(cell_state([all_states(i), all_states(i)]) == all_states(i), &
-                             "ends alike")
-         do j = 1, 3
-            if (i /= j) call checks%is_true(cell_state(all_states([i, j])) == state_slip, &
-                                            "ends differ")
-         end do
-      end do
-   end subroutine test_cell_state
 
 end program test_app_run

@@ -7,7 +7,7 @@ program test_mechanics_bodies
    use base_timers, only: timers_t
    use mechanics_fields, only: cell_stress
    use mechanics_outline, only: outline_of_scene, outline_t
-   use mechanics_simulation, only: simulation_t
+   use mechanics_simulation, only: mechanics_simulation_t
    use scene_types, only: boundary_part_t, fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: young = 2.0e9_rk, poisson = 0.3_rk
@@ -67,7 +67,7 @@ contains
    !> State of a scene at load factor 1.
    subroutine solve(scene, simulation, name)
       type(scene_t), intent(in) :: scene
-      type(simulation_t), intent(out) :: simulation
+      type(mechanics_simulation_t), intent(out) :: simulation
       character(len=*), intent(in) :: name
       type(timers_t) :: timers
       type(error_t), allocatable :: error
@@ -80,7 +80,7 @@ contains
 
    !> Largest difference of the displacements from known ones [m].
    function largest_error(simulation, exact) result(error)
-      type(simulation_t), intent(in) :: simulation
+      type(mechanics_simulation_t), intent(in) :: simulation
       real(rk), intent(in) :: exact(:, :)  !< (2, nodes) [m]
       real(rk) :: error
 
@@ -121,7 +121,7 @@ contains
       real(rk), parameter :: oedometric = young*(1.0_rk - poisson) &
                              /((1.0_rk + poisson)*(1.0_rk - 2.0_rk*poisson))
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       real(rk), allocatable :: exact(:, :)
@@ -149,7 +149,7 @@ contains
    !! is: no displacements but those of rounding.
    subroutine check_in_situ()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       real(rk) :: stress_scale
 
       scene = polygon_scene([0.0_rk, 2.0_rk, 1.5_rk, 1.0_rk, 0.8_rk, 0.2_rk], &
@@ -174,7 +174,7 @@ contains
    subroutine check_pure_shear()
       real(rk), parameter :: shear = 1.0e6_rk, modulus = young/(2.0_rk*(1.0_rk + poisson))
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       real(rk), allocatable :: exact(:, :)
 
       scene = bare_scene("rectangle")
@@ -196,7 +196,7 @@ contains
       real(rk), parameter :: pressure = 1.0e6_rk
       real(rk), parameter :: centre(2) = [0.3_rk, -0.2_rk]
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(boundary_part_t) :: rim
       real(rk), allocatable :: exact(:, :)
 
@@ -239,7 +239,7 @@ contains
    subroutine check_arcs()
       real(rk), parameter :: pressure = 1.0e6_rk, half = 10.0_rk*pi/180.0_rk
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(boundary_part_t) :: arc
       real(rk), allocatable :: stress(:, :)
       real(rk) :: mean(2), across, along

@@ -5,7 +5,8 @@ program test_mechanics_faces
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use mechanics_simulation, only: simulation_t
+   use mechanics_rise, only: rise
+   use mechanics_simulation, only: mechanics_simulation_t
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-9_rk
@@ -54,7 +55,7 @@ contains
       character(len=*), intent(in) :: name
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: factor  !< [-]
-      type(simulation_t), intent(inout) :: simulation
+      type(mechanics_simulation_t), intent(inout) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
@@ -70,7 +71,7 @@ contains
       real(rk), intent(in) :: stress(2)  !< xx, yy [Pa]
       real(rk), parameter :: factor = 2.5_rk
       type(scene_t) :: scene
-      type(simulation_t) :: pressed, pulled
+      type(mechanics_simulation_t) :: pressed, pulled
       real(rk) :: largest
 
       scene = plate(law, stress)
@@ -96,7 +97,7 @@ contains
    !> Faces that are held closed carry tension; others part.
    subroutine closed_under_tension()
       type(scene_t) :: scene
-      type(simulation_t) :: held, free
+      type(mechanics_simulation_t) :: held, free
       integer(ik), parameter :: tau = 1, n = 2
 
       scene = plate("frictionless", [0.0_rk, 5.0_rk])
@@ -117,7 +118,7 @@ contains
    !> Under compression wings grow from the ends of a closed crack, and open.
    subroutine wings_of_a_closed_crack()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       logical :: has_onset, any_grew
@@ -130,8 +131,8 @@ contains
       scene%material%toughness = 1.0_rk
       call timers%begin()
       call simulation%begin(scene, timers, error)
-      if (.not. allocated(error)) call simulation%rise(100.0_rk, has_onset, timers, error)
-      if (.not. allocated(error)) call simulation%grow(0.04_rk, any_grew, timers, error)
+      if (.not. allocated(error)) call rise(simulation, 100.0_rk, has_onset, timers, error)
+      if (.not. allocated(error)) call simulation%grow_tips(any_grew, timers, error)
       call checks%no_error(error, "wings of a closed crack")
       if (allocated(error)) return
       call checks%is_true(has_onset .and. any_grew, "wings grow")

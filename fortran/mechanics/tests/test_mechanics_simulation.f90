@@ -4,7 +4,8 @@ program test_mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_timers, only: timers_t
-   use mechanics_simulation, only: simulation_t
+   use mechanics_rise, only: rise
+   use mechanics_simulation, only: mechanics_simulation_t
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-8_rk  !< of a factor found from linear responses
@@ -51,7 +52,7 @@ contains
    subroutine check_onset(law, traction)
       character(len=*), intent(in) :: law
       real(rk), intent(in) :: traction
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       logical :: has_onset
@@ -61,16 +62,16 @@ contains
       call simulation%begin(plate(law, traction), timers, error)
       call checks%no_error(error, law//": begin")
       if (allocated(error)) return
-      call simulation%rise(0.1_rk, has_onset, timers, error)
+      call rise(simulation, 0.1_rk, has_onset, timers, error)
       call checks%no_error(error, law//": a small load")
       if (allocated(error)) return
       call checks%is_true(.not. has_onset, law//": a small load does not make it grow")
       call checks%is_close(simulation%factor, 0.1_rk, 0.0_rk, law//": the load is reached")
       per_factor = maxval(simulation%tip%drive%intensity)/0.1_rk
       expected = simulation%scene%material%toughness/per_factor
-      call simulation%rise(0.999_rk*expected, has_onset, timers, error)
+      call rise(simulation, 0.999_rk*expected, has_onset, timers, error)
       call checks%is_true(.not. has_onset, law//": no onset below the onset")
-      call simulation%rise(10.0_rk*expected, has_onset, timers, error)
+      call rise(simulation, 10.0_rk*expected, has_onset, timers, error)
       call checks%no_error(error, law//": onset")
       call checks%is_true(has_onset, law//": the onset is found on the way")
       call checks%is_close(simulation%factor/expected, 1.0_rk, exact, law//": where it is")
@@ -78,18 +79,18 @@ contains
 
    !> The onset is found where it lies at a tiny share of the programme.
    subroutine check_tiny_onset()
-      type(simulation_t) :: usual, strong
+      type(mechanics_simulation_t) :: usual, strong
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       logical :: has_onset
 
       call timers%begin()
       call usual%begin(plate("open", 1.0_rk), timers, error)
-      call usual%rise(100.0_rk, has_onset, timers, error)
+      call rise(usual, 100.0_rk, has_onset, timers, error)
       call strong%begin(plate("open", 1.0e24_rk), timers, error)
       call checks%no_error(error, "tiny onset: begin")
       if (allocated(error)) return
-      call strong%rise(100.0_rk, has_onset, timers, error)
+      call rise(strong, 100.0_rk, has_onset, timers, error)
       call checks%no_error(error, "tiny onset")
       call checks%is_true(has_onset, "growth under a load of 1e24 Pa")
       call checks%is_close(strong%factor*1.0e24_rk/usual%factor, 1.0_rk, exact, "at its factor")
@@ -97,7 +98,7 @@ contains
 
    !> Both tips grow together, at a load that does not change, and the next rise starts there.
    subroutine check_growth()
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       logical :: has_onset, any_grew
@@ -105,9 +106,9 @@ contains
 
       call timers%begin()
       call simulation%begin(plate("open", 1.0_rk), timers, error)
-      call simulation%rise(100.0_rk, has_onset, timers, error)
+      call rise(simulation, 100.0_rk, has_onset, timers, error)
       factor = simulation%factor
-      call simulation%grow(0.04_rk, any_grew, timers, error)
+      call simulation%grow_tips(any_grew, timers, error)
       call checks%no_error(error, "growth")
       if (allocated(error)) return
       call checks%is_true(any_grew .and. all(simulation%tip%advance > 0.039_rk), "both tips grow")
@@ -115,7 +116,7 @@ contains
       call checks%is_close(norm2(sum(reshape([simulation%tip(1)%xy, simulation%tip(2)%xy], &
                                              [2, 2]), dim=2)), 0.0_rk, 1.0e-3_rk, &
                            "the wings mirror each other")
-      call simulation%rise(100.0_rk, has_onset, timers, error)
+      call rise(simulation, 100.0_rk, has_onset, timers, error)
       call checks%is_true(has_onset, "in tension growth goes on")
       call checks%is_close(simulation%factor, factor, 0.0_rk, "without more load")
    end subroutine check_growth
@@ -124,7 +125,7 @@ contains
    !! only: K_I stays that of Tada's formula for a strip (1973; within 0.1 %), within its own
    !! estimated error.
    subroutine check_patched_meshes()
-      type(simulation_t) :: simulation
+      type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       real(rk), parameter :: pi = acos(-1.0_rk), formula = 1.0e-3_rk
@@ -145,7 +146,7 @@ contains
       call checks%no_error(error, "patches: begin")
       if (allocated(error)) return
       do increment = 1, 6
-         call simulation%rise(100.0_rk, has_onset, timers, error)
+         call rise(simulation, 100.0_rk, has_onset, timers, error)
          call checks%no_error(error, "patches: rise")
          if (allocated(error)) return
          associate (tip => simulation%tip(1), k1 => simulation%tip(1)%intensity%k1)
@@ -156,7 +157,7 @@ contains
                                  formula + abs(tip%intensity%k1_error/expected), &
                                  "patches: K_I of a strip")
          end associate
-         call simulation%grow(0.04_rk, any_grew, timers, error)
+         call simulation%grow_tips(any_grew, timers, error)
          call checks%no_error(error, "patches: growth")
          if (allocated(error)) return
       end do

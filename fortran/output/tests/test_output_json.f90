@@ -3,7 +3,7 @@ program test_output_json
    use testing_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
    use output_json, only: escaped, json_t
-   use output_text, only: text_t
+   use base_texts, only: text_t
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    implicit none(type, external)
 

@@ -9,7 +9,7 @@ program test_output_network
       & point_joint_t, point_tip
    use output_files, only: make_directory, remove_file
    use output_network, only: network_record_t
-   use output_text, only: text_t
+   use base_texts, only: text_t
    implicit none(type, external)
 
    character(len=*), parameter :: folder = "test_output_network.out"

@@ -13,7 +13,7 @@ program test_output_run
    use output_files, only: make_directory, write_text_file
    use output_record, only: run_record_t, status_finished
    use output_run, only: run_output_t
-   use output_tables, only: event_slip_onset, event_step_cut
+   use results_chronicle, only: event_slip_onset, event_step_cut
    use scene_types, only: scene_t
    implicit none(type, external)
 

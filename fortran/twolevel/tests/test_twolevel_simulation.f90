@@ -4,11 +4,13 @@ program test_twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use contact_states, only: state_open, state_slip, state_stick
    use coarse_state, only: state_t, step_report_t
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t
-   use tips_network, only: end_gain
-   use twolevel_simulation, only: simulation_t
+   use growth_network, only: end_gain
+   use twolevel_results, only: cell_state
+   use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 
    real(rk), parameter :: increment = 0.04_rk  !< l_max [m]
@@ -19,6 +21,7 @@ program test_twolevel_simulation
    call test_refused_step()
    call test_growth("conserved")
    call test_growth("prefilled")
+   call test_cell_state()
    call checks%finish()
 
 contains
@@ -26,7 +29,7 @@ contains
    !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
    subroutine test_wells()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i, n
       real(rk) :: middle(2)
@@ -69,34 +72,7 @@ contains
             end if
          end associate
       end do
-      ! A step has the rate of its middle; a well runs from its start to its end.
-      call checks%is_close(simulation%rate(1_ik, 0.0_rk, 10.0_rk), 0.0_rk, 0.0_rk, &
-                           "before its start")
-      call checks%is_close(simulation%rate(1_ik, 10.0_rk, 1.0_rk), 1.0e-6_rk, 0.0_rk, &
-                           "from its start")
-      call checks%is_close(simulation%rate(1_ik, 29.0_rk, 1.0_rk), 1.0e-6_rk, 0.0_rk, "to its end")
-      call checks%is_close(simulation%rate(1_ik, 30.0_rk, 1.0_rk), 0.0_rk, 0.0_rk, "after its end")
-      call checks%is_close(simulation%rate(1_ik, 0.0_rk, 10.000000001_rk), 0.0_rk, 0.0_rk, &
-                           "a step that ends at its start but for rounding")
-      call checks%is_close(simulation%rate(1_ik, 29.999999999_rk, 5.0_rk), 0.0_rk, 0.0_rk, &
-                           "a step that begins at its end but for rounding")
-      call checks%is_close(simulation%rate(2_ik, 1.0e9_rk, 1.0_rk), 2.0e-6_rk, 0.0_rk, &
-                           "without end")
-      call switches_at(simulation, 0.0_rk, 10.0_rk)
-      call switches_at(simulation, 10.0_rk, 20.0_rk)
-      call switches_at(simulation, 20.0_rk, 25.0_rk)
-      call switches_at(simulation, 25.0_rk, 30.0_rk)
-      call switches_at(simulation, 29.9_rk, 30.0_rk)
-      call switches_at(simulation, 30.0_rk, 100.0_rk)
    end subroutine test_wells
-
-   subroutine switches_at(simulation, now, next)
-      type(simulation_t), intent(inout) :: simulation
-      real(rk), intent(in) :: now, next
-
-      simulation%state%time = now
-      call checks%is_close(simulation%next_switch(), next, 0.0_rk, "next time of change")
-   end subroutine switches_at
 
    !> A sealed body squeezed from all sides by rollers, which looks the same from both ends of the
    !! fracture in its middle; fluid is let into that.
@@ -116,6 +92,7 @@ contains
       scene%discretization%newton_tolerance = 1.0e-12_rk
       scene%growth%enabled = .true.
       scene%growth%new_volume = new_volume
+      scene%growth%increment = increment
       scene%time%step = 100.0_rk
       call add_fracture(scene, "middle", [0.85_rk, 1.15_rk], [0.85_rk, 1.15_rk], 0.3_rk, 0.01_rk)
       scene%injections = [injection_t(fracture=1, rate=1.0e-7_rk)]
@@ -124,7 +101,7 @@ contains
    !> A step that does not converge leaves everything as it is.
    subroutine test_refused_step()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), allocatable :: pressure(:)
@@ -153,7 +130,7 @@ contains
    subroutine test_growth(new_volume)
       character(len=*), intent(in) :: new_volume
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(state_t) :: before, first
       type(step_report_t) :: report
       type(error_t), allocatable :: error
@@ -176,12 +153,12 @@ contains
          call checks%is_true(report%converged, new_volume//": a step converges")
          compressed = compressed + compression(simulation, before)
          leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
-         call simulation%evaluate_tips(timers, error)
+         call simulation%evaluate(timers, error)
          call checks%no_error(error, new_volume//": tips")
-         call simulation%grow_tips(increment, any_grew, timers, error)
+         call simulation%grow_tips(any_grew, timers, error)
          call checks%no_error(error, new_volume//": growth")
          if (.not. any_grew) cycle
-         call simulation%grow_coarse(increment, grew, timers, error)
+         call simulation%grow_coarse(grew, timers, error)
          call checks%no_error(error, new_volume//": growth of the coarse level")
          if (grew) growths = growths + 1
          call check_shares(simulation)
@@ -195,11 +172,11 @@ contains
       compressed = compressed + compression(simulation, before)
       leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
 
-      gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
-              end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
+      gain = [end_gain(simulation%coarse_network, simulation%start, 1_ik, 1_ik), &
+              end_gain(simulation%coarse_network, simulation%start, 1_ik, 2_ik)]
       call checks%is_close(gain(1), gain(2), 0.02_rk*maxval(gain), new_volume &
                            //": both ends gain alike")
-      call checks%is_close(maxval(abs(simulation%tips%tip(1)%xy + simulation%tips%tip(2)%xy &
+      call checks%is_close(maxval(abs(simulation%tip(1)%xy + simulation%tip(2)%xy &
                                       - 2.0_rk)), 0.0_rk, 0.02_rk*maxval(gain), new_volume &
                            //": and in the same direction")
       given = given + volume(simulation) + compressed + sum(simulation%state%content) &
@@ -222,7 +199,7 @@ contains
 
    !> [m]
    function lengths(simulation) result(length)
-      type(simulation_t), intent(in) :: simulation
+      type(twolevel_simulation_t), intent(in) :: simulation
       real(rk), allocatable :: length(:)
 
       length = simulation%mesh%fracture%cell_s(2, :) - simulation%mesh%fracture%cell_s(1, :)
@@ -230,7 +207,7 @@ contains
 
    !> Volume of the fractures [m2].
    function volume(simulation)
-      type(simulation_t), intent(in) :: simulation
+      type(twolevel_simulation_t), intent(in) :: simulation
       real(rk) :: volume
 
       volume = sum(simulation%state%aperture*lengths(simulation))
@@ -238,7 +215,7 @@ contains
 
    !> Fluid that the fractures took up in a step by its compression, a c_p dp [m2].
    function compression(simulation, before) result(gain)
-      type(simulation_t), intent(in) :: simulation
+      type(twolevel_simulation_t), intent(in) :: simulation
       type(state_t), intent(in) :: before
       real(rk) :: gain
 
@@ -249,7 +226,7 @@ contains
 
    !> The well goes on feeding the cells that it fed from the start.
    subroutine check_shares(simulation)
-      type(simulation_t), intent(in) :: simulation
+      type(twolevel_simulation_t), intent(in) :: simulation
       real(rk), parameter :: length = 0.3_rk*sqrt(2.0_rk)  !< of the fracture at the start [m]
       logical, allocatable :: is_old(:)
 
@@ -260,5 +237,20 @@ contains
       call checks%is_true(all((simulation%share(:, 1) > 0.0_rk) .eqv. is_old), &
                           "new cells have no share")
    end subroutine check_shares
+
+   !> A cell is open or sticks only where both of its ends do.
+   subroutine test_cell_state()
+      integer(ik), parameter :: all_states(3) = [state_stick, state_slip, state_open]
+      integer :: i, j
+
+      do i = 1, 3
+         call checks%is_true(cell_state([all_states(i), all_states(i)]) == all_states(i), &
+                             "ends alike")
+         do j = 1, 3
+            if (i /= j) call checks%is_true(cell_state(all_states([i, j])) == state_slip, &
+                                            "ends differ")
+         end do
+      end do
+   end subroutine test_cell_state
 
 end program test_twolevel_simulation

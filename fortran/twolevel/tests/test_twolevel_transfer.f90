@@ -11,7 +11,7 @@ program test_twolevel_transfer
    use mesh_builder, only: mesher_t, remesh
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use sample_bodies, only: mesh_square, scattered, straight_network, uniform_cells
-   use tips_network, only: extend
+   use growth_network, only: extend
    use twolevel_transfer, only: transfer_cells, transfer_state
    implicit none(type, external)
 

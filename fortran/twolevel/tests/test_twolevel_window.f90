@@ -13,7 +13,7 @@ program test_twolevel_window
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use tips_types, only: intensity_t
-   use twolevel_simulation, only: simulation_t
+   use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_window, only: window_t
    implicit none(type, external)
 
@@ -38,7 +38,7 @@ contains
    subroutine start(scene, friction, dilation, simulation)
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: friction, dilation
-      type(simulation_t), intent(inout) :: simulation
+      type(twolevel_simulation_t), intent(inout) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
 
@@ -48,9 +48,9 @@ contains
       call simulation%equilibrate(timers, report, error)
       call checks%no_error(error, "initial state")
       call checks%is_true(report%converged, "the initial state converges")
-      call simulation%evaluate_tips(timers, error)
+      call simulation%evaluate(timers, error)
       call checks%no_error(error, "tips")
-      call checks%is_true(size(simulation%tips%tip) == 2, "two tips")
+      call checks%is_true(size(simulation%tip) == 2, "two tips")
    end subroutine start
 
    !> The bulk modulus without flow is that of the drained rock plus alpha^2/S; shear does not
@@ -58,7 +58,7 @@ contains
    subroutine test_undrained_constants(plane_stress)
       logical, intent(in) :: plane_stress
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(window_t) :: window
       type(error_t), allocatable :: error
       real(rk) :: drained, lame, shear, storage
@@ -93,14 +93,14 @@ contains
    !! place back; a face knows the coarse cell that it lies in.
    subroutine test_projection()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       integer :: w
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, 0.0_rk, simulation)
       do w = 1, 2
-         call check_places(simulation%tips%window(w), simulation%mesh)
-         call check_faces(simulation%tips%window(w), simulation%mesh)
+         call check_places(simulation%windows%window(w), simulation%mesh)
+         call check_faces(simulation%windows%window(w), simulation%mesh)
       end do
    end subroutine test_projection
 
@@ -158,7 +158,7 @@ contains
    subroutine test_uniform_stress()
       character(len=8), parameter :: conditions(3) = ["contact ", "jump    ", "traction"]
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       integer :: k, undrained, w
 
@@ -169,13 +169,13 @@ contains
          simulation%undrained = undrained == 1
          do k = 1, size(conditions)
             simulation%scene%discretization%face_condition = conditions(k)
-            call simulation%evaluate_tips(timers, error)
+            call simulation%evaluate(timers, error)
             call checks%no_error(error, "uniform stress")
             do w = 1, 2
-               call checks%is_true(simulation%tips%window(w)%undrained .eqv. undrained == 1, &
+               call checks%is_true(simulation%windows%window(w)%undrained .eqv. undrained == 1, &
                                    "rock as wanted")
-               call check_uniform(simulation%tips%window(w), undrained_strain(scene), &
-                                  simulation%tips%tip(w)%intensity, trim(conditions(k)))
+               call check_uniform(simulation%windows%window(w), undrained_strain(scene), &
+                                  simulation%tip(w)%intensity, trim(conditions(k)))
             end do
          end do
       end do
@@ -221,7 +221,7 @@ contains
    !! loads.
    subroutine test_conditions()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i
 
@@ -233,9 +233,9 @@ contains
          simulation%state%jump(2, :, i) = merge(1.0e-6_rk, -1.0e-6_rk, mod(i, 2_ik) == 0)
          simulation%state%pressure(i) = 1.0e6_rk*i
       end do
-      call simulation%evaluate_tips(timers, error)
+      call simulation%evaluate(timers, error)
       call checks%no_error(error, "various states")
-      associate (window => simulation%tips%window(2), state => simulation%state)
+      associate (window => simulation%windows%window(2), state => simulation%state)
          do i = 1, window%mesh%fracture%n_cells
             call check_condition(window, i, state%contact(window%coarse_end(i), &
                                                           window%coarse_face(i)), &
@@ -285,7 +285,7 @@ contains
    !! were given.
    subroutine test_kept_jumps()
       type(scene_t) :: scene
-      type(simulation_t) :: simulation
+      type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       type(intensity_t) :: before(2)
 
@@ -294,27 +294,27 @@ contains
       ! The kink opens a little, all else slips.
       call checks%is_true(count(simulation%state%contact == state_slip) >= 20 .and. &
                           all(simulation%state%contact /= state_stick), "nothing sticks")
-      before = simulation%tips%tip%intensity
+      before = simulation%tip%intensity
       call checks%is_true(minval(abs(before%k2)) > 1.0e5_rk, "there is an intensity")
       simulation%state%contact = state_stick
-      call simulation%evaluate_tips(timers, error)
+      call simulation%evaluate(timers, error)
       call checks%no_error(error, "sticking")
       call compare(simulation, before, "the same mesh")
-      simulation%tips%built = .false.
-      call simulation%evaluate_tips(timers, error)
+      call simulation%windows%network_changed()
+      call simulation%evaluate(timers, error)
       call checks%no_error(error, "a new mesh")
       call compare(simulation, before, "a new mesh")
    end subroutine test_kept_jumps
 
    !> All faces have given jumps, and both tips their earlier intensities.
    subroutine compare(simulation, before, name)
-      type(simulation_t), intent(in) :: simulation
+      type(twolevel_simulation_t), intent(in) :: simulation
       type(intensity_t), intent(in) :: before(2)
       character(len=*), intent(in) :: name
       integer :: w
 
       do w = 1, 2
-         associate (window => simulation%tips%window(w), now => simulation%tips%tip(w)%intensity)
+         associate (window => simulation%windows%window(w), now => simulation%tip(w)%intensity)
             call checks%is_true(all(window%model%conditions%condition == face_jump), &
                                 name//": jumps are given")
             associate (scale => abs(before(w)%k2))

@@ -1,17 +1,17 @@
 !> One increment of growth of many tips.
-program test_tips_increment
+program test_growth_increment
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t
-   use tips_increment, only: begin_increment, plan_increment, reach
-   use tips_network, only: move_end
-   use tips_state, only: tip_state_t
+   use growth_increment, only: plan_increment, tips_at_onset
+   use growth_network, only: move_end
+   use growth_tip, only: tip_t
    implicit none(type, external)
 
    real(rk), parameter :: exact = 1.0e-14_rk
    type(checks_t) :: checks
 
-   call test_reach()
+   call test_onset()
    call test_plan()
    call test_move_end()
    call checks%finish()
@@ -20,7 +20,7 @@ contains
 
    !> Four tips that look along x, driven by 1, 2, 4 and 8 J/m2 and intensities of 1 to 4.
    function four_tips() result(tips)
-      type(tip_state_t) :: tips(4)
+      type(tip_t) :: tips(4)
       integer(ik) :: i
 
       do i = 1, 4
@@ -29,40 +29,44 @@ contains
          tips(i)%drive%intensity = real(i, rk)
          tips(i)%drive%energy = 2.0_rk**(i - 1)
          tips(i)%advance = 7.0_rk
+         tips(i)%rosette_radius = 0.2_rk
       end do
       tips(4)%arrested = .true.
    end function four_tips
 
-   !> An arrested tip does not grow, however it is driven.
-   subroutine test_reach()
-      logical, parameter :: expected(4) = [.false., .true., .true., .false.]
-      type(tip_state_t) :: tips(4)
+   !> An arrested tip does not grow, however it is driven; others grow along only where one does.
+   subroutine test_onset()
+      logical, parameter :: at_three(4) = [.false., .false., .true., .false.]
+      logical, parameter :: along(4) = [.false., .true., .true., .false.]
+      type(tip_t) :: tips(4)
 
-      tips = four_tips()  ! gfortran 12 passes a function's result to `class` with wrong bounds
-      call checks%is_true(all(reach(tips, 2.0_rk) .eqv. expected), "tips at their toughness")
-      call checks%is_true(.not. any(reach(tips, 3.5_rk)), "none at a larger one")
-   end subroutine test_reach
+      tips = four_tips()
+      call checks%is_true(all(tips_at_onset(tips, 3.0_rk, 0.1_rk) .eqv. at_three), &
+                          "at its toughness")
+      call checks%is_true(all(tips_at_onset(tips, 3.0_rk, 0.4_rk) .eqv. along), "and nearly there")
+      call checks%is_true(.not. any(tips_at_onset(tips, 3.5_rk, 0.5_rk)), "none at a larger one")
+   end subroutine test_onset
 
    !> The most strongly driven tip advances by l_max, another by (G/max G)**exponent of it; what is
    !! too short for the mesh is carried over until it adds up.
    subroutine test_plan()
-      type(tip_state_t) :: tips(4)
+      type(tip_t) :: tips(4)
       real(rk) :: advance(4)
       logical, parameter :: grows(4) = [.true., .true., .true., .false.]
 
       tips = four_tips()
-      call begin_increment(tips)
+      call tips%begin_increment()
       call checks%is_close(maxval(tips%advance), 0.0_rk, 0.0_rk, "nothing has grown yet")
       call checks%is_close(tips(3)%drive_before%energy, 4.0_rk, 0.0_rk, "drive before")
       ! A quarter of 0.2 m for the first tip: below 0.4 of a radius of 0.2 m.
-      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, spread(0.2_rk, 1, 4), advance)
+      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, advance)
       call checks%is_close(maxval(abs(advance - [0.0_rk, 0.1_rk, 0.2_rk, 0.0_rk])), 0.0_rk, exact, &
                            "advances as the energies")
       call checks%is_close(tips(1)%carried, 0.05_rk, exact, "carried over")
-      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, spread(0.2_rk, 1, 4), advance)
+      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, advance)
       call checks%is_close(advance(1), 0.1_rk, exact, "two short advances make one")
       call checks%is_close(tips(1)%carried, 0.0_rk, 0.0_rk, "nothing left")
-      call plan_increment(tips, grows .and. .false., 0.2_rk, 1.0_rk, spread(0.2_rk, 1, 4), advance)
+      call plan_increment(tips, grows .and. .false., 0.2_rk, 1.0_rk, advance)
       call checks%is_close(maxval(advance), 0.0_rk, 0.0_rk, "none at its toughness")
    end subroutine test_plan
 
@@ -83,4 +87,4 @@ contains
       call checks%is_close(network%s_start(2), 1.0_rk - sqrt(8.0_rk), exact, "arc length")
    end subroutine test_move_end
 
-end program test_tips_increment
+end program test_growth_increment

@@ -1,18 +1,18 @@
-!> Networks that grow: vertices at both ends, arc lengths, gains, distances.
-program test_tips_network
+!> Networks that grow: vertices at both ends, arc lengths, gains, straight ends.
+program test_growth_network
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t
    use scene_types, only: scene_t
-   use tips_network, only: end_gain, extend, network_of_scene, other_distance, same_network, &
-                           total_length
+   use growth_network, only: end_direction, end_gain, end_vertices, extend, network_of_scene, &
+                             straighten_end, total_length
    implicit none(type, external)
 
    type(checks_t) :: checks
 
    call test_scene()
    call test_extend()
-   call test_distance()
+   call test_straighten()
    call checks%finish()
 
 contains
@@ -52,9 +52,7 @@ contains
 
       start = network_of_scene(sample_scene())
       network = start
-      call checks%is_true(same_network(network, start), "the same")
       call extend(network, 1_ik, 1_ik, [-0.3_rk, 0.4_rk])
-      call checks%is_true(.not. same_network(network, start), "not the same")
       call extend(network, 1_ik, 2_ik, [3.0_rk, 4.25_rk])
       call extend(network, 1_ik, 1_ik, [-0.3_rk, 0.6_rk])
       call extend(network, 2_ik, 2_ik, [1.6_rk, 2.8_rk])
@@ -79,27 +77,37 @@ contains
       call checks%is_close(end_gain(network, start, 2_ik, 2_ik), 1.0_rk, 1.0e-15_rk, "gain 2, end")
    end subroutine test_extend
 
-   !> Distances of a segment of fracture 2 from fracture 1, and the other way round.
-   subroutine test_distance()
-      type(network_t) :: network
-      real(rk) :: distance
-      integer(ik) :: nearest
+   !> Vertices that both ends of a fracture have got are counted, and replaced by straight segments:
+   !! lengths of the rest and arc lengths of the old vertices stay.
+   subroutine test_straighten()
+      type(network_t) :: network, start
 
-      network = network_of_scene(sample_scene())
-      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [2.5_rk, 2.0_rk], distance, nearest)
-      call checks%is_close(distance, 0.5_rk, 1.0e-15_rk, "ahead")
-      call checks%is_true(nearest == 1, "fracture ahead")
-      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [3.5_rk, 2.5_rk], distance, nearest)
-      call checks%is_close(distance, 0.0_rk, 0.0_rk, "crossing")
-      call other_distance(network, 2_ik, [1.0_rk, 2.0_rk], [3.0_rk, 2.0_rk], distance, nearest)
-      call checks%is_close(distance, 0.0_rk, 1.0e-15_rk, "touching")
-      call other_distance(network, 1_ik, [3.0_rk, 4.0_rk], [4.0_rk, 5.0_rk], distance, nearest)
-      call checks%is_close(distance, sqrt(8.0_rk), 1.0e-15_rk, "end to end")
-      call checks%is_true(nearest == 2, "the other fracture")
-      network%first = network%first(:2)
-      network%xy = network%xy(:, :3)
-      call other_distance(network, 1_ik, [3.0_rk, 4.0_rk], [4.0_rk, 5.0_rk], distance, nearest)
-      call checks%is_true(nearest == 0 .and. distance > 1.0e300_rk, "no other fracture")
-   end subroutine test_distance
+      start = network_of_scene(sample_scene())
+      network = start
+      call extend(network, 1_ik, 1_ik, [-0.3_rk, 0.4_rk])
+      call extend(network, 1_ik, 1_ik, [-0.6_rk, 0.0_rk])
+      call extend(network, 1_ik, 2_ik, [3.3_rk, 4.4_rk])
+      call extend(network, 1_ik, 2_ik, [3.0_rk, 4.8_rk])
+      call extend(network, 2_ik, 2_ik, [1.6_rk, 2.8_rk])
+      call checks%is_true(end_vertices(network, start, 1_ik, 1_ik) == 2, "two at the start")
+      call checks%is_true(end_vertices(network, start, 1_ik, 2_ik) == 2, "two at the end")
+      call checks%is_true(end_vertices(network, start, 2_ik, 1_ik) == 0, "none")
+      call checks%is_true(end_vertices(network, start, 2_ik, 2_ik) == 1, "one")
+      call checks%is_close(norm2(end_direction(network, 1_ik, 1_ik) - [-0.6_rk, -0.8_rk]), 0.0_rk, &
+                           1.0e-15_rk, "direction of the start")
+      call straighten_end(network, 1_ik, 1_ik, 1_ik)
+      call straighten_end(network, 1_ik, 2_ik, 1_ik)
+      call checks%is_true(all(network%first == [1_ik, 6_ik, 9_ik]), "first vertices")
+      call checks%is_close(maxval(abs(network%xy - reshape([-0.6_rk, 0.0_rk, 0.0_rk, 0.0_rk, &
+                                                            3.0_rk, 0.0_rk, 3.0_rk, 4.0_rk, &
+                                                            3.0_rk, 4.8_rk, 0.0_rk, 2.0_rk, &
+                                                            1.0_rk, 2.0_rk, 1.6_rk, 2.8_rk], &
+                                                           [2, 8]))), 0.0_rk, 0.0_rk, "vertices")
+      call checks%is_close(network%s_start(1), -0.6_rk, 1.0e-15_rk, "arc length of the start")
+      call checks%is_close(end_gain(network, start, 1_ik, 1_ik), 0.6_rk, 1.0e-15_rk, "gain, start")
+      call checks%is_close(end_gain(network, start, 1_ik, 2_ik), 0.8_rk, 1.0e-14_rk, "gain, end")
+      call checks%is_close(norm2(end_direction(network, 1_ik, 2_ik) - [0.0_rk, 1.0_rk]), 0.0_rk, &
+                           1.0e-15_rk, "direction of the end")
+   end subroutine test_straighten
 
-end program test_tips_network
+end program test_growth_network

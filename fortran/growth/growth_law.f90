@@ -1,5 +1,5 @@
 !> Whether, where to and how far a tip grows.
-module tips_growth
+module growth_law
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
@@ -116,4 +116,4 @@ contains
       xy = tip + advance*(cos(angle)*direction + sin(angle)*[-direction(2), direction(1)])
    end function new_tip
 
-end module tips_growth
+end module growth_law

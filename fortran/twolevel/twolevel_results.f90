@@ -1,19 +1,20 @@
-!> The state of a scene with fluid as files show it: its row of the history, fields, probes.
-module app_twolevel_fields
+!> The state of both levels as files show it: its row of the history, fields, probes, unknowns.
+module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use coarse_fields, only: cell_stresses
    use contact_states, only: state_open, state_slip, state_stick
+   use growth_network, only: total_length
    use mesh_builder, only: locate
-   use results_fields, only: fracture_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t
-   use output_record, only: run_record_t
-   use tips_network, only: total_length
-   use twolevel_simulation, only: simulation_t
+   use results_rows, only: history_row_t, probe_row_t
+   use results_summary, only: summary_t
+   use simulation_types, only: snapshot_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
-   public :: add_slip_moment, cell_state, cell_states, count_unknowns, fields_of, history_of
-   public :: probe_values
+   public :: cell_state, cell_states, count_unknowns, history_of_levels, probes_of_levels
+   public :: slip_moment, snapshot_of_levels
 
 contains
 
@@ -27,7 +28,7 @@ contains
 
    !> The contact states of all fracture cells.
    pure function cell_states(simulation) result(states)
-      type(simulation_t), intent(in) :: simulation
+      class(two_levels_t), intent(in) :: simulation
       integer(ik) :: states(simulation%mesh%fracture%n_cells)
       integer(ik) :: i
 
@@ -35,8 +36,8 @@ contains
    end function cell_states
 
    !> The row of history.csv; the caller adds what concerns the step.
-   function history_of(simulation, mass_error) result(row)
-      type(simulation_t), intent(in) :: simulation
+   function history_of_levels(simulation, mass_error) result(row)
+      class(two_levels_t), intent(in) :: simulation
       real(rk), intent(in) :: mass_error  !< of all steps so far [m2]
       type(history_row_t) :: row
       real(rk) :: fluid  ! that the mass error is compared with [m2]
@@ -48,8 +49,8 @@ contains
          row%injected = simulation%injected
          row%leakoff = simulation%leaked
          row%prefilled = simulation%prefilled
-         row%fracture_length = total_length(simulation%tips%network)
-         row%n_tips = size(simulation%tips%tip)
+         row%fracture_length = total_length(simulation%network)
+         row%n_tips = size(simulation%tip)
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
             if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
@@ -65,29 +66,29 @@ contains
          if (.not. fluid > 0.0_rk) fluid = max(sum(abs(state%content)), tiny(1.0_rk))
          row%mass_error_relative = abs(mass_error)/fluid
       end associate
-   end function history_of
+   end function history_of_levels
 
-   !> Add the seismic moment of the slip since a state before.
-   subroutine add_slip_moment(simulation, slip_before, moment)
-      type(simulation_t), intent(in) :: simulation
+   !> Seismic moment of the slip since a state before, per metre of thickness [N m].
+   pure real(rk) function slip_moment(simulation, slip_before) result(moment)
+      class(two_levels_t), intent(in) :: simulation
       real(rk), intent(in) :: slip_before(:, :)  !< (2, fracture cells) [u]_tau [m]
-      real(rk), intent(inout) :: moment  !< per metre of thickness [N m]
       integer(ik) :: i
 
+      moment = 0.0_rk
       do i = 1, simulation%mesh%fracture%n_cells
          moment = moment + simulation%model%rock%shear*0.5_rk &
                   *simulation%model%condensed%length(i) &
                   *sum(abs(simulation%state%jump(2, :, i) - slip_before(:, i)))
       end do
-   end subroutine add_slip_moment
+   end function slip_moment
 
-   !> Displacement and pressure at the probes, and in which cells they lie.
-   subroutine probe_values(simulation, values, cells, error)
-      type(simulation_t), intent(inout) :: simulation
-      real(rk), allocatable, intent(out) :: values(:, :)  !< (3, probes) [m], [Pa]
-      integer(ik), allocatable, intent(out) :: cells(:)  !< (probes)
+   !> Displacement, stress and pressure at the probes.
+   subroutine probes_of_levels(simulation, row, error)
+      class(two_levels_t), intent(inout) :: simulation
+      type(probe_row_t), intent(out) :: row
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: xy(:, :)
+      real(rk), allocatable :: xy(:, :), values(:, :), stresses(:, :)
+      integer(ik), allocatable :: cells(:)
       integer(ik) :: i, n
 
       n = size(simulation%scene%probes)
@@ -103,7 +104,11 @@ contains
                                   corner_weights(simulation%mesh%xy(:, nodes), xy(:, i)))
          end associate
       end do
-   end subroutine probe_values
+      stresses = stresses_of(simulation)
+      row%displacement = values(:2, :)
+      row%pressure = values(3, :)
+      row%stress = stresses(:, cells)
+   end subroutine probes_of_levels
 
    !> Barycentric coordinates.
    pure function corner_weights(corners, point) result(weight)
@@ -120,15 +125,27 @@ contains
       weight = weight/sum(weight)
    end function corner_weights
 
-   !> Displacement and pressure, and what the fracture faces do; stress is left to the caller.
-   subroutine fields_of(simulation, matrix, fracture)
-      type(simulation_t), intent(in) :: simulation
-      type(matrix_fields_t), intent(out) :: matrix
-      type(fracture_fields_t), intent(out) :: fracture
+   !> Stress of each cell: xx, yy, xy [Pa].
+   function stresses_of(simulation) result(stresses)
+      class(two_levels_t), intent(in) :: simulation
+      real(rk) :: stresses(3, simulation%mesh%n_cells)
 
-      associate (state => simulation%state, n => simulation%mesh%n_cells)
+      call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, &
+                         stresses)
+   end function stresses_of
+
+   !> Displacement, pressure, stress, and what the fracture faces do.
+   function snapshot_of_levels(simulation) result(snapshot)
+      class(two_levels_t), intent(in) :: simulation
+      type(snapshot_t) :: snapshot
+
+      snapshot%time = simulation%state%time
+      snapshot%mesh = simulation%mesh
+      associate (state => simulation%state, n => simulation%mesh%n_cells, &
+                 matrix => snapshot%matrix, fracture => snapshot%fracture)
          matrix%displacement = state%unknowns(:2, :n)
          matrix%pressure = state%unknowns(3, :n)
+         matrix%stress = stresses_of(simulation)
          fracture%aperture = state%aperture
          fracture%jump_n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
          fracture%jump_t = 0.5_rk*sum(state%jump(2, :, :), dim=1)
@@ -137,28 +154,22 @@ contains
          fracture%pressure = state%pressure
          fracture%state = cell_states(simulation)
       end associate
-   end subroutine fields_of
+   end function snapshot_of_levels
 
    !> Unknowns by block, for run.json.
-   subroutine count_unknowns(simulation, record)
-      type(simulation_t), intent(in) :: simulation
-      type(run_record_t), intent(inout) :: record
-      integer(ik) :: i, n_fine
+   subroutine count_unknowns(simulation, summary)
+      class(two_levels_t), intent(in) :: simulation
+      type(summary_t), intent(inout) :: summary
 
       associate (mesh => simulation%mesh)
-         call record%count_dofs("displacement", 2*mesh%n_cells)
-         call record%count_dofs("matrix_pressure", mesh%n_cells)
-         call record%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
-         call record%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
-         call record%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call record%count_dofs("fracture_flow", size(simulation%model%connections, 2))
+         call summary%count_dofs("displacement", 2*mesh%n_cells)
+         call summary%count_dofs("matrix_pressure", mesh%n_cells)
+         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2))
       end associate
-      n_fine = 0
-      do i = 1, size(simulation%tips%window)
-         if (simulation%tips%built(i)) n_fine = n_fine &
-                                                + simulation%tips%window(i)%model%constraints%n_dofs
-      end do
-      call record%count_dofs("windows", n_fine)
+      call summary%count_dofs("windows", simulation%windows%n_unknowns())
    end subroutine count_unknowns
 
-end module app_twolevel_fields
+end module twolevel_results

@@ -1,23 +1,21 @@
-!> Where growing tips meet fractures and the boundary, and when fractures cut a body.
-program test_mechanics_targets
+!> Where growing tips meet fractures and the boundary.
+program test_growth_targets
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use mechanics_outline, only: outline_t
-   use mechanics_targets, only: cuts_through, find_target, target_boundary, target_none
-   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_interior, point_tip
+   use growth_targets, only: find_target, target_boundary, target_none
+   use mesh_types, only: network_t
    implicit none(type, external)
    real(rk), parameter :: reach = 0.1_rk, round_off = 1.0e-14_rk
    type(checks_t) :: checks
    type(network_t) :: network
-   type(outline_t) :: outline
+   real(rk), allocatable :: corners(:, :)
 
    ! Fracture 1 grows; fracture 2 is the polyline (2, -1), (2, 1), (3, 1); the body [-4, 4]^2.
    network%first = [1_ik, 3_ik, 6_ik]
    network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 2.0_rk, 1.0_rk, 3.0_rk, &
                          1.0_rk], [2, 5])
    network%s_start = [0.0_rk, 0.0_rk]
-   outline%corners = reshape([-4.0_rk, -4.0_rk, 4.0_rk, -4.0_rk, 4.0_rk, 4.0_rk, -4.0_rk, 4.0_rk], &
-                             [2, 4])
+   corners = reshape([-4.0_rk, -4.0_rk, 4.0_rk, -4.0_rk, 4.0_rk, 4.0_rk, -4.0_rk, 4.0_rk], [2, 4])
    call meets([1.0_rk, 0.0_rk], [1.5_rk, 0.0_rk], target_none, [1.5_rk, 0.0_rk], "far away")
    call meets([1.0_rk, 0.0_rk], [1.89_rk, 0.2_rk], target_none, [1.89_rk, 0.2_rk], "out of reach")
    call meets([1.0_rk, 0.0_rk], [1.91_rk, 0.2_rk], 2_ik, [2.0_rk, 0.2_rk], "within reach")
@@ -47,14 +45,6 @@ program test_mechanics_targets
    call meets([0.97_rk, 0.53_rk], [0.93_rk, 0.55_rk], target_none, [0.93_rk, 0.55_rk], &
               "near the segment before the last, which it leaves")
 
-   call checks%is_true(.not. cuts_through(chain([point_tip, point_interior, point_tip])), &
-                       "a fracture inside does not cut")
-   call checks%is_true(.not. cuts_through(chain([point_boundary, point_interior, point_tip])), &
-                       "an edge crack does not cut")
-   call checks%is_true(cuts_through(chain([point_boundary, point_interior, point_boundary])), &
-                       "a fracture from edge to edge cuts")
-   call check_ring()
-   call checks%is_true(.not. cuts_through(fracture_mesh_t()), "no mesh, as where it cannot be made")
    call checks%finish()
 
 contains
@@ -66,31 +56,9 @@ contains
       integer(ik) :: found
       real(rk) :: at(2)
 
-      call find_target(network, outline, 1_ik, from, to, reach, found, at)
+      call find_target(network, corners, 1_ik, from, to, reach, found, at)
       call checks%is_true(found == expected, name//": what")
       call checks%is_close(norm2(at - place), 0.0_rk, round_off, name//": where")
    end subroutine meets
 
-   !> Two cells between three points.
-   function chain(kinds) result(fracture)
-      integer(ik), intent(in) :: kinds(3)
-      type(fracture_mesh_t) :: fracture
-
-      fracture%n_cells = 2
-      fracture%n_points = 3
-      fracture%cell_points = reshape([1_ik, 2_ik, 2_ik, 3_ik], [2, 2])
-      fracture%point_kind = kinds
-   end function chain
-
-   !> Three cells that enclose a piece.
-   subroutine check_ring()
-      type(fracture_mesh_t) :: fracture
-
-      fracture%n_cells = 3
-      fracture%n_points = 3
-      fracture%cell_points = reshape([1_ik, 2_ik, 2_ik, 3_ik, 3_ik, 1_ik], [2, 3])
-      fracture%point_kind = [point_interior, point_interior, point_interior]
-      call checks%is_true(cuts_through(fracture), "a ring cuts a piece out")
-   end subroutine check_ring
-
-end program test_mechanics_targets
+end program test_growth_targets

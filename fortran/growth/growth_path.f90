@@ -6,9 +6,9 @@
 !! fro, and the path meanders more and more. So each step but the first kink of a fracture's end is
 !! corrected until the kink angle at the new tip vanishes, that is, until the criterion holds at
 !! the end of the step (backward Euler for the path; local symmetry).
-module tips_path
+module growth_path
    use base_kinds, only: rk
-   use tips_growth, only: new_tip
+   use growth_law, only: new_tip
    implicit none(type, external)
    private
 
@@ -169,4 +169,4 @@ contains
       self%has_wing = .true.
    end subroutine settle
 
-end module tips_path
+end module growth_path

@@ -1,13 +1,13 @@
 !> The fracture network as it grows: polylines that get vertices at their ends.
-module tips_network
+module growth_network
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t
    use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: end_gain, extend, fracture_length, move_end, network_of_scene, other_distance
-   public :: same_network, total_length
+   public :: end_direction, end_gain, end_vertices, extend, fracture_length, move_end
+   public :: network_of_scene, straighten_end, total_length
 
 contains
 
@@ -74,14 +74,6 @@ contains
       network%xy(:, v) = xy
    end subroutine move_end
 
-   pure function same_network(a, b) result(same)
-      type(network_t), intent(in) :: a, b
-      logical :: same
-
-      same = size(a%xy, 2) == size(b%xy, 2)
-      if (same) same = all(a%first == b%first)
-   end function same_network
-
    !> Length of all fractures [m].
    pure function total_length(network) result(length)
       type(network_t), intent(in) :: network
@@ -97,16 +89,82 @@ contains
       end do
    end function total_length
 
-   !> By how much one end of a fracture has grown since the start [m].
+   !> By how much one end of a fracture has grown since an earlier network [m].
    pure function end_gain(network, start, fracture, end) result(gain)
       type(network_t), intent(in) :: network, start
       integer(ik), intent(in) :: fracture, end
       real(rk) :: gain
 
-      gain = -network%s_start(fracture)
+      gain = start%s_start(fracture) - network%s_start(fracture)
       if (end == 2) gain = fracture_length(network, fracture) - fracture_length(start, fracture) &
                            - gain
    end function end_gain
+
+   !> How many vertices one end of a fracture has got since an earlier network.
+   pure function end_vertices(network, start, fracture, end) result(n)
+      type(network_t), intent(in) :: network, start
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: before the first vertex, 2: after the last
+      integer(ik) :: n
+      integer(ik) :: last, step
+      real(rk) :: end_before(2)
+
+      end_before = start%xy(:, end_vertex(start, fracture, end))
+      last = end_vertex(network, fracture, end)
+      step = merge(1, -1, end == 1)
+      do n = 0, network%first(fracture + 1) - network%first(fracture) - 1
+         if (all(abs(network%xy(:, last + n*step) - end_before) <= 0.0_rk)) return
+      end do
+   end function end_vertices
+
+   !> Number of the vertex at one end of a fracture.
+   pure integer(ik) function end_vertex(network, fracture, end)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: the first, 2: the last
+
+      end_vertex = merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1)
+   end function end_vertex
+
+   !> Unit vector along the last segment at one end of a fracture, outwards.
+   pure function end_direction(network, fracture, end) result(direction)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
+      real(rk) :: direction(2)
+      integer(ik) :: tip
+
+      tip = end_vertex(network, fracture, end)
+      direction = network%xy(:, tip) - network%xy(:, merge(tip + 1, tip - 1, end == 1))
+      direction = direction/norm2(direction)
+   end function end_direction
+
+   !> Replace the last segments at one end of a fracture by a straight one; the arc lengths of the
+   !! vertices before them stay.
+   pure subroutine straighten_end(network, fracture, end, dropped)
+      type(network_t), intent(inout) :: network
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
+      integer(ik), intent(in) :: dropped  !< vertices to leave out, next to the one at the end
+      real(rk), allocatable :: kept(:, :)
+      integer(ik) :: at, k
+
+      allocate (kept(2, size(network%xy, 2) - dropped))
+      at = end_vertex(network, fracture, end)
+      if (end == 2) at = at - dropped - 1  ! the last vertex kept before those to drop
+      kept(:, :at) = network%xy(:, :at)
+      kept(:, at + 1:) = network%xy(:, at + 1 + dropped:)
+      if (end == 1) then
+         network%s_start(fracture) = network%s_start(fracture) &
+                                     - norm2(kept(:, at + 1) - kept(:, at))
+         do k = at, at + dropped
+            network%s_start(fracture) = network%s_start(fracture) &
+                                        + norm2(network%xy(:, k + 1) - network%xy(:, k))
+         end do
+      end if
+      network%first(fracture + 1:) = network%first(fracture + 1:) - dropped
+      call move_alloc(kept, network%xy)
+   end subroutine straighten_end
 
    !> Length of one fracture [m].
    pure function fracture_length(network, fracture) result(length)
@@ -122,60 +180,4 @@ contains
       end do
    end function fracture_length
 
-   !> Distance from a new segment to all other fractures, and which one is nearest [m].
-   pure subroutine other_distance(network, fracture, from, to, distance, nearest)
-      type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: fracture  !< the one that the segment belongs to
-      real(rk), intent(in) :: from(2), to(2)
-      real(rk), intent(out) :: distance
-      integer(ik), intent(out) :: nearest  !< 0: there is no other
-
-      real(rk) :: d
-      integer(ik) :: f, v
-
-      distance = huge(1.0_rk)
-      nearest = 0
-      do f = 1, size(network%first) - 1
-         if (f == fracture) cycle
-         do v = network%first(f), network%first(f + 1) - 2
-            d = segment_distance(from, to, network%xy(:, v), network%xy(:, v + 1))
-            if (d < distance) then
-               distance = d
-               nearest = f
-            end if
-         end do
-      end do
-   end subroutine other_distance
-
-   !> Distance between two segments [m]; 0 where they cross.
-   pure function segment_distance(a, b, c, d) result(distance)
-      real(rk), intent(in) :: a(2), b(2), c(2), d(2)
-      real(rk) :: distance
-
-      if (cross(b - a, c - a)*cross(b - a, d - a) < 0.0_rk .and. &
-          cross(d - c, a - c)*cross(d - c, b - c) < 0.0_rk) then
-         distance = 0.0_rk
-      else
-         distance = min(point_distance(a, c, d), point_distance(b, c, d), point_distance(c, a, b), &
-                        point_distance(d, a, b))
-      end if
-   end function segment_distance
-
-   pure function cross(u, v) result(z)
-      real(rk), intent(in) :: u(2), v(2)
-      real(rk) :: z
-
-      z = u(1)*v(2) - u(2)*v(1)
-   end function cross
-
-   pure function point_distance(p, a, b) result(distance)
-      real(rk), intent(in) :: p(2), a(2), b(2)
-      real(rk) :: distance
-
-      real(rk) :: t
-
-      t = dot_product(p - a, b - a)/dot_product(b - a, b - a)
-      distance = norm2(p - a - min(1.0_rk, max(0.0_rk, t))*(b - a))
-   end function point_distance
-
-end module tips_network
+end module growth_network

@@ -1,35 +1,27 @@
-!> The state of a mechanics-only scene as files show it: its row of the history, fields, probes.
-module app_mechanics_fields
+!> The state of a loaded body as files show it: its row of the history, fields, probes.
+module mechanics_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_slip, state_stick
+   use growth_network, only: total_length
    use mechanics_fields, only: cell_displacement, cell_stress, fracture_jump, fracture_traction, &
                                point_state
-   use mechanics_simulation, only: simulation_t
+   use mechanics_state, only: loaded_body_t
    use mesh_builder, only: locate
-   use mesh_types, only: mesh_t, point_boundary, point_interior, point_tip
-   use results_fields, only: fracture_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t
+   use mesh_types, only: point_boundary, point_interior, point_tip
+   use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: fracture_t
-   use tips_network, only: total_length
+   use simulation_types, only: snapshot_t
    implicit none(type, external)
    private
 
-   public :: body_fields_t, fields_of, history_of, probe_values, touches
-
-   !> Fields with the mesh that they live on.
-   type :: body_fields_t
-      real(rk) :: time = 0.0_rk  !< [s]
-      type(mesh_t) :: mesh
-      type(matrix_fields_t) :: matrix
-      type(fracture_fields_t) :: fracture
-   end type body_fields_t
+   public :: body_snapshot, history_of_body, probes_of_body, touches
 
 contains
 
    !> The row of history.csv; its dt is left to the caller.
-   function history_of(simulation) result(row)
-      type(simulation_t), intent(in) :: simulation
+   function history_of_body(simulation) result(row)
+      class(loaded_body_t), intent(in) :: simulation
       type(history_row_t) :: row
       real(rk), allocatable :: jump(:, :)
       integer(ik) :: i
@@ -56,7 +48,7 @@ contains
          end associate
          row%newton_iterations = body%contact%iterations
       end associate
-   end function history_of
+   end function history_of_body
 
    !> Whether the faces of a fracture can touch; else they are open from the start.
    elemental logical function touches(fracture)
@@ -66,14 +58,14 @@ contains
    end function touches
 
    !> Displacement, stress, and what the fracture faces do.
-   function fields_of(simulation) result(fields)
-      type(simulation_t), intent(in) :: simulation
-      type(body_fields_t) :: fields
+   function body_snapshot(simulation) result(snapshot)
+      class(loaded_body_t), intent(in) :: simulation
+      type(snapshot_t) :: snapshot
       real(rk), allocatable :: pairs(:, :)
 
-      associate (body => simulation%body, matrix => fields%matrix, fracture => fields%fracture)
-         fields%time = simulation%time()
-         fields%mesh = body%mesh
+      associate (body => simulation%body, matrix => snapshot%matrix, fracture => snapshot%fracture)
+         snapshot%time = simulation%time()
+         snapshot%mesh = body%mesh
          matrix%displacement = cell_displacement(body)
          matrix%node_xy = body%model%mesh%xy
          matrix%cell_nodes = body%model%mesh%cell_nodes
@@ -87,27 +79,27 @@ contains
          fracture%traction_t = pairs(2, :)
          fracture%state = body%contact%state(3, :)
       end associate
-   end function fields_of
+   end function body_snapshot
 
    !> Displacement and stress at the probes.
-   subroutine probe_values(simulation, displacement, stress, error)
-      type(simulation_t), intent(in) :: simulation
-      real(rk), allocatable, intent(out) :: displacement(:, :)  !< (2, probes) [m]
-      real(rk), allocatable, intent(out) :: stress(:, :)  !< (3, probes) xx, yy, xy [Pa]
+   subroutine probes_of_body(simulation, row, error)
+      class(loaded_body_t), intent(in) :: simulation
+      type(probe_row_t), intent(out) :: row
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: xy(:, :)
       integer(ik), allocatable :: cells(:)
       integer(ik) :: i, n
 
       n = size(simulation%scene%probes)
-      allocate (xy(2, n), displacement(2, n), stress(3, n), cells(n))
+      allocate (xy(2, n), row%displacement(2, n), row%stress(3, n), cells(n))
       xy(1, :) = simulation%scene%probes%x
       xy(2, :) = simulation%scene%probes%y
       call locate(simulation%body%mesher, xy, cells, error)
       if (allocated(error)) return
       do i = 1, n
-         call point_state(simulation%body, cells(i), xy(:, i), displacement(:, i), stress(:, i))
+         call point_state(simulation%body, cells(i), xy(:, i), row%displacement(:, i), &
+                          row%stress(:, i))
       end do
-   end subroutine probe_values
+   end subroutine probes_of_body
 
-end module app_mechanics_fields
+end module mechanics_results

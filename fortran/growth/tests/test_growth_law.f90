@@ -1,10 +1,10 @@
 !> Growth law against closed values (catalogue 2.1, 2.3, 2.4).
-program test_tips_growth
+program test_growth_law
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use tips_growth, only: advances, carry_over, energy_release_rate, equivalent_intensity, &
-                          growth_drive, &
-                          growth_drive_t, kink_angle, kinked_intensities, new_tip
+   use growth_law, only: advances, carry_over, energy_release_rate, equivalent_intensity, &
+                         growth_drive, &
+                         growth_drive_t, kink_angle, kinked_intensities, new_tip
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
@@ -128,4 +128,4 @@ contains
       call checks%is_close(tip(2), 2.0_rk, 1.0e-15_rk, "an anticlockwise kink goes to the left: y")
    end subroutine steps
 
-end program test_tips_growth
+end program test_growth_law

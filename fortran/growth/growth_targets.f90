@@ -1,12 +1,11 @@
 !> Where a growing tip meets another fracture or the outer boundary.
-module mechanics_targets
+module growth_targets
    use base_kinds, only: ik, rk
-   use mechanics_outline, only: outline_t
-   use mesh_types, only: fracture_mesh_t, network_t, point_boundary
+   use mesh_types, only: network_t
    implicit none(type, external)
    private
 
-   public :: cuts_through, find_target, target_boundary, target_none
+   public :: find_target, target_boundary, target_none
 
    integer(ik), parameter :: target_none = 0
    integer(ik), parameter :: target_boundary = -1
@@ -23,9 +22,9 @@ contains
    !!
    !! The fracture itself is a target where the new segment turns back to it: not the segments that
    !! end where the new one begins, nor those that it leaves behind.
-   pure subroutine find_target(network, outline, fracture, from, to, reach, target, at)
+   pure subroutine find_target(network, corners, fracture, from, to, reach, target, at)
       type(network_t), intent(in) :: network
-      type(outline_t), intent(in) :: outline
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
       integer(ik), intent(in) :: fracture  !< the one that grows
       real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
       real(rk), intent(in) :: reach  !< how near is near [m]
@@ -43,9 +42,9 @@ contains
             call try(from, to, network%xy(:, v:v + 1), reach, f, best, target, at)
          end do
       end do
-      n = size(outline%corners, 2, kind=ik)
+      n = size(corners, 2, kind=ik)
       do k = 1, n
-         call try(from, to, outline%corners(:, [k, mod(k, n) + 1]), reach, target_boundary, best, &
+         call try(from, to, corners(:, [k, mod(k, n) + 1]), reach, target_boundary, best, &
                   target, at)
       end do
    end subroutine find_target
@@ -133,22 +132,4 @@ contains
       end do
    end subroutine try
 
-   !> Fractures, with the outer boundary as one more, form a ring: they cut a piece off the body.
-   !! Without a mesh nothing is known to.
-   pure logical function cuts_through(fracture)
-      type(fracture_mesh_t), intent(in) :: fracture
-      integer(ik) :: group(fracture%n_points), cell, i, outer, roots(2)
-
-      cuts_through = .false.
-      if (.not. allocated(fracture%cell_points)) return
-      group = [(i, i=1, fracture%n_points)]
-      outer = findloc(fracture%point_kind, point_boundary, dim=1)
-      if (outer > 0) where (fracture%point_kind == point_boundary) group = outer
-      do cell = 1, fracture%n_cells
-         roots = group(fracture%cell_points(:, cell))
-         if (roots(1) == roots(2)) cuts_through = .true.
-         where (group == roots(2)) group = roots(1)
-      end do
-   end function cuts_through
-
-end module mechanics_targets
+end module growth_targets

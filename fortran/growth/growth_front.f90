@@ -1,0 +1,169 @@
+!> The free tips of a network and how they grow together: the one loop that both levels use.
+!!
+!! Each increment is one step of the growth law (growth_law), taken in the direction in which the
+!! path goes on straight: the tips advance where they will probably have to (growth_path), are
+!! evaluated there, and turn until the criterion holds at the end of the increment.
+module growth_front
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use growth_increment, only: plan_increment, tips_at_onset
+   use growth_law, only: new_tip
+   use growth_network, only: extend, move_end
+   use growth_targets, only: find_target, target_none
+   use growth_tip, only: tip_t
+   use mesh_types, only: fracture_mesh_t, network_t
+   implicit none(type, external)
+   private
+
+   public :: front_t, growth_rules_t
+
+   !> How tips grow.
+   type :: growth_rules_t
+      real(rk) :: toughness = 0.0_rk  !< K_IC [Pa m^1/2]
+      real(rk) :: increment = 0.0_rk  !< l_max [m]
+      real(rk) :: exponent = 0.0_rk  !< of the energy release rate in the law of advances [-]
+      !> share of the toughness that a tip may lack to grow along with one at its onset [-]
+      real(rk) :: together = 0.0_rk
+      real(rk) :: reach = 0.0_rk  !< distance within which a tip has come to something [m]
+      logical :: joins = .false.  !< what it comes to; else it stops before that
+      real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
+   end type growth_rules_t
+
+   !> Tips, the network whose ends they are, and the level that evaluates them.
+   type, abstract :: front_t
+      type(network_t) :: network  !< as it has grown
+      type(tip_t), allocatable :: tip(:)
+      type(growth_rules_t) :: rules
+   contains
+      procedure(evaluate_tips), deferred :: evaluate
+      procedure :: find_tips
+      procedure :: grow_tips
+   end type front_t
+
+   abstract interface
+      !> Intensities, drives and rosette radii of all tips of the present network.
+      subroutine evaluate_tips(self, timers, error)
+         import :: error_t, front_t, timers_t
+         implicit none(type, external)
+         class(front_t), intent(inout) :: self
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine evaluate_tips
+   end interface
+
+contains
+
+   !> The free tips of a mesh.
+   pure subroutine find_tips(self, fracture)
+      class(front_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik) :: i
+
+      if (allocated(self%tip)) deallocate (self%tip)
+      allocate (self%tip(fracture%n_tips))
+      do i = 1, fracture%n_tips
+         self%tip(i)%fracture = fracture%tip_fracture(i)
+         self%tip(i)%end = fracture%tip_end(i)
+         self%tip(i)%xy = fracture%point_xy(:, fracture%tip_point(i))
+         self%tip(i)%direction = fracture%tip_direction(:, i)
+      end do
+   end subroutine find_tips
+
+   !> One increment of the tips at their onset. They have to be evaluated before, and are after.
+   subroutine grow_tips(self, any_grew, timers, error)
+      class(front_t), intent(inout) :: self
+      logical, intent(out) :: any_grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: corrections = 8
+      logical :: any_turned
+      integer(ik) :: i, k
+
+      call advance_tips(self, any_grew)
+      if (.not. any_grew) return
+      call self%evaluate(timers, error)
+      do k = 1, corrections
+         if (allocated(error)) return
+         call turn_tips(self, any_turned)
+         if (.not. any_turned) exit
+         call self%evaluate(timers, error)
+      end do
+      do i = 1, size(self%tip, kind=ik)
+         call self%tip(i)%settle(-self%tip(i)%intensity%k2)
+      end do
+   end subroutine grow_tips
+
+   !> Move the tips at their onset to where the next increment will probably end.
+   subroutine advance_tips(self, any_grew)
+      class(front_t), intent(inout) :: self
+      logical, intent(out) :: any_grew
+      real(rk), parameter :: nothing = 1.0e-9_rk  ! of an advance
+      real(rk) :: advance(size(self%tip)), kink, to(2)
+      integer(ik) :: i
+
+      any_grew = .false.
+      call self%tip%begin_increment()
+      call plan_increment(self%tip, tips_at_onset(self%tip, self%rules%toughness, &
+                                                  self%rules%together), &
+                          self%rules%increment, self%rules%exponent, advance)
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. advance(i) > 0.0_rk) cycle
+         associate (tip => self%tip(i))
+            call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
+                             kink)
+            to = new_tip(tip%xy, tip%direction, kink, advance(i))
+            call meet_target(self%rules, self%network, tip, (tip%xy), to)
+            if (tip%arrested .and. .not. tip%joined) cycle
+            if (.not. norm2(to - tip%xy) > nothing*advance(i)) cycle  ! something has come to it
+            call extend(self%network, tip%fracture, tip%end, to)
+            call tip%move(to, kink)
+            any_grew = .true.
+         end associate
+      end do
+   end subroutine advance_tips
+
+   !> Turn the last advance of each tip whose direction is not yet right.
+   subroutine turn_tips(self, any_turned)
+      class(front_t), intent(inout) :: self
+      logical, intent(out) :: any_turned
+      logical :: has_turned
+      real(rk) :: to(2)
+      integer(ik) :: i
+
+      any_turned = .false.
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            if (tip%arrested) cycle
+            call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
+            if (.not. has_turned) cycle
+            to = tip%xy
+            if (self%rules%joins) call meet_target(self%rules, self%network, tip, (tip%origin), to)
+            tip%xy = to
+            tip%advance = norm2(tip%xy - tip%origin)
+            call move_end(self%network, tip%fracture, tip%end, tip%xy)
+            any_turned = .true.
+         end associate
+      end do
+   end subroutine turn_tips
+
+   !> A tip that crosses another fracture or the boundary, or comes near it, joins it there, or
+   !! stops where it is.
+   pure subroutine meet_target(rules, network, tip, from, to)
+      type(growth_rules_t), intent(in) :: rules
+      type(network_t), intent(in) :: network
+      type(tip_t), intent(inout) :: tip
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(inout) :: to(2)  !< where it grows, or joins something [m]
+      real(rk) :: at(2)
+      integer(ik) :: target
+
+      call find_target(network, rules%outline, tip%fracture, from, to, rules%reach, target, at)
+      if (target == target_none) return
+      tip%arrested = .true.
+      tip%joined = rules%joins
+      tip%target = target
+      if (tip%joined) to = at
+   end subroutine meet_target
+
+end module growth_front

@@ -1,0 +1,51 @@
+!> A free tip as a growing scene knows it, whichever level evaluates it.
+module growth_tip
+   use base_kinds, only: ik, rk
+   use growth_law, only: growth_drive_t
+   use growth_path, only: path_t
+   use growth_targets, only: target_none
+   use tips_types, only: intensity_t
+   implicit none(type, external)
+   private
+
+   public :: tip_t
+
+   !> A free tip: its way, what drives it, and what has stopped it.
+   type, extends(path_t) :: tip_t
+      integer(ik) :: fracture = 0  !< in the network
+      integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
+      logical :: arrested = .false.  !< it will not grow again
+      integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
+      logical :: joined = .false.  !< it has joined that; else it has stopped short of it
+      logical, private :: was_arrested = .false.  !< before the last increment of any tip
+      real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
+      type(intensity_t) :: intensity  !< at the present tip
+      type(growth_drive_t) :: drive
+      type(intensity_t) :: intensity_before  !< before the last increment of any tip
+      type(growth_drive_t) :: drive_before
+   contains
+      procedure :: begin_increment
+      procedure :: has_just_stopped
+   end type tip_t
+
+contains
+
+   !> The tip has not grown yet, and is as before the increment.
+   elemental subroutine begin_increment(self)
+      class(tip_t), intent(inout) :: self
+
+      self%advance = 0.0_rk
+      self%intensity_before = self%intensity
+      self%drive_before = self%drive
+      self%was_arrested = self%arrested
+   end subroutine begin_increment
+
+   !> In the last increment it has come to something that it does not join.
+   elemental logical function has_just_stopped(self)
+      class(tip_t), intent(in) :: self
+
+      has_just_stopped = self%target /= target_none .and. .not. self%joined &
+                         .and. .not. self%was_arrested
+   end function has_just_stopped
+
+end module growth_tip

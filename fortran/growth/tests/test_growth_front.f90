@@ -1,0 +1,218 @@
+!> Tips that grow together: which of them and how far, what stops or joins them, and the direction
+!! that the loop settles for, in fields of intensities that are given.
+program test_growth_front
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use growth_front, only: growth_rules_t
+   use growth_law, only: growth_drive_t
+   use growth_network, only: total_length
+   use growth_targets, only: target_boundary
+   use sample_fronts, only: sample_t
+   implicit none(type, external)
+
+   real(rk), parameter :: radius = 0.025_rk  !< of the rosettes [m]
+   real(rk), parameter :: increment = 0.03_rk  !< l_max [m]
+   !> Fracture 1 with two tips that grow here, fracture 2 above it.
+   real(rk), parameter :: lines(2, 2, 2) = reshape([0.51_rk, 1.0_rk, 1.51_rk, 1.0_rk, 0.51_rk, &
+                                                    1.51_rk, 1.51_rk, 1.51_rk], [2, 2, 2])
+   type(checks_t) :: checks
+
+   call test_growth_law()
+   call test_carried_growth()
+   call test_arrest()
+   call test_join()
+   call test_path()
+   call checks%finish()
+
+contains
+
+   !> Two fractures in a square of 2 m; the tips of the first.
+   subroutine start(front, joins)
+      type(sample_t), intent(out) :: front
+      logical, intent(in) :: joins
+      integer :: end
+
+      front%network%first = [1_ik, 3_ik, 5_ik]
+      front%network%xy = reshape(lines, [2, 4])
+      front%network%s_start = [0.0_rk, 0.0_rk]
+      front%rules = growth_rules_t(toughness=1.0e6_rk, increment=increment, exponent=0.35_rk, &
+                                   together=0.01_rk, reach=0.05_rk, joins=joins, &
+                                   outline=reshape([0.0_rk, 0.0_rk, 2.0_rk, 0.0_rk, 2.0_rk, &
+                                                    2.0_rk, 0.0_rk, 2.0_rk], [2, 4]))
+      allocate (front%tip(2))
+      do end = 1, 2
+         front%tip(end)%fracture = 1
+         front%tip(end)%end = end
+         front%tip(end)%xy = lines(:, end, 1)
+         front%tip(end)%direction = [2.0_rk*end - 3.0_rk, 0.0_rk]
+         front%tip(end)%rosette_radius = radius
+      end do
+   end subroutine start
+
+   subroutine grow(front, any_grew)
+      type(sample_t), intent(inout) :: front
+      logical, intent(out) :: any_grew
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call timers%begin()
+      call front%grow_tips(any_grew, timers, error)
+      call checks%no_error(error, "growth")
+   end subroutine grow
+
+   !> The tip with the largest energy release rate grows by l_max, another one by
+   !! l_max (G/max G)^0.35; each in the direction of its own kink.
+   subroutine test_growth_law()
+      type(sample_t) :: front
+      real(rk) :: advance
+      logical :: any_grew
+
+      call start(front, .false.)
+      front%tip%drive = [growth_drive_t(intensity=0.98e6_rk, energy=40.0_rk, angle=0.3_rk), &
+                         growth_drive_t(intensity=0.97e6_rk, energy=10.0_rk, angle=-0.5_rk)]
+      call grow(front, any_grew)
+      call checks%is_true(.not. any_grew, "nothing grows below the toughness")
+      call checks%is_true(front%evaluations == 0, "nothing to evaluate")
+      call checks%is_close(total_length(front%network), 2.0_rk, 0.0_rk, "no growth")
+      front%tip(1)%drive%intensity = 1.0e6_rk
+      call grow(front, any_grew)
+      call checks%is_true(any_grew, "growth at the toughness")
+      call checks%is_close(front%tip(2)%advance, 0.0_rk, 0.0_rk, "the weaker one stays")
+      call checks%is_close(total_length(front%network), 2.0_rk + increment, 1.0e-15_rk, &
+                           "one increment")
+
+      call start(front, .false.)
+      front%tip%drive = [growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk, angle=0.3_rk), &
+                         growth_drive_t(intensity=1.1e6_rk, energy=10.0_rk, angle=-0.5_rk)]
+      advance = increment*0.25_rk**0.35_rk
+      call grow(front, any_grew)
+      call checks%is_true(any_grew, "both grow")
+      call checks%is_close(front%tip(1)%advance, increment, 1.0e-15_rk, "the stronger tip: l_max")
+      call checks%is_close(front%tip(2)%advance, advance, 1.0e-15_rk, "the weaker one: less")
+      ! Anticlockwise from the tip's own direction.
+      call is_at(front%tip(1)%xy, lines(:, 1, 1) - increment*[cos(0.3_rk), sin(0.3_rk)], "tip 1")
+      call is_at(front%tip(2)%xy, lines(:, 2, 1) + advance*[cos(0.5_rk), -sin(0.5_rk)], "tip 2")
+      call is_at(front%network%xy(:, 1), front%tip(1)%xy, "first vertex")
+      call is_at(front%network%xy(:, 4), front%tip(2)%xy, "last vertex")
+      call checks%is_true(all(front%network%first == [1_ik, 5_ik, 7_ik]), "vertices in order")
+      call checks%is_close(front%network%s_start(1), -increment, 1.0e-15_rk, "arc length")
+      call is_at(front%tip(1)%direction, -[cos(0.3_rk), sin(0.3_rk)], "direction of tip 1")
+   end subroutine test_growth_law
+
+   subroutine is_at(xy, expected, name)
+      real(rk), intent(in) :: xy(2), expected(2)
+      character(len=*), intent(in) :: name
+
+      call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, 1.0e-13_rk, name)
+   end subroutine is_at
+
+   !> An advance below 0.4 of the rosette's radius waits until there is enough of it.
+   subroutine test_carried_growth()
+      type(sample_t) :: front
+      logical :: any_grew
+      real(rk), parameter :: small = 0.3_rk*radius
+
+      call start(front, .false.)
+      front%rules%increment = small
+      front%tip(1)%drive = growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk)
+      call grow(front, any_grew)
+      call checks%is_true(.not. any_grew, "too short for the mesh")
+      call checks%is_close(front%tip(1)%carried, small, 0.0_rk, "kept")
+      call checks%is_close(total_length(front%network), 2.0_rk, 0.0_rk, "the network waits")
+      call grow(front, any_grew)
+      call checks%is_true(any_grew, "enough together")
+      call checks%is_close(front%tip(1)%carried, 0.0_rk, 0.0_rk, "nothing left")
+      call checks%is_close(front%tip(1)%advance, 2.0_rk*small, 1.0e-15_rk, "nothing lost")
+      call checks%is_close(total_length(front%network), 2.0_rk + 2.0_rk*small, 1.0e-15_rk, "length")
+   end subroutine test_carried_growth
+
+   !> Tip 1 goes left towards the boundary, tip 2 up towards the other fracture, as often as they
+   !! grow; straight on after the first kink.
+   subroutine grow_far(front)
+      type(sample_t), intent(inout) :: front
+      logical :: any_grew
+      integer :: k
+
+      front%tip%drive = [growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk), &
+                         growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk, angle=acos(0.0_rk))]
+      do k = 1, 40
+         call grow(front, any_grew)
+         front%tip(2)%drive%angle = 0.0_rk
+         if (.not. any_grew) exit
+      end do
+      call checks%is_true(.not. any_grew .and. all(front%tip%arrested), "both are arrested")
+   end subroutine grow_far
+
+   !> Where tips do not join, they stop before the last increment that would bring them near.
+   subroutine test_arrest()
+      type(sample_t) :: front
+      logical :: any_grew
+
+      call start(front, .false.)
+      call grow_far(front)
+      ! To the left from x = 0.51 m in steps of 0.03 m, and up from y = 1 m towards y = 1.51 m, as
+      ! long as 0.05 m are left.
+      call is_at(front%tip(1)%xy, [0.51_rk - 15*increment, 1.0_rk], "before the boundary")
+      call is_at(front%tip(2)%xy, [1.51_rk, 1.0_rk + 15*increment], "before the other fracture")
+      call checks%is_true(.not. any(front%tip%joined), "nothing is joined")
+      call checks%is_true(front%tip(1)%target == target_boundary, "reason: boundary")
+      call checks%is_true(front%tip(2)%target == 2, "reason: fracture 2")
+      call checks%is_close(total_length(front%network), 2.0_rk + 30*increment, 1.0e-14_rk, &
+                           "no vertex was added in vain")
+      call checks%is_true(all(front%tip%has_just_stopped()), "both have just stopped")
+      call grow(front, any_grew)
+      call checks%is_true(.not. any(front%tip%has_just_stopped()), "and not again")
+   end subroutine test_arrest
+
+   !> Where tips join, the last increment leads onto the target.
+   subroutine test_join()
+      type(sample_t) :: front
+
+      call start(front, .true.)
+      call grow_far(front)
+      call is_at(front%tip(1)%xy, [0.0_rk, 1.0_rk], "on the boundary")
+      call is_at(front%tip(2)%xy, [1.51_rk, 1.51_rk], "on the other fracture's end")
+      call checks%is_true(all(front%tip%joined), "both have joined")
+      call checks%is_close(total_length(front%network), 2.0_rk + 0.51_rk + 0.51_rk, 1.0e-14_rk, &
+                           "no gap and no overlap")
+   end subroutine test_join
+
+   !> Each increment ends where the criterion leads straight on: along the tangent of the circle at
+   !! its end. So by Pythagoras the square of the distance from the origin falls by that of the
+   !! increment, but for the two degrees that the loop leaves.
+   subroutine test_path()
+      type(sample_t) :: front
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      logical :: any_grew
+      real(rk), parameter :: two_degrees = 0.035_rk
+      real(rk) :: expected, slack
+      integer :: k
+
+      call start(front, .true.)
+      front%turns = .true.
+      front%rules%outline = 10.0_rk*(front%rules%outline - 1.0_rk)
+      front%network%first = [1_ik, 3_ik]
+      front%network%xy = reshape([1.0_rk, -0.1_rk, 1.0_rk, 0.0_rk], [2, 2])
+      front%tip = front%tip(2:2)
+      front%tip(1)%xy = [1.0_rk, 0.0_rk]
+      front%tip(1)%direction = [0.0_rk, 1.0_rk]
+      front%tip(1)%has_wing = .true.
+      call timers%begin()
+      call front%evaluate(timers, error)
+      slack = 0.0_rk
+      do k = 1, 50
+         call grow(front, any_grew)
+         call checks%is_true(any_grew, "it grows")
+         call checks%is_close(front%tip(1)%drive%angle, 0.0_rk, two_degrees, "straight on")
+         expected = sqrt(1.0_rk - k*increment**2)
+         slack = slack + increment*two_degrees
+         call checks%is_close(norm2(front%tip(1)%xy), expected, slack, "distance from the origin")
+      end do
+      print "(a,es10.2)", "distance from the origin, error: ", norm2(front%tip(1)%xy) - expected
+      call checks%is_true(front%evaluations <= 76, "half a correction for each increment at most")
+   end subroutine test_path
+
+end program test_growth_front

@@ -1,0 +1,123 @@
+!> The load rises to each onset of growth and never past one.
+module mechanics_rise
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: rk
+   use base_timers, only: timers_t
+   use mechanics_onset, only: foreseen_onset, reading_t
+   use mechanics_state, only: loaded_body_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: rise
+
+   !> Share of the toughness within which the first tip is at its onset.
+   real(rk), parameter :: at_onset = 1.0e-9_rk
+   !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
+   real(rk), parameter :: at_jump = 1.0e-13_rk
+
+contains
+
+   !> Raise the load up to a factor, or to the onset of growth if that comes first.
+   !!
+   !! Without contact the intensities are linear in the factor. The equivalent intensity, the
+   !! largest over all angles of linear functions, is then convex: where it is below the toughness
+   !! at both ends of an interval, it is so within.
+   subroutine rise(self, target, has_onset, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: target  !< [-]
+      logical, intent(out) :: has_onset
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(reading_t) :: low, high
+      real(rk) :: onset
+
+      has_onset = .false.
+      if (.not. allocated(self%body%displacement)) then
+         low%factor = self%factor
+         call self%adapt(target, timers, error)
+         if (allocated(error)) return
+         call self%respond(low%factor, timers, error)
+         if (allocated(error)) return
+      end if
+      call self%accept()
+      if (.not. self%scene%growth%enabled) then
+         call self%respond(target, timers, error)
+         if (allocated(error) .or. .not. self%scene%growth%intensities) return
+         call self%correct_intensities(timers, error)
+         return
+      end if
+      has_onset = self%largest_excess() >= -at_onset
+      if (has_onset) return
+      low = self%reading()
+      ! Where all loads rise in proportion, the intensities do so until contact changes.
+      onset = target
+      if (all_loads_rise(self%scene) .and. low%factor > 0.0_rk .and. &
+          self%largest_excess() > -1.0_rk) onset = low%factor/(1.0_rk + self%largest_excess())
+      if (onset < target) then
+         call self%respond(onset, timers, error)
+         if (allocated(error)) return
+         has_onset = abs(self%largest_excess()) <= at_onset
+         if (has_onset) return
+         if (self%largest_excess() < 0.0_rk) low = self%reading()
+      end if
+      if (.not. self%largest_excess() >= 0.0_rk) then
+         call self%respond(target, timers, error)
+         if (allocated(error)) return
+         if (self%largest_excess() < -at_onset) return
+      end if
+      has_onset = .true.
+      high = self%reading()
+      call find_onset(self, low, high, timers, error)
+   end subroutine rise
+
+   !> The load between one at which no tip grows and one at which some do, the present one.
+   subroutine find_onset(self, low, high, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      type(reading_t), intent(inout) :: low, high
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: iterations = 60
+      type(reading_t) :: last, next
+      real(rk) :: width(0:iterations)
+      integer :: k
+
+      last = low
+      next = high
+      width = huge(1.0_rk)
+      do k = 1, iterations
+         if (abs(self%largest_excess()) <= at_onset) return
+         width(k) = high%factor - low%factor
+         if (k > 3 .and. width(k) > 0.5_rk*width(max(k - 3, 0))) then
+            next%factor = 0.5_rk*(low%factor + high%factor)  ! the lines lead nowhere
+         else
+            next%factor = foreseen_onset(last, next, low%factor, high%factor, &
+                                         self%scene%material%toughness)
+         end if
+         last = self%reading()
+         call self%respond(next%factor, timers, error)
+         if (allocated(error)) return
+         next = self%reading()
+         if (self%largest_excess() < 0.0_rk) then
+            low = next
+         else
+            high = next
+         end if
+         ! Where contact changes, the intensity may jump past the toughness: at this load.
+         if (high%factor - low%factor <= at_jump*abs(high%factor)) then
+            call self%respond(high%factor, timers, error)
+            return
+         end if
+      end do
+      call raise_error(error, "", "the load at which the next tip grows was not found")
+   end subroutine find_onset
+
+   !> No load but those that the factor multiplies.
+   pure logical function all_loads_rise(scene)
+      type(scene_t), intent(in) :: scene
+
+      all_loads_rise = .not. any(abs([scene%material%density*scene%gravity, &
+                                      scene%in_situ%stress, scene%in_situ%per_y]) > 0.0_rk)
+   end function all_loads_rise
+
+end module mechanics_rise

@@ -1,0 +1,213 @@
+!> A body under a load factor: its state on a mesh that follows growth and error, and its tips.
+module mechanics_state
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use growth_front, only: growth_rules_t
+   use growth_law, only: growth_drive
+   use growth_network, only: network_of_scene
+   use mechanics_body, only: body_t
+   use mechanics_onset, only: reading_t
+   use mechanics_outline, only: outline_of_scene, outline_t
+   use mechanics_pieces, only: cuts_through
+   use scene_types, only: scene_t
+   use simulation_types, only: simulation_t
+   implicit none(type, external)
+   private
+
+   public :: loaded_body_t
+
+   !> Share of the toughness that tips may lack to grow together with the first: about the error of
+   !! the intensities, so that equal tips stay equal.
+   real(rk), parameter :: together = 2.0e-3_rk
+
+   !> Share of the estimated error that one new mesh is made for.
+   real(rk), parameter :: error_step = 0.4_rk
+
+   !> A body, the factor of its load, and what depends on both.
+   type, abstract, extends(simulation_t) :: loaded_body_t
+      logical :: is_cut = .false.  !< fractures have cut off a piece that nothing holds
+      type(body_t) :: body
+      integer :: meshed_vertices = 0  !< of the network that the mesh was last made for
+      real(rk) :: factor = 0.0_rk  !< of the load [-]
+      real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
+   contains
+      procedure :: mesh_body
+      procedure :: respond
+      procedure :: adapt
+      procedure :: evaluate
+      procedure :: correct_intensities
+      procedure :: accept
+      procedure :: reading
+      procedure :: largest_excess
+      procedure :: seismic_moment
+   end type loaded_body_t
+
+contains
+
+   !> Mesh the body; nothing is loaded yet.
+   subroutine mesh_body(self, scene, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(outline_t) :: outline
+
+      call self%set_scene(scene)
+      self%factor = scene%load%from
+      self%start = network_of_scene(scene)
+      self%network = self%start
+      outline = outline_of_scene(scene)
+      self%rules = growth_rules_t(toughness=scene%material%toughness, &
+                                  increment=scene%growth%increment, &
+                                  exponent=scene%growth%exponent, together=together, &
+                                  reach=scene%discretization%rosette_radius, joins=.true., &
+                                  outline=outline%corners)
+      if (.not. self%rules%increment > 0.0_rk) then
+         self%rules%increment = scene%discretization%size_fracture
+      end if
+      if (.not. self%rules%reach > 0.0_rk) self%rules%reach = scene%discretization%size_fracture
+      self%meshed_vertices = size(self%network%xy, 2)
+      call self%body%build(scene, self%start, self%network, timers, error)
+      if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)
+   end subroutine mesh_body
+
+   !> State and tips at a load factor.
+   subroutine respond(self, factor, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: factor  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%body%respond(self%scene, factor, timers, error)
+      if (allocated(error)) return
+      self%factor = factor
+      if (self%scene%growth%intensities) call take_intensities(self)
+   end subroutine respond
+
+   !> The tips learn what the body's mesh has at theirs.
+   subroutine take_intensities(self)
+      class(loaded_body_t), intent(inout) :: self
+      integer(ik) :: i, k
+
+      associate (fracture => self%body%mesh%fracture)
+         do i = 1, size(self%tip)
+            associate (tip => self%tip(i))
+               k = findloc(fracture%tip_fracture == tip%fracture .and. &
+                           fracture%tip_end == tip%end, .true., dim=1)
+               if (k == 0) then  ! another fracture has joined it
+                  tip%arrested = .true.
+                  cycle
+               end if
+               tip%intensity = self%body%intensity(k)
+               tip%rosette_radius = fracture%tip_radius(k)
+               tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
+                                        self%body%model%elasticity%crack_modulus())
+            end associate
+         end do
+      end associate
+   end subroutine take_intensities
+
+   !> Errors of the intensities from that of the whole solution, where that is known.
+   subroutine correct_intensities(self, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%body%correct_intensities(timers, error)
+      if (.not. allocated(error)) call take_intensities(self)
+   end subroutine correct_intensities
+
+   !> Let the mesh follow the error at a load, if the scene wants it. A coarse mesh shows the error
+   !! of a much finer one poorly, so the error falls in steps, each of which makes a mesh about
+   !! twice as large.
+   subroutine adapt(self, factor, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: factor  !< of the load [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: pass
+
+      if (.not. self%scene%adaptive%enabled) return
+      do pass = 0, self%scene%adaptive%passes
+         call self%respond(factor, timers, error)
+         if (allocated(error)) return
+         call self%body%estimate_body(self%scene, timers)
+         if (self%body%estimate%relative <= self%scene%adaptive%tolerance) return
+         if (pass == self%scene%adaptive%passes) return
+         call self%body%refine(self%scene, self%start, self%network, &
+                               max(self%scene%adaptive%tolerance, &
+                                   error_step*self%body%estimate%relative), timers, error)
+         if (allocated(error)) return
+      end do
+   end subroutine adapt
+
+   !> The state on a mesh of the present network, made from the one before the increment, at the
+   !! same load.
+   subroutine evaluate(self, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (size(self%network%xy, 2) > self%meshed_vertices) then  ! not only turned
+         call self%body%remember()
+         self%meshed_vertices = size(self%network%xy, 2)
+      end if
+      call self%body%grow(self%scene, self%start, self%network, timers, error)
+      if (.not. allocated(error)) then
+         if (self%scene%adaptive%enabled) then
+            call self%adapt(self%factor, timers, error)
+         else
+            call self%respond(self%factor, timers, error)
+         end if
+      end if
+      if (allocated(error)) self%is_cut = cuts_through(self%body%mesh%fracture)
+   end subroutine evaluate
+
+   !> The intensities of the tips that may grow.
+   pure function reading(self)
+      class(loaded_body_t), intent(in) :: self
+      type(reading_t) :: reading
+
+      reading%factor = self%factor
+      reading%k1 = pack(self%tip%intensity%k1,.not. self%tip%arrested)
+      reading%k2 = pack(self%tip%intensity%k2,.not. self%tip%arrested)
+   end function reading
+
+   !> What the faces have slipped so far becomes the history of their next slip.
+   subroutine accept(self)
+      class(loaded_body_t), intent(inout) :: self
+
+      self%accepted_moment = self%seismic_moment()
+      call self%body%contact%accept()
+   end subroutine accept
+
+   !> Seismic moment of all slip in contact so far, per metre of thickness [N m].
+   pure real(rk) function seismic_moment(self) result(moment)
+      class(loaded_body_t), intent(in) :: self
+      real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! start, end, mid
+      integer(ik) :: cell
+
+      moment = self%accepted_moment
+      associate (body => self%body)
+         do cell = 1, body%mesh%fracture%n_cells
+            moment = moment + body%model%elasticity%shear_modulus() &
+                     *body%model%mesh%face_length(cell) &
+                     *dot_product(share, abs(body%contact%jump(1, :, cell) &
+                                             - body%contact%slip_before(:, cell)))
+         end do
+      end associate
+   end function seismic_moment
+
+   !> By how much the tip nearest to growth exceeds the toughness, relative to it.
+   pure real(rk) function largest_excess(self)
+      class(loaded_body_t), intent(in) :: self
+
+      largest_excess = -1.0_rk
+      if (.not. all(self%tip%arrested)) then
+         largest_excess = maxval(self%tip%drive%intensity, mask=.not. self%tip%arrested) &
+                          /self%scene%material%toughness - 1.0_rk
+      end if
+   end function largest_excess
+
+end module mechanics_state

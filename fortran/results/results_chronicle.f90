@@ -1,0 +1,85 @@
+!> What has happened in a run since its files were last written.
+module results_chronicle
+   use base_kinds, only: ik, rk
+   use results_rows, only: tip_row_t
+   implicit none(type, external)
+   private
+
+   public :: chronicle_t, event_t
+   public :: event_arrest, event_growth, event_joint, event_opening, event_remesh, event_slip_onset
+   public :: event_step_cut
+
+   ! Kinds of events.
+   character(len=*), parameter :: event_slip_onset = "slip_onset"
+   character(len=*), parameter :: event_opening = "opening"
+   character(len=*), parameter :: event_growth = "growth"
+   character(len=*), parameter :: event_joint = "joint"
+   character(len=*), parameter :: event_arrest = "arrest"
+   character(len=*), parameter :: event_step_cut = "step_cut"
+   character(len=*), parameter :: event_remesh = "remesh"
+
+   !> A row of events.csv. What does not apply to it is left empty.
+   type :: event_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      character(len=:), allocatable :: kind  !< event_slip_onset .. event_step_cut
+      character(len=:), allocatable :: detail  !< a few words with numbers and units
+      integer(ik) :: fracture = 0  !< 0: of none
+      logical :: has_place = .false.
+      real(rk) :: xy(2) = 0.0_rk  !< [m]
+   end type event_t
+
+   !> Events and rows of tips in their order, lines for the log.
+   type :: chronicle_t
+      type(event_t), allocatable :: events(:)
+      type(tip_row_t), allocatable :: tips(:)
+      character(len=:), allocatable :: remark  !< a line for the log
+      logical :: has_new_network = .false.  !< the mesh has followed growth
+   contains
+      procedure :: clear
+      procedure :: add_event
+      procedure :: add_tip
+   end type chronicle_t
+
+contains
+
+   !> Nothing has happened yet.
+   pure subroutine clear(self)
+      class(chronicle_t), intent(inout) :: self
+
+      self%events = [event_t ::]
+      self%tips = [tip_row_t ::]
+      if (allocated(self%remark)) deallocate (self%remark)
+      self%has_new_network = .false.
+   end subroutine clear
+
+   !> Add an event.
+   pure subroutine add_event(self, time, kind, detail, fracture, xy)
+      class(chronicle_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      character(len=*), intent(in) :: kind, detail
+      integer(ik), intent(in), optional :: fracture
+      real(rk), intent(in), optional :: xy(2)  !< [m]
+      type(event_t) :: event
+      type(event_t), allocatable :: longer(:)
+
+      event%time = time
+      event%kind = kind
+      event%detail = detail
+      if (present(fracture)) event%fracture = fracture
+      event%has_place = present(xy)
+      if (present(xy)) event%xy = xy
+      allocate (longer(size(self%events) + 1))
+      longer(:size(self%events)) = self%events
+      longer(size(longer)) = event
+      call move_alloc(longer, self%events)
+   end subroutine add_event
+
+   !> Add a row of tips.csv.
+   pure subroutine add_tip(self, row)
+      class(chronicle_t), intent(inout) :: self
+      type(tip_row_t), intent(in) :: row
+
+      self%tips = [self%tips, row]
+   end subroutine add_tip
+
+end module results_chronicle

@@ -1,0 +1,302 @@
+!> A scene in progress, as the program sees it whichever way it is simulated: from one accepted
+!! state to the next, with the growth of the tips in between; and what its files shall hold.
+module simulation_types
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use contact_states, only: state_open, state_slip
+   use growth_front, only: front_t
+   use growth_network, only: end_gain
+   use growth_targets, only: target_boundary
+   use growth_tip, only: tip_t
+   use mesh_types, only: fracture_mesh_t, mesh_t, network_t
+   use results_chronicle, only: chronicle_t, event_arrest, event_growth, event_joint, &
+                                event_opening, event_remesh, event_slip_onset
+   use results_fields, only: fracture_fields_t, matrix_fields_t
+   use results_rows, only: history_row_t, probe_row_t, tip_row_t
+   use results_summary, only: summary_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: simulation_t, snapshot_t
+
+   !> The fields of a state, with the mesh that they live on.
+   type :: snapshot_t
+      real(rk) :: time = -huge(1.0_rk)  !< [s]
+      type(mesh_t) :: mesh
+      type(matrix_fields_t) :: matrix
+      type(fracture_fields_t) :: fracture
+   end type snapshot_t
+
+   !> One scene on its way.
+   type, abstract, extends(front_t) :: simulation_t
+      type(scene_t) :: scene
+      type(network_t) :: start  !< network of the scene
+      type(chronicle_t) :: chronicle  !< since the files were last written
+      type(summary_t) :: summary  !< of the run so far
+      character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
+      logical :: owes_state = .false.  !< the scene is over after one more state
+      logical :: shows_state = .true.  !< the fields of the present state may be written
+      real(rk) :: end_time = 0.0_rk  !< at which the scene is over [s]
+      logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) so far
+   contains
+      procedure(begin_scene), deferred :: begin
+      procedure(go_on), deferred :: next_state
+      procedure(go_on), deferred :: grow
+      procedure(network_and_mesh), deferred :: present_network
+      procedure(row_of_history), deferred :: history
+      procedure(row_of_probes), deferred :: probes
+      procedure(fields_of_state), deferred :: snapshot
+      procedure(time_of_state), deferred :: time
+      procedure(name_of_state), deferred :: last_state
+      procedure :: set_scene
+      procedure :: is_over
+      procedure :: note_contact
+      procedure :: note_tips
+      procedure :: note_growth
+      procedure :: note_mesh
+      procedure :: end_at_gain
+   end type simulation_t
+
+   abstract interface
+      !> Mesh and set up; nothing is loaded yet. The summary learns what the scene uses and does
+      !! without.
+      subroutine begin_scene(self, scene, timers, error)
+         import :: error_t, scene_t, simulation_t, timers_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine begin_scene
+
+      !> next_state: go on to the next accepted state. grow: let the tips grow in it. Either sets
+      !! `ending` where nothing is left to do, and adds to chronicle and summary.
+      subroutine go_on(self, timers, error)
+         import :: error_t, simulation_t, timers_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine go_on
+
+      !> The network as the mesh has it, with that mesh.
+      subroutine network_and_mesh(self, network, mesh)
+         import :: mesh_t, network_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(network_t), intent(out) :: network
+         type(mesh_t), intent(out) :: mesh
+      end subroutine network_and_mesh
+
+      !> The accepted state in a row of history.csv.
+      function row_of_history(self) result(row)
+         import :: history_row_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(history_row_t) :: row
+      end function row_of_history
+
+      !> The accepted state at the probes.
+      subroutine row_of_probes(self, row, error)
+         import :: error_t, probe_row_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(probe_row_t), intent(out) :: row
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine row_of_probes
+
+      !> The fields of the last good state, however the run goes on; not allocated if there is none.
+      subroutine fields_of_state(self, fields)
+         import :: simulation_t, snapshot_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(snapshot_t), allocatable, intent(out) :: fields
+      end subroutine fields_of_state
+
+      !> The time of the present state [s].
+      pure function time_of_state(self) result(time)
+         import :: rk, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         real(rk) :: time
+      end function time_of_state
+
+      !> The last accepted state in words for messages: a time, a load factor.
+      pure function name_of_state(self) result(words)
+         import :: simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         character(len=:), allocatable :: words
+      end function name_of_state
+   end interface
+
+contains
+
+   !> The scene, of which nothing has happened yet.
+   pure subroutine set_scene(self, scene)
+      class(simulation_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      self%scene = scene
+      if (.not. allocated(self%scene%injections)) allocate (self%scene%injections(0))
+      call self%chronicle%clear()
+      allocate (self%has_slipped(size(scene%fractures)), source=.false.)
+      allocate (self%has_opened(size(scene%fractures)), source=.false.)
+   end subroutine set_scene
+
+   !> Nothing is left to do.
+   pure logical function is_over(self)
+      class(simulation_t), intent(in) :: self
+
+      is_over = allocated(self%ending) .and. .not. self%owes_state
+   end function is_over
+
+   !> Note the first slip and the first opening of each fracture. Where `slips` or `opens` is false
+   !! for a fracture, it does so from the start, and there is no event.
+   pure subroutine note_contact(self, fracture, state, slips, opens)
+      class(simulation_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_states
+      logical, intent(in) :: slips(:), opens(:)  !< (fractures)
+      real(rk) :: centre(2)
+      integer(ik) :: cell, f
+
+      do cell = 1, fracture%n_cells
+         f = fracture%cell_fracture(cell)
+         centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+         if (state(cell) == state_slip .and. slips(f) .and. .not. self%has_slipped(f)) then
+            self%has_slipped(f) = .true.
+            call self%chronicle%add_event(self%time(), event_slip_onset, "first slip", f, centre)
+         else if (state(cell) == state_open .and. opens(f) .and. .not. self%has_opened(f)) then
+            self%has_opened(f) = .true.
+            call self%chronicle%add_event(self%time(), event_opening, "first opening", f, centre)
+         end if
+      end do
+   end subroutine note_contact
+
+   !> Note all tips. Where any tip has just grown, all are as before that.
+   pure subroutine note_tips(self)
+      class(simulation_t), intent(inout) :: self
+      logical :: any_grew
+      integer(ik) :: i
+
+      any_grew = any(self%tip%advance > 0.0_rk)
+      do i = 1, size(self%tip, kind=ik)
+         call self%chronicle%add_tip(row_of_tip(self%time(), i, self%tip(i), any_grew))
+      end do
+   end subroutine note_tips
+
+   !> A tip as a row, before the last increment or after it.
+   pure function row_of_tip(time, i, tip, is_before) result(row)
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik), intent(in) :: i  !< number of the tip
+      type(tip_t), intent(in) :: tip
+      logical, intent(in) :: is_before
+      type(tip_row_t) :: row
+      type(tip_t) :: shown
+
+      shown = tip
+      if (is_before) then
+         shown%intensity = tip%intensity_before
+         shown%drive = tip%drive_before
+      end if
+      row%angle = shown%drive%angle
+      if (tip%advance > 0.0_rk) then
+         shown%xy = tip%origin
+         row%angle = tip%kink
+      end if
+      row%time = time
+      row%tip = i
+      row%fracture = tip%fracture
+      row%xy = shown%xy
+      row%advance = tip%advance
+      row%keq = shown%drive%intensity
+      row%g = shown%drive%energy
+      associate (intensity => shown%intensity)
+         row%k1 = intensity%k1
+         row%k2 = intensity%k2
+         row%k1_dc = intensity%k1_dc
+         row%k2_dc = intensity%k2_dc
+         row%k1_error = intensity%k1_error
+         row%k2_error = intensity%k2_error
+         row%g_domain = intensity%g_domain
+         row%g_error = intensity%g_error
+         row%k1_dc_error = intensity%k1_dc_error
+         row%k2_dc_error = intensity%k2_dc_error
+         row%k1_corrected = intensity%k1_corrected
+         row%k2_corrected = intensity%k2_corrected
+      end associate
+   end function row_of_tip
+
+   !> Note the tips that have grown in the last increment, joined something or stopped short of it.
+   subroutine note_growth(self)
+      class(simulation_t), intent(inout) :: self
+      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
+      character(len=64) :: detail
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), chronicle => self%chronicle)
+            if (tip%advance > 0.0_rk) then
+               write (detail, "(a,es10.3,a,f7.2,a)") "advance ", tip%advance, " m, kink ", &
+                  tip%kink*degrees, " deg"
+               call chronicle%add_event(self%time(), event_growth, trim(detail), tip%fracture, &
+                                        tip%xy)
+               if (tip%joined) call chronicle%add_event(self%time(), event_joint, "joins " &
+                                                        //target_name(self%scene, tip), &
+                                                        tip%fracture, tip%xy)
+            else if (tip%has_just_stopped()) then
+               call self%summary%warn("fracture "//trim(self%scene%fractures(tip%fracture)%name) &
+                                      //" stopped growing next to "//target_name(self%scene, tip))
+               call chronicle%add_event(self%time(), event_arrest, "next to " &
+                                        //target_name(self%scene, tip), tip%fracture, tip%xy)
+            end if
+         end associate
+      end do
+   end subroutine note_growth
+
+   !> What a tip has come to, in words.
+   pure function target_name(scene, tip) result(name)
+      type(scene_t), intent(in) :: scene
+      type(tip_t), intent(in) :: tip
+      character(len=:), allocatable :: name
+
+      if (tip%target == target_boundary) then
+         name = "the outer boundary"
+      else if (tip%target == tip%fracture) then
+         name = "its own fracture"
+      else
+         name = "fracture "//trim(scene%fractures(tip%target)%name)
+      end if
+   end function target_name
+
+   !> Note that the mesh has followed the growth.
+   subroutine note_mesh(self, mesh)
+      class(simulation_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      character(len=64) :: detail
+
+      write (detail, "(i0,a,i0,a)") mesh%n_cells, " cells, ", mesh%fracture%n_cells, &
+         " fracture cells"
+      call self%chronicle%add_event(self%time(), event_remesh, trim(detail))
+      self%chronicle%has_new_network = .true.
+   end subroutine note_mesh
+
+   !> Set `ending` if a fracture's end has grown as far as the scene wants.
+   pure subroutine end_at_gain(self)
+      class(simulation_t), intent(inout) :: self
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            if (end_gain(self%network, self%start, tip%fracture, tip%end) &
+                < self%scene%growth%stop_gain) cycle
+            self%ending = "fracture "//trim(self%scene%fractures(tip%fracture)%name)// &
+                          " has gained stop_gain"
+         end associate
+      end do
+   end subroutine end_at_gain
+
+end module simulation_types

@@ -1,0 +1,49 @@
+!> What the coarse level learns of growth: each tip's as one straight segment, once it is as long as
+!! the coarse mesh can hold.
+module twolevel_handover
+   use base_kinds, only: ik, rk
+   use growth_network, only: end_direction, end_gain, end_vertices, extend, straighten_end
+   use growth_tip, only: tip_t
+   use mesh_types, only: network_t
+   implicit none(type, external)
+   private
+
+   public :: hand_over
+
+contains
+
+   !> Give the coarse network what has grown on the fine level, once some tip's growth reaches the
+   !! threshold. Tips with at least half of it go along. The fine network gets the same straight
+   !! segments.
+   pure subroutine hand_over(threshold, network, tips, coarse, centres, is_straightened)
+      real(rk), intent(in) :: threshold  !< eps_p dH [m]
+      type(network_t), intent(inout) :: network  !< the fine one
+      type(tip_t), intent(inout) :: tips(:)
+      type(network_t), intent(inout) :: coarse
+      !> (2, n) where it has changed [m]; n may be 0
+      real(rk), allocatable, intent(out) :: centres(:, :)
+      logical, intent(out) :: is_straightened  !< the fine network has changed too
+      real(rk) :: pending(size(tips))
+      integer(ik) :: i, n
+
+      is_straightened = .false.
+      do i = 1, size(tips, kind=ik)
+         pending(i) = end_gain(network, coarse, tips(i)%fracture, tips(i)%end)
+      end do
+      allocate (centres(2, 0))
+      if (.not. any(pending >= threshold*(1.0_rk - 1.0e-9_rk))) return
+      do i = 1, size(tips, kind=ik)
+         associate (tip => tips(i))
+            if (pending(i) < 0.5_rk*threshold) cycle
+            n = end_vertices(network, coarse, tip%fracture, tip%end)
+            call extend(coarse, tip%fracture, tip%end, tip%xy)
+            centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])
+            if (n == 1) cycle
+            call straighten_end(network, tip%fracture, tip%end, n - 1)
+            tip%direction = end_direction(coarse, tip%fracture, tip%end)
+            is_straightened = .true.
+         end associate
+      end do
+   end subroutine hand_over
+
+end module twolevel_handover

@@ -1,0 +1,273 @@
+!> Both levels of a scene with a fluid at one time: network, coarse mesh, model and state, windows
+!! around the tips, and the bookkeeping of fluid.
+module twolevel_state
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
+   use contact_law, only: contact_law_t
+   use coarse_fields, only: nodal_values
+   use coarse_model, only: coarse_model_t, new_state
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use growth_front, only: growth_rules_t
+   use growth_network, only: network_of_scene
+   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use mesh_types, only: mesh_map_t, mesh_t, network_t, point_boundary, point_interior, point_tip
+   use scene_types, only: domain_t, scene_t
+   use simulation_types, only: simulation_t
+   use twolevel_handover, only: hand_over
+   use twolevel_transfer, only: transfer_cells, transfer_state
+   use twolevel_wells, only: rate, share_wells, transfer_shares
+   use twolevel_window, only: coarse_level_t
+   use twolevel_windows, only: windows_t
+   implicit none(type, external)
+   private
+
+   public :: two_levels_t
+
+   real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
+
+   !> Share of the toughness that tips may lack to grow together with the first: the two methods for
+   !! the intensities differ by about as much.
+   real(rk), parameter :: together = 0.01_rk
+
+   !> Both levels; `network` is that of the fine one, which is ahead of the coarse one.
+   type, abstract, extends(simulation_t) :: two_levels_t
+      type(network_t) :: coarse_network
+      type(mesher_t) :: mesher  !< of the coarse mesh
+      type(mesh_t) :: mesh  !< the coarse one
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(windows_t) :: windows
+      type(coarse_level_t) :: level
+      logical :: level_is_current = .false.
+      logical :: undrained = .false.  !< the state is the undrained response to the load
+      real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
+      integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
+      real(rk) :: injected = 0.0_rk  !< so far [m2]
+      real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
+      real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
+   contains
+      procedure :: mesh_levels
+      procedure :: equilibrate
+      procedure :: step
+      procedure :: update_level
+      procedure :: evaluate
+      procedure :: grow_coarse
+   end type two_levels_t
+
+contains
+
+   !> Mesh, discretize and set the state before the load.
+   subroutine mesh_levels(self, scene, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%set_scene(scene)
+      self%start = network_of_scene(scene)
+      self%network = self%start
+      self%coarse_network = self%start
+      self%rules = rules_of_scene(scene)
+      call timers%start(phase_mesh)
+      call build_mesh(coarse_spec(scene), self%coarse_network, self%mesher, self%mesh, error)
+      call timers%stop(phase_mesh)
+      if (allocated(error)) return
+      call refuse_joints(self%mesh, error)
+      if (allocated(error)) return
+      call first_cells(self)
+      call share_wells(self%scene%injections, self%mesh%fracture, self%share)
+      call self%model%set_mesh(self%mesh, scene, timers, error)
+      if (allocated(error)) return
+      call new_state(self%mesh, self%model%cells, scene%initial%pressure, self%model, self%state)
+      call self%find_tips(self%mesh%fracture)
+      call self%windows%begin(self%tip)
+      allocate (self%grown(0))
+   end subroutine mesh_levels
+
+   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for fluid
+   !! has no law yet at joints.
+   pure function rules_of_scene(scene) result(rules)
+      type(scene_t), intent(in) :: scene
+      type(growth_rules_t) :: rules
+
+      rules = growth_rules_t(toughness=scene%material%toughness, &
+                             increment=scene%growth%increment, exponent=scene%growth%exponent, &
+                             together=together, reach=scene%discretization%size_fracture, &
+                             joins=.false., outline=corners(scene%domain))
+      if (.not. rules%increment > 0.0_rk) then
+         rules%increment = scene%discretization%fine_ratio*scene%discretization%size_fracture
+      end if
+   end function rules_of_scene
+
+   !> Of the rectangle, counter-clockwise [m].
+   pure function corners(d) result(xy)
+      type(domain_t), intent(in) :: d
+      real(rk) :: xy(2, 4)
+
+      xy = reshape([d%x_min, d%y_min, d%x_max, d%y_min, d%x_max, d%y_max, d%x_min, d%y_max], [2, 4])
+   end function corners
+
+   !> What to mesh.
+   pure function coarse_spec(scene) result(spec)
+      type(scene_t), intent(in) :: scene
+      type(mesh_spec_t) :: spec
+
+      spec = mesh_spec_t(x_min=scene%domain%x_min, x_max=scene%domain%x_max, &
+                         y_min=scene%domain%y_min, y_max=scene%domain%y_max, &
+                         size_fracture=scene%discretization%size_fracture, &
+                         size_boundary=scene%discretization%size_boundary)
+      if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
+   end function coarse_spec
+
+   !> There is no law yet for fluid at joints of fractures.
+   subroutine refuse_joints(mesh, error)
+      type(mesh_t), intent(in) :: mesh
+      type(error_t), allocatable, intent(out) :: error
+      character(len=96) :: text
+      integer(ik) :: i
+
+      do i = 1, mesh%fracture%n_points
+         if (any(mesh%fracture%point_kind(i) == [point_interior, point_tip, point_boundary])) cycle
+         write (text, "(a,es12.5,a,es12.5,a)") "fractures meet at (", &
+            mesh%fracture%point_xy(1, i), ",", mesh%fracture%point_xy(2, i), "); this version"
+         call raise_error(error, "", trim(text)//" simulates only fractures that do not touch "// &
+                          "each other")
+         return
+      end do
+   end subroutine refuse_joints
+
+   !> Law and residual aperture of the scene's fracture cells.
+   pure subroutine first_cells(self)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik) :: i
+
+      associate (fracture => self%mesh%fracture, cells => self%model%cells)
+         allocate (cells%law(fracture%n_cells), cells%residual_aperture(fracture%n_cells))
+         allocate (cells%injection(fracture%n_cells), source=0.0_rk)
+         do i = 1, fracture%n_cells
+            associate (given => self%scene%fractures(fracture%cell_fracture(i)))
+               cells%law(i) = contact_law_t(friction=given%friction, dilation=tan(given%dilation))
+               cells%residual_aperture(i) = given%aperture
+            end associate
+         end do
+      end associate
+   end subroutine first_cells
+
+   !> Undrained response to the load with fractures in equilibrium with the rock (model.md section
+   !! 9).
+   subroutine equilibrate(self, timers, report, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      self%level_is_current = .false.
+      self%undrained = .true.
+      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, &
+                                  timers, report, error)
+   end subroutine equilibrate
+
+   !> One step of the coarse level. Nothing changes unless it converges.
+   subroutine step(self, dt, timers, report, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (injection => self%model%cells%injection)
+         injection = matmul(self%share, rate(self%scene%injections, self%state%time, dt))
+         call self%model%advance(self%mesh, dt, self%state, timers, report, error)
+         if (allocated(error) .or. .not. report%converged) return
+         self%level_is_current = .false.
+         self%undrained = .false.
+         self%injected = self%injected + dt*sum(injection)
+      end associate
+      if (self%mesh%fracture%n_cells > 0) then
+         self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
+      end if
+   end subroutine step
+
+   !> Coarse values at the mesh's nodes, for windows and probes.
+   subroutine update_level(self)
+      class(two_levels_t), intent(inout) :: self
+
+      if (self%level_is_current) return
+      if (allocated(self%level%nodal)) deallocate (self%level%nodal)
+      allocate (self%level%nodal(3, self%mesh%n_nodes))
+      call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
+                        self%state%tractions, self%level%nodal)
+      self%level%dilation = self%model%cells%law%dilation
+      self%level_is_current = .true.
+   end subroutine update_level
+
+   !> Stress intensity factors of all tips, in windows on the present network.
+   subroutine evaluate(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call timers%start(phase_tips)
+      call self%update_level()
+      call self%windows%evaluate(self%scene, self%network, self%tip, self%mesher, self%mesh, &
+                                 self%level, self%state, self%undrained, error)
+      call timers%stop(phase_tips)
+   end subroutine evaluate
+
+   !> Let the coarse level follow what the tips have grown, if that has reached its threshold.
+   subroutine grow_coarse(self, grew, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(out) :: grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(mesher_t) :: mesher
+      type(mesh_t) :: mesh
+      type(mesh_map_t) :: map
+      real(rk), allocatable :: centres(:, :)
+      logical :: is_straightened
+
+      associate (size_fracture => self%scene%discretization%size_fracture)
+         call hand_over(self%scene%growth%threshold*size_fracture, self%network, self%tip, &
+                        self%coarse_network, centres, is_straightened)
+         grew = size(centres, 2) > 0
+         if (.not. grew) return
+         if (is_straightened) call self%windows%network_changed()
+         call timers%start(phase_remesh)
+         call remesh(self%mesher, self%coarse_network, centres, &
+                     max(5.0_rk*self%rules%increment, 3.0_rk*size_fracture), size_fracture, &
+                     mesher, mesh, map, error)
+         call timers%stop(phase_remesh)
+      end associate
+      if (allocated(error)) return
+      call timers%start(phase_transfer)
+      call transfer_mesher(mesher, self%mesher)
+      call transfer_levels(self, mesh, map)
+      call timers%stop(phase_transfer)
+      call self%model%set_mesh(self%mesh, self%scene, timers, error)
+   end subroutine grow_coarse
+
+   !> Carry cells, state and wells over to a new coarse mesh.
+   subroutine transfer_levels(self, mesh, map)
+      class(two_levels_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh  !< the new one
+      type(mesh_map_t), intent(in) :: map
+      type(state_t) :: state
+      type(fracture_cells_t) :: cells
+      real(rk) :: prefilled
+      integer(ik) :: i
+
+      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, cells)
+      call transfer_state(map, self%mesh, mesh, cells, &
+                          self%scene%growth%new_volume == "prefilled", self%state, state, prefilled)
+      self%share = transfer_shares(map, self%share)
+      self%grown = pack([(i, i=1, mesh%fracture%n_cells)], map%fracture_cell_old == 0)
+      self%mesh = mesh
+      self%model%cells = cells
+      self%state = state
+      self%prefilled = self%prefilled + prefilled
+      self%level_is_current = .false.
+      call self%windows%coarse_changed()
+   end subroutine transfer_levels
+
+end module twolevel_state
