@@ -57,7 +57,7 @@ def faults_of_rooms(rooms: list[str]) -> list[str]:
 
 
 def faults_of_includes() -> list[str]:
-    """Only the mesh library is C++; its own folder and its public header are all it includes."""
+    """The mesh library is C++; its own folder and its public header are all it includes."""
     own = {path.name for path in (ROOT / "cpp_mesh" / "src").glob("*.hpp")}
     faults = []
     for source in sorted((ROOT / "cpp_mesh" / "src").glob("*.?pp")):

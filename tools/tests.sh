@@ -60,6 +60,6 @@ fortran_format() {
 
 # Settings: .clang-format.
 cpp_format() {
-    find cpp_mesh \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) -print0 |
+    find cpp_mesh fortran \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) -print0 |
         xargs -0 "$venv_python" "$venv/bin/clang-format" --dry-run -Werror
 }

@@ -1,8 +1,8 @@
 !> Small operations on words: case, likeness, and numbers as people write them in scene files, which
 !> read back exactly.
 module scene_words
-   use base_kinds, only: ik, lk, rk
-   use base_number, only: integer_text, rounded, shortest_digits
+   use base_kinds, only: ik, rk
+   use base_number, only: decimal_digits, integer_text, most_digits
    implicit none(type, external)
    private
 
@@ -59,22 +59,17 @@ contains
    end function is_identifier
 
    !> The shortest decimal text that reads back to the same bits, as `0.25`, `97200.0` or `4.0e-10`.
-   pure function real_text(value) result(text)
+   pure function real_text(value, n_digits) result(text)
       real(rk), intent(in) :: value  !< finite
+      integer, intent(in), optional :: n_digits  !< rounded to so many significant digits
       character(len=:), allocatable :: text
-      character(len=17), parameter :: zeros = repeat("0", 17)
+      character(len=most_digits), parameter :: zeros = repeat("0", most_digits)
+      character(len=most_digits) :: all_digits
       character(len=:), allocatable :: digits
-      integer(lk) :: all_digits
       integer :: exponent
 
-      exponent = 0
-      digits = "0"
-      if (abs(value) > 0.0_rk) then
-         call shortest_digits(abs(value), all_digits, exponent)
-         digits = integer_text(all_digits)
-         digits = digits(1:verify(digits, "0", back=.true.))
-      end if
-
+      call decimal_digits(value, all_digits, exponent, n_digits)
+      digits = trim(all_digits)
       if (exponent >= 0 .and. exponent <= 6) then
          digits = digits//zeros(1:max(0, exponent + 2 - len(digits)))
          text = digits(1:exponent + 1)//"."//digits(exponent + 2:)
@@ -92,7 +87,7 @@ contains
       real(rk), intent(in) :: value  !< finite
       character(len=:), allocatable :: text
 
-      text = real_text(rounded(value, 4))
+      text = real_text(value, 4)
    end function rounded_text
 
 end module scene_words

@@ -25,13 +25,17 @@ program test_base_number
    call same_text(123456.0_rk, "123456.0")
    call same_text(1.0e15_rk, "1000000000000000.0")
    call same_text(1.0e16_rk, "1e+16")
-   call same_text(9.999999999999999e22_rk, "9.999999999999999e+22")
+   call same_text(9.999999999999999e22_rk, "1e+23")  ! half-way to the next: reads as the even one
    call same_text(1.0e22_rk, "1e+22")
    call same_text(9007199254740993.0_rk, "9007199254740992.0")  ! 2**53 + 1 is no double
    call same_text(0.99999999999999989_rk, "0.9999999999999999")  ! next below 1
    call same_text(huge(1.0_rk), "1.7976931348623157e+308")
    call same_text(tiny(1.0_rk), "2.2250738585072014e-308")
    call same_text(transfer(1_lk, 1.0_rk), "5e-324")  ! the smallest subnormal
+   call same_text(scale(1.0_rk, -44), "5.684341886080802e-14")  ! 5.6843418860808015e-14
+   call same_text(scale(1.0_rk, 1023), "8.98846567431158e+307")
+   call same_text(1097718834198879.25_rk, "1097718834198879.2")  ! .3 is as near: the even digit
+   call same_text(-5.0e-324_rk, "-5e-324")
    call same_text(ieee_value(1.0_rk, ieee_quiet_nan), "nan")
    call same_text(ieee_value(1.0_rk, ieee_positive_inf), "inf")
    call same_text(ieee_value(1.0_rk, ieee_negative_inf), "-inf")
@@ -42,6 +46,8 @@ program test_base_number
    call checks%is_true(brief_text(0.0123456_rk, 3) == "0.0123", "three digits")
    call checks%is_true(brief_text(-9.9996_rk, 4) == "-10", "rounding up adds a digit")
    call checks%is_true(brief_text(0.0_rk, 3) == "0", "zero has no digits to round")
+   call checks%is_true(brief_text(2.5_rk, 1) == "2", "a tie goes to the even digit")
+   call checks%is_true(brief_text(1.0_rk/3.0_rk, 17) == "0.33333333333333331", "all digits")
 
    call checks%is_true(integer_text(0_ik) == "0", "integer 0")
    call checks%is_true(integer_text(-120_ik) == "-120", "integer -120")
