@@ -18,11 +18,11 @@ module base_number
    interface
       !> See base_number_digits.cpp.
       pure subroutine base_number_digits(x, n_digits, digits, power) bind(c)
-         import :: c_char, c_double, c_int
+         import :: c_char, c_double, c_int, most_digits
          implicit none(type, external)
          real(c_double), value, intent(in) :: x
          integer(c_int), value, intent(in) :: n_digits
-         character(kind=c_char), intent(out) :: digits(*)
+         character(kind=c_char), intent(out) :: digits(most_digits)
          integer(c_int), intent(out) :: power
       end subroutine base_number_digits
    end interface
@@ -94,16 +94,11 @@ contains
       integer, intent(out) :: power
       integer, intent(in), optional :: n_digits  !< 1 to 17; default: as many as needed
 
-      character(kind=c_char) :: found(most_digits)
       integer(c_int) :: n
-      integer :: i
 
       n = 0
       if (present(n_digits)) n = n_digits
-      call base_number_digits(abs(x), n, found, power)
-      do i = 1, most_digits
-         digits(i:i) = found(i)
-      end do
+      call base_number_digits(abs(x), n, digits, power)
    end subroutine decimal_digits
 
    !> Text of an integer.

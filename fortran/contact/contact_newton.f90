@@ -12,6 +12,7 @@
 !! that is one of many, as for a piece that floats, the system counts as singular.
 module contact_newton
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
    use algebra_lapack, only: dgecon, dgetrf, dgetrs
    implicit none(type, external)
    private
@@ -187,13 +188,12 @@ contains
       real(rk), intent(in) :: worst
       integer(ik), intent(in) :: seen(:, :)
       real(rk), intent(in) :: seen_worst(:)
-      real(rk), parameter :: round_off = 1.0e-9_rk
       integer(ik) :: k, n
 
       n = size(system%state)
       has_been = .true.
       do k = 1, size(seen_worst)
-         if (abs(worst - seen_worst(k)) > round_off*worst) cycle
+         if (abs(worst - seen_worst(k)) > same_value*worst) cycle
          if (all(seen(:n, k) == system%state) .and. all(seen(n + 1:, k) == system%way)) return
       end do
       has_been = .false.

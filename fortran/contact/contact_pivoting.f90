@@ -19,6 +19,7 @@
 !!   tension the result is a start for the iteration, not its solution.
 module contact_pivoting
    use base_kinds, only: ik, rk
+   use base_tolerances, only: round_off
    use algebra_lapack, only: dgetrf, dgetrs
    use contact_law, only: contact_law_t
    implicit none(type, external)
@@ -270,7 +271,7 @@ contains
       type(dictionary_t), intent(inout) :: dictionary
       logical, intent(out) :: is_done
       real(rk), parameter :: infeasible = 1.0e-13_rk  ! of the largest constant
-      real(rk), parameter :: round_off = 1.0e-13_rk  ! of the cover at the start
+      real(rk), parameter :: used_up = 1.0e-13_rk  ! of the cover at the start
       real(rk) :: none
       integer(ik) :: cover, entering, leaving, m, pivot, row
 
@@ -291,7 +292,7 @@ contains
       if (is_done) return
       leaving = dictionary%basic(row)
       call exchange(dictionary, row, m + 1)
-      none = round_off*dictionary%entry(row, m + 2)
+      none = used_up*dictionary%entry(row, m + 2)
       do pivot = 1, 50*m
          entering = merge(leaving + m, leaving - m, leaving <= m)
          entering = findloc(dictionary%outside, entering, dim=1)
@@ -312,7 +313,6 @@ contains
       type(dictionary_t), intent(in) :: dictionary
       integer(ik), intent(in) :: entering
       integer(ik), intent(out) :: row
-      real(rk), parameter :: round_off = 1.0e-12_rk
       real(rk) :: smallest, steepness, value
       integer(ik) :: cover, i, m
 

@@ -4,6 +4,7 @@
 !! force is given: nothing, unless a traction or a point force has been added.
 module fine_boundary
    use base_errors, only: error_t, raise_error
+   use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
@@ -164,36 +165,35 @@ contains
    !! displacements that exclude it has no unique solution.
    !!
    !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
-   subroutine check_support(fine, boundary, bonds, error)
+   pure subroutine check_support(fine, boundary, bonds, error)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
       integer(ik), intent(in) :: bonds(:, :)  !< (2, n) pairs of nodes
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: piece(:)
+      type(groups_t) :: pieces
+      integer(ik) :: piece(fine%n_nodes)
       real(rk), allocatable :: held(:, :, :)
       real(rk) :: centre(2), reach, row(3)
       integer(ik) :: cell, component, k, node
       character(len=48) :: place
 
-      allocate (piece(fine%n_nodes))
-      do node = 1, fine%n_nodes
-         piece(node) = node
-      end do
+      pieces = single_groups(fine%n_nodes)
       do cell = 1, fine%n_cells
          do k = 2, 6
-            call join(fine%cell_nodes(1, cell), fine%cell_nodes(k, cell))
+            call pieces%join(fine%cell_nodes(1, cell), fine%cell_nodes(k, cell))
          end do
       end do
       do k = 1, size(bonds, 2)
-         call join(bonds(1, k), bonds(2, k))
+         call pieces%join(bonds(1, k), bonds(2, k))
       end do
+      piece = pieces%numbers()
 
       ! Sums of the products of the three rigid motions' values, over the given components.
       centre = 0.5_rk*(maxval(fine%xy, dim=2) + minval(fine%xy, dim=2))
       reach = maxval(maxval(fine%xy, dim=2) - minval(fine%xy, dim=2))
-      allocate (held(3, 3, fine%n_nodes), source=0.0_rk)
+      allocate (held(3, 3, pieces%count_groups()), source=0.0_rk)
       do node = 1, fine%n_nodes
-         associate (sums => held(:, :, root(node)), arm => (fine%xy(:, node) - centre)/reach)
+         associate (sums => held(:, :, piece(node)), arm => (fine%xy(:, node) - centre)/reach)
             do component = 1, 2
                if (.not. boundary%prescribed(component, node)) cycle
                row = merge([1.0_rk, 0.0_rk, -arm(2)], [0.0_rk, 1.0_rk, arm(1)], component == 1)
@@ -203,37 +203,14 @@ contains
             end do
          end associate
       end do
-      do node = 1, fine%n_nodes
-         if (root(node) /= node) cycle
-         if (is_definite(held(:, :, node))) cycle
+      do k = 1, size(held, 3)
+         if (is_definite(held(:, :, k))) cycle
+         node = findloc(piece, k, dim=1)
          write (place, "(2(a,es12.5),a)") "(", fine%xy(1, node), ", ", fine%xy(2, node), ")"
          call raise_error(error, "check_support", "the piece of the body at "//trim(place)// &
                           " can move freely; give more displacements on its boundary")
          return
       end do
-
-   contains
-
-      !> The node that stands for a piece.
-      integer(ik) function root(member)
-         integer(ik), intent(in) :: member
-
-         root = member
-         do while (piece(root) /= root)
-            piece(root) = piece(piece(root))
-            root = piece(root)
-         end do
-      end function root
-
-      !> Two nodes are of one piece.
-      subroutine join(a, b)
-         integer(ik), intent(in) :: a, b
-         integer(ik) :: roots(2)
-
-         roots = [root(a), root(b)]
-         piece(maxval(roots)) = minval(roots)
-      end subroutine join
-
    end subroutine check_support
 
    !> Whether a symmetric matrix is positive definite, by Cholesky's elimination.

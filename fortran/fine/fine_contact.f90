@@ -10,12 +10,13 @@
 !! g)_m/L_m. Rows of S and g combined accordingly leave the form above.
 module fine_contact
    use base_kinds, only: ik, rk
+   use base_plane, only: turned_left
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
    use contact_pairs, only: contact_pairs_t
    use contact_states, only: state_open
    use fine_faces, only: constraints_t, face_contact, face_conditions_t
-   use fine_loads, only: face_shares
+   use fine_line, only: line_resultants
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
@@ -102,7 +103,7 @@ contains
       allocate (problem%way(problem%n), problem%state(problem%n))
       do cell = 1, fine%fracture%n_cells
          if (conditions%condition(cell) /= face_contact) cycle
-         problem%share(:, cell) = fine%face_length(cell)*face_shares(fine%face_tip(cell))
+         problem%share(:, cell) = fine%face_length(cell)*line_resultants(fine%face_tip(cell))
          do k = 1, 3
             i = contact_of_pair(constraints%face_pair(k, cell))
             problem%place(k, cell) = i
@@ -153,7 +154,7 @@ contains
             link%ratio = problem%share(link%end, link%cell)/problem%length(link%middle)
             allocate (link%jump_of(2, 2*problem%n), source=0.0_rk)
             tau = fine%face_tangent(:, link%cell)
-            axes = reshape([-tau(2), tau(1), tau(1), tau(2)], [2, 2])
+            axes = reshape([turned_left(tau), tau], [2, 2])
             do side = 1, 2
                node = fine%face_nodes(link%end, side, link%cell)
                do column = 1, constraints%n_columns(node)

@@ -5,6 +5,7 @@
 !! int s C^-1 s dA.
 module fine_error
    use base_kinds, only: ik, rk
+   use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -200,13 +201,8 @@ contains
       !> Edge of an equilateral element of the same area [m].
       pure real(rk) function size_of(cell)
          integer(ik), intent(in) :: cell
-         real(rk) :: edge(2, 2)
 
-         associate (nodes => fine%cell_nodes(:, cell))
-            edge(:, 1) = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
-            edge(:, 2) = fine%xy(:, nodes(3)) - fine%xy(:, nodes(1))
-         end associate
-         size_of = sqrt(2.0_rk*(edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))/sqrt(3.0_rk))
+         size_of = sqrt(4.0_rk*triangle_area(fine%xy(:, fine%cell_nodes(1:3, cell)))/sqrt(3.0_rk))
       end function size_of
 
    end subroutine wanted_sizes

@@ -13,9 +13,10 @@
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: turned_left
    use contact_law, only: contact_law_t
    use fine_boundary, only: fine_boundary_t
-   use fine_loads, only: face_shares
+   use fine_line, only: line_resultants
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
@@ -181,7 +182,7 @@ contains
          integer(ik), intent(in) :: slipping
          real(rk) :: normal(2)
 
-         normal = [-constraints%tangent(2, slipping), constraints%tangent(1, slipping)]
+         normal = turned_left(constraints%tangent(:, slipping))
       end function normal_of
 
    end subroutine build_constraints
@@ -277,7 +278,7 @@ contains
             if (constraints%face_flipped(k, cell)) tau = -tau
             if (conditions%condition(cell) == face_contact) then
                if (is_bilateral(pair) .and. .not. conditions%law(cell)%contact%bilateral) cycle
-               share = face_shares(fine%face_tip(cell))
+               share = line_resultants(fine%face_tip(cell))
                tau = share(k)*fine%face_length(cell)*tau
             end if
             constraints%tangent(:, pair) = constraints%tangent(:, pair) + tau

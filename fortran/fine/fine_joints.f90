@@ -8,6 +8,7 @@
 !! its cell (fine_contact).
 module fine_joints
    use base_kinds, only: ik, rk
+   use base_plane, only: turned_left
    use fine_boundary, only: fine_boundary_t
    use fine_faces, only: columns_max, constraints_t, face_contact, face_conditions_t
    use fine_mesh, only: fine_mesh_t
@@ -179,7 +180,7 @@ contains
       constraints%n_columns(child) = n + 2
       constraints%dof(1:n + 2, child) = [constraints%dof(1:n, parent), jump_dofs]
       constraints%basis(:, 1:n, child) = constraints%basis(:, 1:n, parent)
-      constraints%basis(:, n + 1, child) = direction*[-tau(2), tau(1)]
+      constraints%basis(:, n + 1, child) = direction*turned_left(tau)
       constraints%basis(:, n + 2, child) = direction*tau
 
       constraints%n_pairs = constraints%n_pairs + 1

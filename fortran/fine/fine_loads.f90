@@ -2,13 +2,14 @@
 module fine_loads
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use fine_line, only: line_resultants
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_3
    implicit none(type, external)
    private
 
-   public :: add_face_forces, add_volume_forces, check_loads, face_shares
-   public :: fine_loads_t, no_loads, volume_forces
+   public :: add_face_forces, add_volume_forces, check_loads, fine_loads_t, no_loads
+   public :: volume_forces
 
    !> Values that may change from one solution to the next.
    type :: fine_loads_t
@@ -85,7 +86,7 @@ contains
          tau = fine%face_tangent(:, cell)
          normal_part = traction(2, cell) - fluid_pressure(cell)
          resultant = fine%face_length(cell)*(traction(1, cell)*tau + normal_part*[-tau(2), tau(1)])
-         share = face_shares(fine%face_tip(cell))
+         share = line_resultants(fine%face_tip(cell))
          do k = 1, 3
             associate (plus => fine%face_nodes(k, 1, cell), minus => fine%face_nodes(k, 2, cell))
                force(:, plus) = force(:, plus) + share(k)*resultant
@@ -94,17 +95,6 @@ contains
          end do
       end do
    end subroutine add_face_forces
-
-   !> Shares of start, end and middle node in the resultant of a uniform load on a face. With the
-   !! middle node at the quarter point (x = s**2 * length from the tip) the tip has none.
-   pure function face_shares(tip_end) result(share)
-      integer(ik), intent(in) :: tip_end  !< tip at the start (1) or end (2), else 0
-      real(rk) :: share(3)
-
-      share = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk
-      if (tip_end == 1) share(1:2) = [0.0_rk, 1.0_rk]/3.0_rk
-      if (tip_end == 2) share(1:2) = [1.0_rk, 0.0_rk]/3.0_rk
-   end function face_shares
 
    !> Forces of pore pressure, initial stress and body force on all nodes.
    pure subroutine add_volume_forces(fine, biot, loads, force)

@@ -2,7 +2,10 @@
 module fine_mesh
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: cross
+   use base_tolerances, only: same_place
    use fine_element, only: evaluate_element
+   use fine_line, only: node_within
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
@@ -53,7 +56,7 @@ contains
       logical, allocatable :: has_quarter_points(:), is_tip(:)
       integer(ik), allocatable :: outer(:)
       integer(ik) :: face, tip, tip_end, cell, k
-      real(rk) :: ends(2, 2), near_start
+      real(rk) :: ends(2, 2), within
 
       if (.not. sum(abs(mesh%xy)) <= huge(1.0_rk)) then
          call raise_error(error, "build_fine_mesh", "a node's coordinate is not a finite number")
@@ -77,17 +80,18 @@ contains
       fine%xy(:, :mesh%n_nodes) = mesh%xy(:, :mesh%n_nodes)
       do face = 1, mesh%n_faces
          ends = mesh%xy(:, mesh%face_nodes(:, face))
-         near_start = 0.5_rk
+         tip_end = 0
          if (all(has_quarter_points(mesh%face_nodes(:, face)))) then
             call raise_error(error, "build_fine_mesh", &
                              "one edge joins two tips: the mesh around them is too coarse")
             return
          else if (has_quarter_points(mesh%face_nodes(1, face))) then
-            near_start = 0.75_rk
+            tip_end = 1
          else if (has_quarter_points(mesh%face_nodes(2, face))) then
-            near_start = 0.25_rk
+            tip_end = 2
          end if
-         fine%xy(:, mesh%n_nodes + face) = near_start*ends(:, 1) + (1.0_rk - near_start)*ends(:, 2)
+         within = node_within(tip_end)
+         fine%xy(:, mesh%n_nodes + face) = (1.0_rk - within)*ends(:, 1) + within*ends(:, 2)
       end do
 
       allocate (fine%cell_nodes(6, fine%n_cells))
@@ -129,11 +133,9 @@ contains
       fine%face_tip = merge(0_ik, fine%face_at_tip, fine%tip_element == tip_plain)
       do face = 1, fine%fracture%n_cells
          fine%face_s(1:2, face) = mesh%fracture%cell_s(:, face)
-         near_start = 0.5_rk
-         if (fine%face_tip(face) == 1) near_start = 0.75_rk
-         if (fine%face_tip(face) == 2) near_start = 0.25_rk
-         fine%face_s(3, face) = near_start*fine%face_s(1, face) &
-                                + (1.0_rk - near_start)*fine%face_s(2, face)
+         within = node_within(fine%face_tip(face))
+         fine%face_s(3, face) = (1.0_rk - within)*fine%face_s(1, face) &
+                                + within*fine%face_s(2, face)
       end do
    end subroutine build_fine_mesh
 
@@ -166,7 +168,7 @@ contains
          edge(:, 1) = fine%xy(:, fine%cell_nodes(2, cell)) - fine%xy(:, fine%cell_nodes(1, cell))
          edge(:, 2) = fine%xy(:, fine%cell_nodes(3, cell)) - fine%xy(:, fine%cell_nodes(2, cell))
          edge(:, 3) = -edge(:, 1) - edge(:, 2)
-         double_area = edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2)
+         double_area = cross(edge(:, 1), edge(:, 2))
          if (double_area > flattest*maxval(sum(edge**2, dim=1))) cycle
          write (place, "(a,i0,a,2(es12.5,a))") "element ", cell, " at (", &
             fine%xy(1, fine%cell_nodes(1, cell)), &
@@ -181,7 +183,6 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(fine_mesh_t), intent(inout) :: fine
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: match = 1.0e-9_rk  ! of the cell's length
       real(rk) :: chord(2), along(2), middle, places(2, 2)
       integer(ik) :: cell, side, face, ends(2)
       character(len=16) :: number
@@ -212,7 +213,7 @@ contains
             fine%face_nodes(:, side, cell) = [ends, mesh%n_nodes + face]
             fine%face_cells(side, cell) = mesh%face_cells(1, face)
             places = fine%fracture%point_xy(:, fine%fracture%cell_points(:, cell))
-            if (any(abs(mesh%xy(:, ends) - places) > match*fine%face_length(cell)) &
+            if (any(abs(mesh%xy(:, ends) - places) > same_place*fine%face_length(cell)) &
                 .or. mesh%face_cells(2, face) /= 0) then
                call raise_error(error, "build_fine_mesh", &
                                 "fracture cell "//trim(number)//" does not match its mesh faces")

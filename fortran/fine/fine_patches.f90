@@ -1,6 +1,7 @@
 !> Stress samples in the elements, and polynomials fitted to those around a node.
 module fine_patches
    use base_kinds, only: ik, rk
+   use base_plane, only: triangle_area
    use algebra_lapack, only: dpotrf, dpotrs
    use fine_model, only: fine_model_t
    use fine_quadrature, only: triangle_rule_3
@@ -33,7 +34,7 @@ contains
       type(fine_model_t), intent(in) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(samples_t), intent(out) :: samples
-      real(rk) :: points(3, n_samples), weights(n_samples), stress(2, 2), edge(2, 2)
+      real(rk) :: points(3, n_samples), weights(n_samples), stress(2, 2)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       integer(ik) :: cell, k
 
@@ -43,9 +44,7 @@ contains
          allocate (samples%area(n), samples%centre(2, n))
          do cell = 1, n
             associate (nodes => fine%cell_nodes(:, cell))
-               edge(:, 1) = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
-               edge(:, 2) = fine%xy(:, nodes(3)) - fine%xy(:, nodes(1))
-               samples%area(cell) = 0.5_rk*(edge(1, 1)*edge(2, 2) - edge(2, 1)*edge(1, 2))
+               samples%area(cell) = triangle_area(fine%xy(:, nodes(1:3)))
                samples%centre(:, cell) = sum(fine%xy(:, nodes(1:3)), dim=2)/3.0_rk
                do k = 1, n_samples
                   call fine%evaluate(cell, points(:, k), values, gradients, area_coordinates, &

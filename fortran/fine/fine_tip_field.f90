@@ -9,7 +9,7 @@ module fine_tip_field
    implicit none(type, external)
    private
 
-   public :: auxiliary_field, auxiliary_field_t, tip_field_t, tip_stress
+   public :: auxiliary_field, auxiliary_field_t, root_of_place, tip_field_t, tip_stress
 
    real(rk), parameter :: pi = acos(-1.0_rk)
 
@@ -37,7 +37,7 @@ contains
       type(tip_field_t), intent(in) :: field
       real(rk), intent(in) :: xy(2), beside(2)  !< [m]
       real(rk) :: stress(3)
-      real(rk) :: axes(2, 2), place(2), near(2), angle, reference, tensor(2, 2)
+      real(rk) :: axes(2, 2), place(2), near(2), tensor(2, 2)
       type(auxiliary_field_t) :: unit
       complex(rk) :: root_z
       integer(ik) :: mode
@@ -46,10 +46,7 @@ contains
       axes(2, :) = [-field%ahead(2), field%ahead(1)]
       place = matmul(axes, xy - field%origin)
       near = matmul(axes, beside - field%origin)
-      reference = atan2(near(2), near(1))
-      angle = atan2(place(2), place(1))
-      angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
-      root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
+      root_z = root_of_place(place, atan2(near(2), near(1)))
       tensor = 0.0_rk
       do mode = 1, 2
          unit = auxiliary_field(mode, root_z, field%kolosov, field%shear_modulus)
@@ -58,6 +55,17 @@ contains
       tensor = matmul(transpose(axes), matmul(tensor, axes))
       stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)]
    end function tip_stress
+
+   !> The root of z = x + i y on the branch where the polar angle is nearest to a given one.
+   pure complex(rk) function root_of_place(place, reference) result(root_z)
+      real(rk), intent(in) :: place(2)  !< x, y [m]
+      real(rk), intent(in) :: reference  !< [rad]
+      real(rk) :: angle
+
+      angle = atan2(place(2), place(1))
+      angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
+      root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
+   end function root_of_place
 
    !> The field of mode 1 or 2 at z = root_z**2. The branch of the root decides on which side of the
    !! crack a point lies: the upper face has root_z = i*sqrt(r), the lower one -i*sqrt(r).

@@ -6,9 +6,11 @@
 !! though the fracture is held closed. A pressure on the faces acts on all of them.
 module mechanics_faces
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use contact_law, only: contact_law_t
    use fine_contact, only: contact_t, new_contact
    use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
+   use fine_line, only: line_parameter, line_shapes
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: network_t
    use scene_types, only: fracture_t, scene_t
@@ -17,8 +19,6 @@ module mechanics_faces
    private
 
    public :: face_conditions, face_pressure, given_slip, transfer_contact
-
-   real(rk), parameter :: round_off = 1.0e-9_rk  !< of a fracture's length
 
 contains
 
@@ -67,7 +67,7 @@ contains
       real(rk), intent(in) :: s(2)  !< arc length of the cell's ends [m]
 
       associate (length => fracture_length(start, f))
-         was_there = minval(s) > -round_off*length .and. maxval(s) < (1.0_rk + round_off)*length
+         was_there = minval(s) > -same_place*length .and. maxval(s) < (1.0_rk + same_place)*length
       end associate
    end function was_there
 
@@ -89,7 +89,7 @@ contains
          if (.not. was_there(start, f, fine%fracture%cell_s(:, cell))) cycle
          is_free = [.not. network%s_start(f) < 0.0_rk, &
                     .not. fracture_length(network, f) + network%s_start(f) > &
-                    (1.0_rk + round_off)*length]
+                    (1.0_rk + same_place)*length]
          do k = 1, 3
             jump(1, k, cell) = tapered_slip(scene%fractures(f), length, is_free, &
                                             fine%face_s(k, cell))
@@ -184,13 +184,10 @@ contains
          do i = 1, fine_old%fracture%n_cells
             if (fine_old%fracture%cell_fracture(i) /= f) cycle
             x = (s - fine_old%face_s(1, i))/(fine_old%face_s(2, i) - fine_old%face_s(1, i))
-            if (x < -round_off .or. x > 1.0_rk + round_off) cycle
+            if (x < -same_place .or. x > 1.0_rk + same_place) cycle
             source = i
-            x = min(1.0_rk, max(0.0_rk, x))
-            if (fine_old%face_tip(i) == 1) x = sqrt(x)  ! nodes at the quarter point
-            if (fine_old%face_tip(i) == 2) x = 1.0_rk - sqrt(1.0_rk - x)
-            weight = [(1.0_rk - x)*(1.0_rk - 2.0_rk*x), x*(2.0_rk*x - 1.0_rk), &
-                      4.0_rk*x*(1.0_rk - x)]
+            x = line_parameter(min(1.0_rk, max(0.0_rk, x)), fine_old%face_tip(i))
+            weight = line_shapes(x)
             return
          end do
       end subroutine find

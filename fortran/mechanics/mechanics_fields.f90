@@ -1,8 +1,10 @@
 !> Values of the finite-element state as files show them: of elements, fracture cells and points.
 module mechanics_fields
    use base_kinds, only: ik, rk
+   use base_plane, only: barycentric, turned_left
    use fine_element, only: shape_values
    use fine_faces, only: face_contact
+   use fine_line, only: line_parameter, line_shapes
    use mechanics_body, only: body_t
    use tips_faces, only: face_traction
    implicit none(type, external)
@@ -46,27 +48,14 @@ contains
 
       do cell = 1, body%mesh%fracture%n_cells
          associate (nodes => body%model%mesh%face_nodes(:, :, cell))
-            share = middle_shares(body%model%mesh%face_tip(cell))
+            share = line_shapes(line_parameter(0.5_rk, body%model%mesh%face_tip(cell)))
             vector = matmul(body%displacement(:, nodes(:, 2)), share) &
                      - matmul(body%displacement(:, nodes(:, 1)), share)
          end associate
          tau = body%model%mesh%face_tangent(:, cell)
-         jump(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]
+         jump(:, cell) = [dot_product(vector, turned_left(tau)), dot_product(vector, tau)]
       end do
    end function fracture_jump
-
-   !> Shares of start, end and node within in the value in the middle of a face; at a tip, that
-   !! node is at the quarter point.
-   pure function middle_shares(tip_end) result(share)
-      integer(ik), intent(in) :: tip_end  !< tip at the start (1) or end (2), else 0
-      real(rk) :: share(3)
-      real(rk) :: x
-
-      x = 0.5_rk
-      if (tip_end == 1) x = sqrt(0.5_rk)
-      if (tip_end == 2) x = 1.0_rk - sqrt(0.5_rk)
-      share = [(1.0_rk - x)*(1.0_rk - 2.0_rk*x), x*(2.0_rk*x - 1.0_rk), 4.0_rk*x*(1.0_rk - x)]
-   end function middle_shares
 
    !> Traction at the node within each fracture cell: normal, and along tau [Pa].
    pure function fracture_traction(body) result(traction)
@@ -82,7 +71,7 @@ contains
          end if
          vector = face_traction(body%model, body%loads, body%displacement, cell)
          tau = body%model%mesh%face_tangent(:, cell)
-         traction(:, cell) = [dot_product(vector, [-tau(2), tau(1)]), dot_product(vector, tau)]
+         traction(:, cell) = [dot_product(vector, turned_left(tau)), dot_product(vector, tau)]
       end do
    end function fracture_traction
 
@@ -94,16 +83,9 @@ contains
       real(rk), intent(out) :: displacement(2)  !< [m]
       real(rk), intent(out) :: stress(3)  !< xx, yy, xy [Pa]
       real(rk) :: area_coordinates(3), lambda(3)
-      integer(ik) :: k
 
       associate (fine => body%model%mesh)
-         do k = 1, 3
-            associate (a => fine%xy(:, fine%cell_nodes(mod(k, 3) + 1, cell)) - xy, &
-                       b => fine%xy(:, fine%cell_nodes(mod(k + 1, 3) + 1, cell)) - xy)
-               area_coordinates(k) = a(1)*b(2) - a(2)*b(1)
-            end associate
-         end do
-         area_coordinates = area_coordinates/sum(area_coordinates)
+         area_coordinates = barycentric(fine%xy(:, fine%cell_nodes(1:3, cell)), xy)
          lambda = reference_place(area_coordinates, fine%tip_corner(cell))
          displacement = matmul(body%displacement(:, fine%cell_nodes(:, cell)), shape_values(lambda))
       end associate

@@ -1,7 +1,7 @@
 !> The outer boundary of the body as a closed polygon.
 module mechanics_outline
    use base_kinds, only: ik, rk
-   use scene_polygon, only: signed_area
+   use base_plane, only: polygon_area
    use scene_types, only: boundary_part_t, boundary_side_t, scene_t
    implicit none(type, external)
    private
@@ -38,7 +38,7 @@ contains
          case ("polygon")
             outline%corners = transpose(reshape([d%x, d%y], [size(d%x), 2]))
             outline%edge_side = polygon_sides(scene)
-            if (signed_area(d%x, d%y) < 0.0_rk) then  ! edge k ends where k + 1 began
+            if (polygon_area(outline%corners) < 0.0_rk) then  ! edge k ends where k + 1 began
                outline%corners = outline%corners(:, size(d%x):1:-1)
                outline%edge_side = cshift(outline%edge_side(size(d%x):1:-1), 1)
             end if

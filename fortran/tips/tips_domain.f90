@@ -2,6 +2,8 @@
 !! a kink, another fracture, the far end of the straight piece, the outer boundary.
 module tips_domain
    use base_kinds, only: ik, rk
+   use base_plane, only: point_distance
+   use base_tolerances, only: same_direction, same_place
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_7
@@ -9,11 +11,10 @@ module tips_domain
    implicit none(type, external)
    private
 
-   public :: domain_weight, element_rule, largest_radius, on_line, reference_angle, rosette_size
+   public :: domain_weight, element_rule, largest_radius, reference_angle, rosette_size
    public :: rule_size, tip_stress
 
    integer(ik), parameter :: rule_t = 4, rule_w = 5, rule_size = rule_t*rule_w  !< points at most
-   real(rk), parameter :: on_line = 1.0e-9_rk  !< distance from the line over that from the tip
 
 contains
 
@@ -30,7 +31,7 @@ contains
       do node = 1, fine%n_nodes
          distance = norm2(fine%xy(:, node) - frame%origin)/radius
          q(node) = max(0.0_rk, min(1.0_rk, (1.0_rk - distance)/(1.0_rk - plateau)))
-         if (distance > 1.0_rk - on_line) q(node) = 0.0_rk
+         if (distance > 1.0_rk - same_place) q(node) = 0.0_rk
       end do
    end function domain_weight
 
@@ -78,16 +79,16 @@ contains
       do cell = 1, fine%fracture%n_cells
          place = in_tip_axes(fine%face_nodes(1:2, 1, cell))
          if (fine%fracture%cell_fracture(cell) == frame%fracture &
-             .and. all(abs(place(2, :)) <= on_line*maxval(abs(place)))) then
+             .and. all(abs(place(2, :)) <= same_direction*maxval(abs(place)))) then
             straight_length = max(straight_length, maxval(abs(place(1, :))))
          else
-            largest_radius = min(largest_radius, distance_to_segment(place))
+            largest_radius = min(largest_radius, point_distance([0.0_rk, 0.0_rk], place))
          end if
       end do
       largest_radius = min(largest_radius, straight_length)
       do face = 1, size(fine%boundary_faces, 2)
          place = in_tip_axes(fine%boundary_faces(:, face))
-         largest_radius = min(largest_radius, distance_to_segment(place))
+         largest_radius = min(largest_radius, point_distance([0.0_rk, 0.0_rk], place))
       end do
 
    contains
@@ -104,16 +105,6 @@ contains
       end function in_tip_axes
 
    end function largest_radius
-
-   !> Distance of the origin from a segment.
-   pure real(rk) function distance_to_segment(ends)
-      real(rk), intent(in) :: ends(2, 2)
-      real(rk) :: along(2), share
-
-      along = ends(:, 2) - ends(:, 1)
-      share = min(1.0_rk, max(0.0_rk, -dot_product(ends(:, 1), along)/dot_product(along, along)))
-      distance_to_segment = norm2(ends(:, 1) + share*along)
-   end function distance_to_segment
 
    !> Largest distance of the corners of the elements around a tip from it [m].
    pure real(rk) function rosette_size(fine, frame)
@@ -147,7 +138,7 @@ contains
       do k = 1, 6
          if (.not. q(fine%cell_nodes(k, cell)) > 0.0_rk) cycle
          place = matmul(frame%axes, fine%xy(:, fine%cell_nodes(k, cell)) - frame%origin)
-         if (abs(place(2)) > on_line*norm2(place)) then
+         if (abs(place(2)) > same_direction*norm2(place)) then
             reference_angle = atan2(place(2), place(1))
             return
          end if

@@ -10,6 +10,8 @@
 !! For straight extension J = G = (K_I**2 + K_II**2)/E'.
 module tips_energy
    use base_kinds, only: ik, rk
+   use base_plane, only: triangle_area
+   use fine_line, only: line_shapes, line_slopes
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -107,8 +109,7 @@ contains
          last = mod(next, 3) + 1
          by_corner(k) = place(2, next) - place(2, last)
       end do
-      by_corner = by_corner/((place(1, 2) - place(1, 1))*(place(2, 3) - place(2, 1)) &
-                             - (place(1, 3) - place(1, 1))*(place(2, 2) - place(2, 1)))
+      by_corner = by_corner/(2.0_rk*triangle_area(place))
       do k = 1, 3
          unit = 0.0_rk
          unit(k) = 1.0_rk
@@ -142,11 +143,11 @@ contains
          jump = matmul(frame%axes, displacement(:, minus) - displacement(:, plus))
          along = sign(1.0_rk, dot_product(frame%axes(1, :), model%mesh%face_tangent(:, cell)))
          do point = 1, n_points
-            associate (s => x(point))
-               q_here = (1.0_rk - s)*(1.0_rk - 2.0_rk*s)*q(plus(1)) &
-                        + s*(2.0_rk*s - 1.0_rk)*q(plus(2)) + 4.0_rk*s*(1.0_rk - s)*q(plus(3))
-               slope = (4.0_rk*s - 3.0_rk)*jump(:, 1) + (4.0_rk*s - 1.0_rk)*jump(:, 2) &
-                       + (4.0_rk - 8.0_rk*s)*jump(:, 3)
+            associate (share => line_shapes(x(point)))
+               q_here = share(1)*q(plus(1)) + share(2)*q(plus(2)) + share(3)*q(plus(3))
+            end associate
+            associate (by_x => line_slopes(x(point)))
+               slope = by_x(1)*jump(:, 1) + by_x(2)*jump(:, 2) + by_x(3)*jump(:, 3)
             end associate
             ! The slope is along the cell, which may run against the first axis.
             face_share = face_share + weights(point)*q_here*dot_product(traction, slope)*along

@@ -8,15 +8,13 @@
 module tips_extraction
    use base_kinds, only: ik, rk
    use fine_model, only: fine_model_t
-   use fine_tip_field, only: auxiliary_field, auxiliary_field_t
+   use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place
    use tips_domain, only: domain_weight, element_rule, reference_angle, rule_size
    use tips_types, only: tip_frame_t
    implicit none(type, external)
    private
 
    public :: extraction_forces
-
-   real(rk), parameter :: pi = acos(-1.0_rk)
 
 contains
 
@@ -49,7 +47,7 @@ contains
       real(rk), intent(inout) :: force(:, :, :)
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
-      real(rk) :: place(2), q_slope(2), coefficients(2, 2), outer(2, 2), reference, angle
+      real(rk) :: place(2), q_slope(2), coefficients(2, 2), outer(2, 2), reference
       complex(rk) :: root_z
       type(auxiliary_field_t) :: field
       integer(ik) :: point, n_points, mode, nodes(6), i
@@ -63,9 +61,7 @@ contains
          place = matmul(frame%axes, matmul(model%mesh%xy(:, nodes), values) - frame%origin)
          gradients = matmul(frame%axes, gradients)
          q_slope = matmul(gradients, q(nodes))
-         angle = atan2(place(2), place(1))
-         angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
-         root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
+         root_z = root_of_place(place, reference)
          do mode = 1, 2
             field = auxiliary_field(mode, root_z, model%elasticity%kolosov(), &
                                     model%elasticity%shear_modulus())

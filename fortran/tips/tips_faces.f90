@@ -1,8 +1,10 @@
 !> The traction that the fracture faces carry, as the interaction integral needs it.
 module tips_faces
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_direction
    use fine_faces, only: face_contact, face_jump, face_loaded
-   use fine_loads, only: face_shares, fine_loads_t, volume_forces
+   use fine_line, only: line_resultants
+   use fine_loads, only: fine_loads_t, volume_forces
    use fine_model, only: fine_model_t
    use tips_types, only: tip_frame_t
    implicit none(type, external)
@@ -40,7 +42,7 @@ contains
          force = model%element_forces(displacement, element) &
                  - volume_forces(model%mesh, element, model%elasticity%biot, loads)
       end associate
-      share = face_shares(model%mesh%face_tip(cell))
+      share = line_resultants(model%mesh%face_tip(cell))
       traction = force(:, k)/(share(3)*model%mesh%face_length(cell))
    end function face_traction
 
@@ -55,7 +57,6 @@ contains
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: cell  !< fracture cell on the straight piece at the tip
       integer(ik), parameter :: n_disturbed = 2
-      real(rk), parameter :: straight = 1.0e-9_rk
       integer(ik) :: inward, candidate
 
       traction_source = cell
@@ -68,7 +69,7 @@ contains
          if (model%mesh%fracture%cell_fracture(candidate) /= frame%fracture) exit
          if (.not. has_given_slip(candidate)) exit
          if (norm2(model%mesh%face_tangent(:, candidate) &
-                   - model%mesh%face_tangent(:, cell)) > straight) exit
+                   - model%mesh%face_tangent(:, cell)) > same_direction) exit
          traction_source = candidate
       end do
 

@@ -2,6 +2,7 @@
 module tips_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_tolerances, only: round_off, same_value
    use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
@@ -96,8 +97,6 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: round_off = 1.0e-9_rk  ! of the jumps at the tip
-      real(rk), parameter :: none = 1.0e-12_rk  ! of the displacements
       real(rk) :: jump(2, 3), opening(3), slip(3), largest
       integer(ik) :: k
 
@@ -111,7 +110,7 @@ contains
             slip(k) = abs(jump(1, k))
          end do
          largest = maxval(abs(jump))
-         if (largest <= none*maxval(abs(displacement))) then
+         if (largest <= round_off*maxval(abs(displacement))) then
             intensity%k1 = 0.0_rk
             intensity%k2 = 0.0_rk
             intensity%k1_inner = 0.0_rk
@@ -127,7 +126,7 @@ contains
             call take_given_slip(jump(1, 3), jump(1, 3 - model%mesh%face_at_tip(frame%face)), &
                                  model%mesh%face_tip(frame%face) > 0, intensity)
          end if
-         if (maxval(abs(opening - law%dilation*slip)) <= round_off*largest) then
+         if (maxval(abs(opening - law%dilation*slip)) <= same_value*largest) then
             intensity%k1 = law%dilation*abs(intensity%k2)
             intensity%k1_corrected = intensity%k1
             intensity%k1_inner = law%dilation*abs(intensity%k2_inner)

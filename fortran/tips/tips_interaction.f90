@@ -16,11 +16,12 @@
 !! off s, s0 and t, which would otherwise lose digits where it is large.
 module tips_interaction
    use base_kinds, only: ik, rk
+   use fine_line, only: line_shapes
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
-   use fine_tip_field, only: auxiliary_field, auxiliary_field_t
+   use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place
    use tips_domain, only: domain_weight, element_rule, reference_angle, rule_size, tip_stress
    use tips_faces, only: face_traction, traction_source
    use tips_types, only: tip_frame_t
@@ -28,8 +29,6 @@ module tips_interaction
    private
 
    public :: initial_stress, interaction_integral
-
-   real(rk), parameter :: pi = acos(-1.0_rk)
 
 contains
 
@@ -95,7 +94,7 @@ contains
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: place(2), gradient(2, 2), stress(2, 2), initial(2, 2), q_slope(2), p(2), body(2)
-      real(rk) :: q_here, weight, angle, reference, kolosov, shear_modulus
+      real(rk) :: q_here, weight, reference, kolosov, shear_modulus
       complex(rk) :: root_z
       type(auxiliary_field_t) :: field
       integer(ik) :: point, n_points, mode, nodes(6)
@@ -120,9 +119,7 @@ contains
                                   area_coordinates) - reference_stress
          stress = model%elasticity%total_stress(gradient, 0.0_rk) + initial
          q_here = dot_product(values, q(nodes))
-         angle = atan2(place(2), place(1))
-         angle = angle + 2.0_rk*pi*nint((reference - angle)/(2.0_rk*pi))
-         root_z = sqrt(norm2(place))*exp(cmplx(0.0_rk, 0.5_rk*angle, rk))
+         root_z = root_of_place(place, reference)
          do mode = 1, 2
             field = auxiliary_field(mode, root_z, kolosov, shear_modulus)
             p = matmul(stress, field%slope) + matmul(field%stress, gradient(:, 1))
@@ -171,8 +168,9 @@ contains
                if (model%mesh%face_tip(cell) == 0) x = x**2
                if (tip_end == 2) x = 1.0_rk - x
             end if
-            q_here = (1.0_rk - x)*(1.0_rk - 2.0_rk*x)*q(nodes(1)) &
-                     + x*(2.0_rk*x - 1.0_rk)*q(nodes(2)) + 4.0_rk*x*(1.0_rk - x)*q(nodes(3))
+            associate (share => line_shapes(x))
+               q_here = share(1)*q(nodes(1)) + share(2)*q(nodes(2)) + share(3)*q(nodes(3))
+            end associate
             do mode = 1, 2
                above = auxiliary_field(mode, cmplx(0.0_rk, sqrt(r), rk), kolosov, shear_modulus)
                below = auxiliary_field(mode, cmplx(0.0_rk, -sqrt(r), rk), kolosov, shear_modulus)
