@@ -8,24 +8,31 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import Any, TypeAlias
 
 from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import evaluate, names_in
+from wingcrack_verify.expressions import FUNCTIONS, evaluate, names_in
 from wingcrack_verify.fields import Fields
 
 Table: TypeAlias = dict[str, Any]
 
-_RUN = frozenset(
-    "name method size default scene set unset program args constants time_limit_s".split()
-)
-_CHECK = frozenset(
-    "quantity unit runs judged result reference metric normalise tolerance scale order economy "
-    "work_precision known_gap x_label".split()
-)
-_FIGURE = frozenset("title caption x_label y_label x_log y_log equal_axes lines network".split())
-_LINE = frozenset("label run points file column columns where at take interpolate x key".split())
+# Names of a point that are keys of the table are given to it; all others are for its templates.
+_RUN = {
+    *("name", "method", "size", "default", "constants", "time_limit_s"),
+    *("scene", "set", "unset", "program", "args"),
+}
+_CHECK = {
+    *("quantity", "unit", "runs", "judged", "result", "reference", "metric", "normalise"),
+    *("tolerance", "scale", "order", "economy", "work_precision", "known_gap", "x_label"),
+}
+_FIGURE = {
+    *("title", "caption", "x_label", "y_label", "x_log", "y_log", "equal_axes", "lines", "network"),
+}
+_LINE = {
+    *("label", "run", "points", "file", "column", "columns", "where", "at", "take"),
+    *("interpolate", "x", "key"),
+}
 _KEYS = {"run": _RUN, "sweep": _RUN, "check": _CHECK, "figure": _FIGURE}
 
 # A name, or arithmetic of names, in braces; perhaps with a format, as in Python.
@@ -63,7 +70,7 @@ def read_tables(fields: Fields, kind: str, defaults: Defaults) -> list[tuple[str
     Raises
     ------
     CaseError
-        As `expand`; if a run has an ``over``, or a sweep has none.
+        As `_expand`; and if a run has an ``over``, or a sweep has none.
     """
     found = []
     for index, item in enumerate(fields.tables(kind), start=1):
@@ -72,14 +79,13 @@ def read_tables(fields: Fields, kind: str, defaults: Defaults) -> list[tuple[str
             raise CaseError(f"{place} must be a table")
         if kind in ("run", "sweep") and (kind == "sweep") != ("over" in item):
             raise CaseError(f"{place}: a [[sweep]] needs 'over', and a [[run]] has none")
-        found += [
-            (place, table) for table in _expand(defaults.complete(item, kind), place, _KEYS[kind])
-        ]
+        whole = defaults.complete(item, kind)
+        found += [(place, table) for table in _expand(whole, place, _KEYS[kind])]
     return found
 
 
 def _expand(
-    data: Mapping[str, Any], place: str, keys: frozenset[str], outer: _Filler | None = None
+    data: Mapping[str, Any], place: str, keys: Set[str], outer: _Filler | None = None
 ) -> list[Table]:
     """Tables that a table stands for: one per point of its ``over``, or itself without it.
 
@@ -214,7 +220,14 @@ class _Filler:
             self.used.add(name)
             return self.point[name]
         try:
-            self.used |= names_in(expression) & self.point.keys()
+            for used in names_in(expression) - FUNCTIONS.keys() - {"pi"}:
+                self.used.add(used)
+                if used not in self.numbers:
+                    there = ", ".join(self.point) or "none"
+                    kind = (
+                        "no number" if used in self.point else f"no name here (there are: {there})"
+                    )
+                    raise CaseError(f"'{used}' in '{{{expression}}}' is {kind}")
             value = float(evaluate(expression, self.numbers))
         except CaseError as reason:
             raise CaseError(f"{self.place}: {reason}") from None
