@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
 from wingcrack_verify.metrics import METRICS
 from wingcrack_verify.selection import Selection, read_selection
+from wingcrack_verify.sweep import Defaults, read_tables
 
 TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
 
@@ -135,29 +137,36 @@ def read_case(folder: Path) -> Case:
     CaseError
         If anything in it is missing, unknown or contradicts itself.
     """
-    fields = Fields(read_toml(folder / "check.toml"), "check.toml")
+    data = read_toml(folder / "check.toml")
+    fields = Fields(data, "check.toml")
     title, source = fields.text("title"), fields.text("source")
     quick, gap = fields.flag("quick"), fields.text("known_gap", None)
     constants = fields.constants("constants")
+    defaults = Defaults(fields.mapping("defaults"))
+    kinds = [kind for kind in data if kind in ("run", "sweep")]  # in the order of the file
     runs = tuple(
-        read_run(item, f"run {index}", folder)
-        for index, item in enumerate(fields.tables("run"), start=1)
+        read_run(item, place, folder)
+        for kind in kinds
+        for place, item in read_tables(fields, kind, defaults)
     )
     if not runs:
-        raise CaseError("check.toml: a case needs at least one [[run]]")
+        raise CaseError("check.toml: a case needs at least one [[run]] or [[sweep]]")
     refuse_doubles([run.name for run in runs], "run")
+    for run in runs:
+        if "*" in run.name or run.name.startswith("!"):
+            raise CaseError(f"run '{run.name}': '*', and '!' in front, are for patterns of names")
     checks = tuple(
-        _read_check(item, f"check {index}", runs, gap)
-        for index, item in enumerate(fields.tables("check"), start=1)
+        _read_check(item, place, runs, gap)
+        for place, item in read_tables(fields, "check", defaults)
     )
     if not checks:
         raise CaseError("check.toml: a case needs at least one [[check]]")
     refuse_doubles([check.quantity for check in checks], "quantity")
     figures = tuple(
-        _read_figure(item, f"figure {index}", runs)
-        for index, item in enumerate(fields.tables("figure"), start=1)
+        _read_figure(item, place, runs) for place, item in read_tables(fields, "figure", defaults)
     )
     fields.done()
+    defaults.done()
     return Case(folder.name, folder, title, source, quick, constants, runs, checks, figures)
 
 
@@ -240,13 +249,26 @@ def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | No
 
 
 def _run_names(fields: Fields, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
-    names: tuple[str, ...] = fields.texts(key, default)
-    if not names:
+    """Names out of `default`, in its order: given as such, by patterns, or without some (!)."""
+    given: tuple[str, ...] = fields.texts(key, default)
+    if given == default:
+        return default
+    chosen: set[str] = set()
+    for item in given:
+        found = {name for name in default if _matches(item.removeprefix("!"), name)}
+        if not found:
+            raise CaseError(f"{fields.place}: '{key}' names '{item}', which is no such run")
+        if item.startswith("!") and not found & chosen:
+            raise CaseError(f"{fields.place}: '{key}' takes away '{item}', which is not there")
+        chosen = chosen - found if item.startswith("!") else chosen | found
+    if not chosen:
         raise CaseError(f"{fields.place}: '{key}' is empty")
-    for name in names:
-        if name not in default:
-            raise CaseError(f"{fields.place}: '{key}' names '{name}', which is no such run")
-    return names
+    return tuple(name for name in default if name in chosen)
+
+
+def _matches(pattern: str, name: str) -> bool:
+    """Whether a name is the pattern, whose stars stand for any text."""
+    return re.fullmatch(".*".join(map(re.escape, pattern.split("*"))), name) is not None
 
 
 def _read_reference(data: Any, place: str) -> Reference:
