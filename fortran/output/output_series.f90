@@ -2,7 +2,7 @@
 module output_series
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
-   use base_number, only: integer_text
+   use base_number, only: format_integer, format_real, integer_text, number_width
    use output_text, only: newline, text_buffer_t, text_t
    implicit none(type, external)
    private
@@ -18,7 +18,6 @@ module output_series
       type(text_t), allocatable, private :: names(:)  !< of the columns
       logical, allocatable, private :: is_written(:)  !< (columns)
       integer, private :: column = 0  !< values in the row so far
-      logical, private :: has_values = .false.  !< some of them were written
       character(len=:), allocatable, private :: fault  !< the first row with a wrong value
       integer, private :: written = -1  !< characters in the file
    contains
@@ -66,20 +65,30 @@ contains
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(rk), intent(in) :: value  !< in the unit of the name
+      character(len=number_width + 1) :: piece  ! with the comma behind it
+      integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
-      if (is_wanted) call self%buffer%append_real(value)
+      if (.not. is_wanted) return
+      call format_real(value, piece(1:number_width), length)
+      piece(length + 1:length + 1) = ","
+      call self%buffer%append(piece(1:length + 1))
    end subroutine put_real
 
    subroutine put_integer(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: value
+      character(len=number_width + 1) :: piece  ! with the comma behind it
+      integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
-      if (is_wanted) call self%buffer%append(integer_text(value))
+      if (.not. is_wanted) return
+      call format_integer(int(value, lk), piece(1:number_width), length)
+      piece(length + 1:length + 1) = ","
+      call self%buffer%append(piece(1:length + 1))
    end subroutine put_integer
 
    subroutine put_text(self, name, value)
@@ -101,6 +110,7 @@ contains
          end do
          call self%buffer%append('"')
       end if
+      call self%buffer%append(",")
    end subroutine put_text
 
    !> An empty value, where a quantity does not apply.
@@ -110,6 +120,7 @@ contains
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
+      if (is_wanted) call self%buffer%append(",")
    end subroutine put_nothing
 
    subroutine end_row(self)
@@ -118,8 +129,7 @@ contains
       if (self%column < size(self%names)) call keep_fault(self, "ends")
       self%n_rows = self%n_rows + 1_lk
       self%column = 0
-      self%has_values = .false.
-      call self%buffer%append(newline)
+      call self%buffer%replace_last(newline)  ! the comma behind the last value
    end subroutine end_row
 
    !> Write the whole table if it has changed since it was last written. A row with a value that is
@@ -137,8 +147,7 @@ contains
       end if
    end subroutine flush_series
 
-   !> Go to the column that a value is for, which must be the one after the last; with a comma
-   !! before every value but the first.
+   !> Go to the column that a value is for, which must be the one after the last.
    subroutine next_column(self, name, is_wanted)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -152,8 +161,6 @@ contains
       else
          self%column = self%column + 1
          is_wanted = self%is_written(self%column)
-         if (is_wanted .and. self%has_values) call self%buffer%append(",")
-         self%has_values = self%has_values .or. is_wanted
       end if
    end subroutine next_column
 
