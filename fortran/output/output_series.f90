@@ -3,7 +3,8 @@ module output_series
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
    use base_number, only: format_integer, format_real, integer_text, number_width
-   use output_text, only: newline, text_buffer_t, text_t
+   use base_texts, only: text_t
+   use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private
 

@@ -2,12 +2,12 @@
 module output_tables
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: text_t
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
    use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
                              probe_columns, tip_columns
    use output_series, only: series_t
-   use output_text, only: text_t
    use results_fields, only: fracture_fields_t
    use results_rows, only: history_row_t, tip_row_t
    use scene_types, only: name_length, scene_t
@@ -192,7 +192,7 @@ contains
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(tables_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. of results_chronicle
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]

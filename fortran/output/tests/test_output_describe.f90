@@ -6,8 +6,8 @@ program test_output_describe
    use output_columns, only: contact_words, event_words, record_keys, status_words
    use output_describe, only: describe_output
    use output_record, only: status_failed, status_finished, status_stopped
-   use output_tables, only: event_arrest, event_growth, event_joint, event_opening, event_remesh, &
-                            event_slip_onset, event_step_cut
+   use results_chronicle, only: event_arrest, event_growth, event_joint, event_opening, &
+                                event_remesh, event_slip_onset, event_step_cut
    use testing_checks, only: checks_t
    use testing_pages, only: check_page
    implicit none(type, external)
