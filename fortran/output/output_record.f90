@@ -6,7 +6,7 @@ module output_record
    use base_timers, only: phase_count, phase_names, timers_t
    use output_files, only: write_text_file
    use output_json, only: json_t
-   use results_summary, only: summary_t
+   use results_summary, only: dof_block_t, summary_t
    implicit none(type, external)
    private
 

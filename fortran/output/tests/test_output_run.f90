@@ -66,12 +66,18 @@ contains
 
       call timers%start(phase_output)
       do i = 0, 1
-         call output%history_row(history_row_t(2.0_rk*i, 2.0_rk, 4_ik, 6.8e6_rk, 1.0e-4_rk, &
-            & 2.0e-5_rk, 0.0_rk, 1.0e-3_rk, 1.0e-14_rk, 1.0e-4_rk, 2.0e-5_rk, 1_ik, 1_ik, 1_ik, &
-            & 1.25_rk, 2_ik, 1_ik, 1.0e6_rk))
-         call output%tip_row(tip_row_t(2.0_rk*i, 1_ik, 1_ik, [1.0_rk, 0.5_rk], 1.0e6_rk, 2.0e5_rk, &
-            & 1.1e6_rk, 2.1e5_rk, 1.05e6_rk, 30.0_rk, acos(-1.0_rk)/4.0_rk, 0.0_rk, 1.0e3_rk, &
-            & 2.0e3_rk, 28.0_rk, 1.5_rk, 3.0e3_rk, 4.0e3_rk, 1.0005e6_rk, 2.005e5_rk))
+         call output%history_row(history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
+            & well_pressure=6.8e6_rk, injected=1.0e-4_rk, leakoff=2.0e-5_rk, prefilled=0.0_rk, &
+            & fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, max_slip=1.0e-4_rk, &
+            & max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, n_open=1_ik, &
+            & fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
+            & seismic_moment=1.0e6_rk))
+         call output%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
+            & xy=[1.0_rk, 0.5_rk], k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
+            & keq=1.05e6_rk, g=30.0_rk, angle=acos(-1.0_rk)/4.0_rk, advance=0.0_rk, &
+            & k1_error=1.0e3_rk, k2_error=2.0e3_rk, g_domain=28.0_rk, g_error=1.5_rk, &
+            & k1_dc_error=3.0e3_rk, k2_dc_error=4.0e3_rk, k1_corrected=1.0005e6_rk, &
+            & k2_corrected=2.005e5_rk))
          call output%probe_row(2.0_rk*i, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
             & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]), [6.8e6_rk])
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
