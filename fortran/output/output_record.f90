@@ -1,4 +1,4 @@
-!> run.json: what a run was, how it ended and what it cost.
+!> run.json: what a run was, how it ended and what it cost. output_columns says what its keys mean.
 module output_record
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -6,7 +6,7 @@ module output_record
    use base_timers, only: phase_count, phase_names, timers_t
    use output_files, only: write_text_file
    use output_json, only: json_t
-   use results_summary, only: summary_t
+   use results_summary, only: dof_block_t, summary_t
    implicit none(type, external)
    private
 
@@ -36,7 +36,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(json_t) :: json
-      integer :: i
 
       call json%begin_object("")
       call add_optional_text(json, "scene", self%scene)
@@ -46,20 +45,10 @@ contains
       call json%add("steps", self%steps)
       call json%add("cells", self%cells)
       call json%add("fracture_cells", self%fracture_cells)
-      call json%begin_object("dofs")
-      if (allocated(self%dofs)) then
-         do i = 1, size(self%dofs)
-            call json%add(self%dofs(i)%name, self%dofs(i)%n)
-         end do
-      end if
-      call json%end_object()
+      call add_dofs(json, self%dofs)
       call add_list(json, "used", self%used)
       call add_list(json, "left_out", self%left_out)
-      call json%begin_object("timers_s")
-      do i = 1, phase_count
-         call json%add(trim(phase_names(i)), timers%seconds(i))
-      end do
-      call json%end_object()
+      call add_timers(json, timers)
       call json%add("cpu_s", timers%cpu_seconds())
       call json%add("wall_s", timers%wall_seconds())
       call json%add("peak_memory_mb", peak_memory_mb())
@@ -91,6 +80,34 @@ contains
       call json%end_object()
       call write_text_file(path, json%text(), error)
    end subroutine write_record
+
+   !> Unknowns by kind.
+   subroutine add_dofs(json, dofs)
+      type(json_t), intent(inout) :: json
+      type(dof_block_t), allocatable, intent(in) :: dofs(:)
+      integer :: i
+
+      call json%begin_object("dofs")
+      if (allocated(dofs)) then
+         do i = 1, size(dofs)
+            call json%add(dofs(i)%name, dofs(i)%n)
+         end do
+      end if
+      call json%end_object()
+   end subroutine add_dofs
+
+   !> Processor time by phase.
+   subroutine add_timers(json, timers)
+      type(json_t), intent(inout) :: json
+      type(timers_t), intent(in) :: timers
+      integer :: i
+
+      call json%begin_object("timers_s")
+      do i = 1, phase_count
+         call json%add(trim(phase_names(i)), timers%seconds(i))
+      end do
+      call json%end_object()
+   end subroutine add_timers
 
    !> Largest memory that the process has held so far [MB of 2**20 bytes]; NaN where the system does
    !! not say.

@@ -140,7 +140,7 @@ contains
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(run_output_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of output_tables
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of results_chronicle
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]

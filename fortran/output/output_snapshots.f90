@@ -1,4 +1,5 @@
 !> Fields at written times: a VTU file for each dimension, gathered in PVD collections.
+!! output_columns says what the fields mean.
 module output_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -163,7 +164,7 @@ contains
    subroutine add_pair(grid, name, normal, tangential)
       type(vtu_grid_t), intent(inout) :: grid
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: normal(:), tangential(:)
+      real(rk), intent(in) :: normal(:), tangential(:)  !< (n_cells) [m] or [Pa]
       real(rk) :: both(2, size(normal))
 
       both(1, :) = normal

@@ -1,12 +1,15 @@
-!> The CSV tables of a run: their columns and what goes into them.
+!> The CSV tables of a run: where the value of each column of output_columns comes from.
 module output_tables
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: text_t
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
+   use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
+                             probe_columns, tip_columns
+   use output_series, only: series_t
    use results_fields, only: fracture_fields_t
    use results_rows, only: history_row_t, tip_row_t
-   use output_series, only: series_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
    private
@@ -23,7 +26,7 @@ module output_tables
       type(series_t) :: fractures
       type(series_t) :: probes
       type(series_t) :: events
-      logical, private :: has_fluid = .true.
+      type(text_t), allocatable, private :: probe_names(:)
    contains
       procedure :: open => open_tables
       procedure :: history_row
@@ -43,23 +46,18 @@ contains
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: has_fluid  !< else there are no columns for pressure and fluid
 
-      self%has_fluid = has_fluid
-      call open_history(self%history, directory, has_fluid)
-      call self%events%open(directory//"/events.csv", [character(len=column_length) :: "time_s", &
-         & "kind", "fracture", "x_m", "y_m", "detail"])
-      if (allocated(scene%fractures)) then
-         if (size(scene%fractures) > 0) call open_fractures(self%fractures, directory, has_fluid)
-      end if
+      call open_table(self%history, directory//"/history.csv", history_columns, has_fluid)
+      call open_table(self%events, directory//"/events.csv", event_columns, has_fluid)
       if (scene%growth%enabled .or. scene%growth%intensities) then
-         call self%tips%open(directory//"/tips.csv", [character(len=column_length) :: "time_s", &
-            & "tip", "fracture", "x_m", "y_m", "k1_pa_sqrtm", "k2_pa_sqrtm", "k1_dc_pa_sqrtm", &
-            & "k2_dc_pa_sqrtm", "keq_pa_sqrtm", "g_j_m2", "angle_deg", "advance_m", &
-            & "k1_error_pa_sqrtm", "k2_error_pa_sqrtm", "g_ahead_j_m2", &
-            & "g_ahead_error_j_m2", "k1_dc_error_pa_sqrtm", "k2_dc_error_pa_sqrtm", &
-            & "k1_corrected_pa_sqrtm", "k2_corrected_pa_sqrtm"])
+         call open_table(self%tips, directory//"/tips.csv", tip_columns, has_fluid)
+      end if
+      if (allocated(scene%fractures)) then
+         if (size(scene%fractures) > 0) call open_table(self%fractures, &
+            & directory//"/fractures.csv", fracture_columns, has_fluid)
       end if
       if (allocated(scene%probes)) then
-         if (size(scene%probes) > 0) call open_probes(self%probes, directory, scene, has_fluid)
+         if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene, &
+            & has_fluid)
       end if
    end subroutine open_tables
 
@@ -69,30 +67,26 @@ contains
       type(history_row_t), intent(in) :: row
 
       associate (table => self%history)
-         call table%put(row%time)
-         call table%put(row%dt)
-         call table%put(row%newton_iterations)
-         if (self%has_fluid) then
-            call table%put(row%well_pressure)
-            call table%put(row%injected)
-            call table%put(row%leakoff)
-            call table%put(row%prefilled)
-         end if
-         call table%put(row%fracture_volume)
-         if (self%has_fluid) call table%put(row%mass_error_relative)
-         call table%put(row%max_slip)
-         call table%put(row%max_opening)
-         call table%put(row%n_stick)
-         call table%put(row%n_slip)
-         call table%put(row%n_open)
-         call table%put(row%fracture_length)
-         call table%put(row%n_tips)
-         call table%put(row%n_intersections)
-         call table%put(row%seismic_moment)
-         if (.not. self%has_fluid) then
-            call table%put(row%load_factor)
-            call table%put(row%strain_energy)
-         end if
+         call table%put("time_s", row%time)
+         call table%put("dt_s", row%dt)
+         call table%put("newton_iterations", row%newton_iterations)
+         call table%put("well_pressure_pa", row%well_pressure)
+         call table%put("injected_m2", row%injected)
+         call table%put("leakoff_m2", row%leakoff)
+         call table%put("prefilled_m2", row%prefilled)
+         call table%put("fracture_volume_m2", row%fracture_volume)
+         call table%put("mass_error_relative", row%mass_error_relative)
+         call table%put("max_slip_m", row%max_slip)
+         call table%put("max_opening_m", row%max_opening)
+         call table%put("n_stick", row%n_stick)
+         call table%put("n_slip", row%n_slip)
+         call table%put("n_open", row%n_open)
+         call table%put("fracture_length_m", row%fracture_length)
+         call table%put("n_tips", row%n_tips)
+         call table%put("n_intersections", row%n_intersections)
+         call table%put("seismic_moment_nm", row%seismic_moment)
+         call table%put("load_factor", row%load_factor)
+         call table%put("strain_energy_j", row%strain_energy)
          call table%end_row()
       end associate
    end subroutine history_row
@@ -104,27 +98,27 @@ contains
 
       if (.not. self%tips%is_open()) return
       associate (table => self%tips)
-         call table%put(row%time)
-         call table%put(row%tip)
-         call table%put(row%fracture)
-         call table%put(row%xy(1))
-         call table%put(row%xy(2))
-         call table%put(row%k1)
-         call table%put(row%k2)
-         call table%put(row%k1_dc)
-         call table%put(row%k2_dc)
-         call table%put(row%keq)
-         call table%put(row%g)
-         call table%put(row%angle*degrees)
-         call table%put(row%advance)
-         call table%put(row%k1_error)
-         call table%put(row%k2_error)
-         call table%put(row%g_domain)
-         call table%put(row%g_error)
-         call table%put(row%k1_dc_error)
-         call table%put(row%k2_dc_error)
-         call table%put(row%k1_corrected)
-         call table%put(row%k2_corrected)
+         call table%put("time_s", row%time)
+         call table%put("tip", row%tip)
+         call table%put("fracture", row%fracture)
+         call table%put("x_m", row%xy(1))
+         call table%put("y_m", row%xy(2))
+         call table%put("k1_pa_sqrtm", row%k1)
+         call table%put("k2_pa_sqrtm", row%k2)
+         call table%put("k1_dc_pa_sqrtm", row%k1_dc)
+         call table%put("k2_dc_pa_sqrtm", row%k2_dc)
+         call table%put("keq_pa_sqrtm", row%keq)
+         call table%put("g_j_m2", row%g)
+         call table%put("angle_deg", row%angle*degrees)
+         call table%put("advance_m", row%advance)
+         call table%put("k1_error_pa_sqrtm", row%k1_error)
+         call table%put("k2_error_pa_sqrtm", row%k2_error)
+         call table%put("g_ahead_j_m2", row%g_domain)
+         call table%put("g_ahead_error_j_m2", row%g_error)
+         call table%put("k1_dc_error_pa_sqrtm", row%k1_dc_error)
+         call table%put("k2_dc_error_pa_sqrtm", row%k2_dc_error)
+         call table%put("k1_corrected_pa_sqrtm", row%k1_corrected)
+         call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
          call table%end_row()
       end associate
    end subroutine tip_row
@@ -143,21 +137,21 @@ contains
          do cell = 1, mesh%n_cells
             centre = 0.5_rk*(mesh%point_xy(:, mesh%cell_points(1, cell)) &
                & + mesh%point_xy(:, mesh%cell_points(2, cell)))
-            call table%put(time)
-            call table%put(mesh%cell_fracture(cell))
-            call table%put(0.5_rk*sum(mesh%cell_s(:, cell)))
-            call table%put(centre(1))
-            call table%put(centre(2))
-            call put_if_there(table, fields%aperture, cell)
-            call put_if_there(table, fields%jump_n, cell)
-            call put_if_there(table, fields%jump_t, cell)
-            call put_if_there(table, fields%traction_n, cell)
-            call put_if_there(table, fields%traction_t, cell)
-            if (self%has_fluid) call put_if_there(table, fields%pressure, cell)
+            call table%put("time_s", time)
+            call table%put("fracture", mesh%cell_fracture(cell))
+            call table%put("s_m", 0.5_rk*sum(mesh%cell_s(:, cell)))
+            call table%put("x_m", centre(1))
+            call table%put("y_m", centre(2))
+            call put_if_there(table, "aperture_m", fields%aperture, cell)
+            call put_if_there(table, "jump_n_m", fields%jump_n, cell)
+            call put_if_there(table, "jump_t_m", fields%jump_t, cell)
+            call put_if_there(table, "traction_n_pa", fields%traction_n, cell)
+            call put_if_there(table, "traction_t_pa", fields%traction_t, cell)
+            call put_if_there(table, "pressure_pa", fields%pressure, cell)
             if (allocated(fields%state)) then
-               call table%put(state_name(fields%state(cell)))
+               call table%put("state", state_name(fields%state(cell)))
             else
-               call table%put_nothing()
+               call table%put_nothing("state")
             end if
             call table%end_row()
          end do
@@ -171,19 +165,24 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_probes) [m]
       real(rk), intent(in) :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
       real(rk), intent(in), optional :: pressure(:)  !< (n_probes) [Pa]; needed in a run with fluid
-      integer :: i, k
+      integer :: i
 
       if (.not. self%probes%is_open()) return
       associate (table => self%probes)
-         call table%put(time)
+         call table%put("time_s", time)
          do i = 1, size(displacement, 2)
-            if (present(pressure)) call table%put(pressure(i))
-            do k = 1, 2
-               call table%put(displacement(k, i))
-            end do
-            do k = 1, 3
-               call table%put(stress(k, i))
-            end do
+            associate (name => self%probe_names(i)%text)
+               if (present(pressure)) then
+                  call table%put(name//"_p_pa", pressure(i))
+               else
+                  call table%put_nothing(name//"_p_pa")
+               end if
+               call table%put(name//"_ux_m", displacement(1, i))
+               call table%put(name//"_uy_m", displacement(2, i))
+               call table%put(name//"_sxx_pa", stress(1, i))
+               call table%put(name//"_syy_pa", stress(2, i))
+               call table%put(name//"_sxy_pa", stress(3, i))
+            end associate
          end do
          call table%end_row()
       end associate
@@ -193,27 +192,27 @@ contains
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(tables_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. of results_chronicle
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]
 
       associate (table => self%events)
-         call table%put(time)
-         call table%put(kind)
+         call table%put("time_s", time)
+         call table%put("kind", kind)
          if (present(fracture)) then
-            call table%put(fracture)
+            call table%put("fracture", fracture)
          else
-            call table%put_nothing()
+            call table%put_nothing("fracture")
          end if
          if (present(xy)) then
-            call table%put(xy(1))
-            call table%put(xy(2))
+            call table%put("x_m", xy(1))
+            call table%put("y_m", xy(2))
          else
-            call table%put_nothing()
-            call table%put_nothing()
+            call table%put_nothing("x_m")
+            call table%put_nothing("y_m")
          end if
-         call table%put(detail)
+         call table%put("detail", detail)
          call table%end_row()
       end associate
    end subroutine event_row
@@ -230,67 +229,50 @@ contains
       if (.not. allocated(error)) call self%events%flush(error)
    end subroutine flush_tables
 
-   subroutine open_history(table, directory, has_fluid)
+   !> Open a table with the columns that the table of columns has for it.
+   subroutine open_table(table, path, columns, has_fluid)
       type(series_t), intent(out) :: table
-      character(len=*), intent(in) :: directory
+      character(len=*), intent(in) :: path
+      type(column_t), intent(in) :: columns(:)
       logical, intent(in) :: has_fluid
-      character(len=column_length), allocatable :: columns(:)
 
-      columns = [character(len=column_length) :: "time_s", "dt_s", "newton_iterations"]
-      if (has_fluid) columns = [character(len=column_length) :: columns, "well_pressure_pa", &
-         & "injected_m2", "leakoff_m2", "prefilled_m2"]
-      columns = [character(len=column_length) :: columns, "fracture_volume_m2"]
-      if (has_fluid) columns = [character(len=column_length) :: columns, "mass_error_relative"]
-      columns = [character(len=column_length) :: columns, "max_slip_m", "max_opening_m", &
-         & "n_stick", "n_slip", "n_open", "fracture_length_m", "n_tips", "n_intersections", &
-         & "seismic_moment_nm"]
-      if (.not. has_fluid) columns = [character(len=column_length) :: columns, "load_factor", &
-         & "strain_energy_j"]
-      call table%open(directory//"/history.csv", columns)
-   end subroutine open_history
+      call table%open(path, columns%name, applies(columns, has_fluid))
+   end subroutine open_table
 
-   subroutine open_fractures(table, directory, has_fluid)
-      type(series_t), intent(out) :: table
-      character(len=*), intent(in) :: directory
-      logical, intent(in) :: has_fluid
-      character(len=column_length), allocatable :: columns(:)
-
-      columns = [character(len=column_length) :: "time_s", "fracture", "s_m", "x_m", "y_m", &
-         & "aperture_m", "jump_n_m", "jump_t_m", "traction_n_pa", "traction_t_pa"]
-      if (has_fluid) columns = [character(len=column_length) :: columns, "pressure_pa"]
-      columns = [character(len=column_length) :: columns, "state"]
-      call table%open(directory//"/fractures.csv", columns)
-   end subroutine open_fractures
-
-   subroutine open_probes(table, directory, scene, has_fluid)
-      type(series_t), intent(out) :: table
-      character(len=*), intent(in) :: directory
+   !> Open the table of the probes: the time, then the same columns for each of them.
+   subroutine open_probes(self, path, scene, has_fluid)
+      class(tables_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: has_fluid
-      character(len=column_length), allocatable :: columns(:)
-      character(len=:), allocatable :: name
-      integer :: i
+      integer, parameter :: n_each = size(probe_columns) - 1
+      character(len=column_length) :: names(1 + n_each*size(scene%probes))
+      integer :: i, k
 
-      columns = [character(len=column_length) :: "time_s"]
+      allocate (self%probe_names(size(scene%probes)))
+      names(1) = probe_columns(1)%name
       do i = 1, size(scene%probes)
-         name = trim(scene%probes(i)%name)
-         if (has_fluid) columns = [character(len=column_length) :: columns, name//"_p_pa"]
-         columns = [character(len=column_length) :: columns, name//"_ux_m", name//"_uy_m", &
-            & name//"_sxx_pa", name//"_syy_pa", name//"_sxy_pa"]
+         self%probe_names(i)%text = trim(scene%probes(i)%name)
+         do k = 1, n_each
+            names(1 + n_each*(i - 1) + k) = self%probe_names(i)%text// &
+                                          & probe_columns(1 + k)%name(len("NAME") + 1:)
+         end do
       end do
-      call table%open(directory//"/probes.csv", columns)
+      call self%probes%open(path, names, [applies(probe_columns(1), has_fluid), &
+         & (applies(probe_columns(2:), has_fluid), i=1, size(scene%probes))])
    end subroutine open_probes
 
    !> A cell's value, or nothing where the field is left out.
-   subroutine put_if_there(table, values, cell)
+   subroutine put_if_there(table, name, values, cell)
       type(series_t), intent(inout) :: table
-      real(rk), allocatable, intent(in) :: values(:)
+      character(len=*), intent(in) :: name  !< of the column
+      real(rk), allocatable, intent(in) :: values(:)  !< (n_cells) in the unit of the name
       integer(ik), intent(in) :: cell
 
       if (allocated(values)) then
-         call table%put(values(cell))
+         call table%put(name, values(cell))
       else
-         call table%put_nothing()
+         call table%put_nothing(name)
       end if
    end subroutine put_if_there
 

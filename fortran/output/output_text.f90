@@ -18,6 +18,7 @@ module output_text
    contains
       procedure :: append
       procedure :: append_real
+      procedure :: replace_last
       procedure :: text => buffer_text
       procedure :: write_file
    end type text_buffer_t
@@ -43,13 +44,21 @@ contains
    !> Add a number at the end, with the digits that it needs.
    pure subroutine append_real(self, x)
       class(text_buffer_t), intent(inout) :: self
-      real(rk), intent(in) :: x
+      real(rk), intent(in) :: x  !< in any unit
       character(len=number_width) :: piece
       integer :: length
 
       call format_real(x, piece, length)
       call self%append(piece(1:length))
    end subroutine append_real
+
+   !> Replace the last character.
+   pure subroutine replace_last(self, letter)
+      class(text_buffer_t), intent(inout) :: self
+      character(len=1), intent(in) :: letter
+
+      if (self%length > 0) self%storage(self%length:self%length) = letter
+   end subroutine replace_last
 
    !> All that was added.
    pure function buffer_text(self) result(text)

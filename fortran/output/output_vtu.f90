@@ -40,7 +40,7 @@ module output_vtu
       integer(ik) :: nodes_per_cell = 0
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
-      real(rk) :: time = 0.0_rk
+      real(rk) :: time = 0.0_rk  !< [s]
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
@@ -80,7 +80,7 @@ contains
    subroutine add_scalar(self, name, values)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: values(:)  !< (n_cells)
+      real(rk), intent(in) :: values(:)  !< (n_cells) [SI]
 
       call new_field(self, name)
       self%fields(self%n_fields)%reals = values
@@ -90,7 +90,7 @@ contains
    subroutine add_vector(self, name, values, components)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: values(:, :)  !< (n_components, n_cells)
+      real(rk), intent(in) :: values(:, :)  !< (n_components, n_cells) [SI]
       character(len=*), intent(in) :: components(:)  !< their names, in order
       integer :: i
 
@@ -109,7 +109,7 @@ contains
    subroutine add_at_points(self, name, values, components)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: values(:, :)  !< (n_components, n_points)
+      real(rk), intent(in) :: values(:, :)  !< (n_components, n_points) [SI]
       character(len=*), intent(in) :: components(:)  !< their names, in order
 
       call self%add(name, values, components)
@@ -250,7 +250,7 @@ contains
 
    subroutine put_reals(file, values)
       type(whole_file_t), intent(inout) :: file
-      real(rk), intent(in) :: values(:)
+      real(rk), intent(in) :: values(:)  !< [SI]
 
       call file%put(8_int64*size(values, kind=int64))
       call file%put(values)

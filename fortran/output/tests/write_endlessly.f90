@@ -26,9 +26,11 @@ program write_endlessly
          if (.not. allocated(error)) call grid%write("write_endlessly.out/grid.vtu", error)
       end do
       if (.not. allocated(error)) then
-         call table%open("write_endlessly.out/table.csv", ["x_m", "y_m"])
+         call table%open("write_endlessly.out/table.csv", ["x_m", "y_m"], [.true., .true.])
          do i = 1, n_points
-            call table%add_row(xy(:, i))
+            call table%put("x_m", xy(1, i))
+            call table%put("y_m", xy(2, i))
+            call table%end_row()
          end do
          call table%flush(error)
       end if

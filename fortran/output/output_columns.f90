@@ -1,0 +1,280 @@
+!> The one table of everything that the files of a run hold: every column, key and field.
+!!
+!! The tables of a run take the names and the order of their columns from here, and docs/output.md
+!! is written from it (output_describe); tests hold the keys of run.json and network.json and the
+!! fields of the VTU files against it. A new column is one entry here, at the place where it shall
+!! stand, and one line in output_tables that says where its value comes from.
+module output_columns
+   implicit none(type, external)
+   private
+
+   public :: always, with_error, with_fluid, with_fractures, with_growth, without_fluid
+   public :: applies, column_t, word_t
+   public :: event_columns, fracture_columns, history_columns, probe_columns, tip_columns
+   public :: fracture_fields, intersection_fields, matrix_fields
+   public :: network_keys, record_keys
+   public :: contact_words, event_words, joint_words, status_words
+
+   ! Runs in which a column, key or field is written.
+   character(len=*), parameter :: always = "always"
+   character(len=*), parameter :: with_fluid = "with a fluid"
+   character(len=*), parameter :: with_fractures = "with a fluid and fractures"
+   character(len=*), parameter :: without_fluid = "without a fluid"
+   character(len=*), parameter :: with_growth = "without a fluid, with growth"
+   character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
+
+   !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
+   !! or a field of a VTU file.
+   type :: column_t
+      character(len=28) :: name = ""
+      character(len=8) :: unit = "-"
+      character(len=32) :: runs = always  !< in which it is written
+      character(len=160) :: meaning = ""
+   end type column_t
+
+   !> A word that a column or key may hold.
+   type :: word_t
+      character(len=10) :: word = ""
+      character(len=100) :: meaning = ""
+   end type word_t
+
+   ! The tables keep their own layout.
+   !&<
+   type(column_t), parameter :: history_columns(*) = [ &
+      column_t("time_s", "s", always, "Time; without a fluid the share of the load programme"), &
+      column_t("dt_s", "s", always, "Length of the step: time_s since the row before"), &
+      column_t("newton_iterations", "-", always, "Iterations of the contact problem in the step"), &
+      column_t("well_pressure_pa", "Pa", with_fluid, &
+               "Fluid pressure, mean over the fracture cells of the wells; 0 without a well"), &
+      column_t("injected_m2", "m2", with_fluid, "Fluid injected so far"), &
+      column_t("leakoff_m2", "m2", with_fluid, &
+               "Fluid that went from the fractures into the rock so far; negative: the other "// &
+               "way"), &
+      column_t("prefilled_m2", "m2", with_fluid, &
+               "Fluid that new fracture cells brought along so far"), &
+      column_t("fracture_volume_m2", "m2", always, &
+               "Volume of the fractures: aperture, without a fluid opening, times length"), &
+      column_t("mass_error_relative", "-", with_fluid, &
+               "Fluid gained or lost by numerical error so far, over the injected fluid or the "// &
+               "fractures' volume"), &
+      column_t("max_slip_m", "m", always, "Largest slip, without its sign"), &
+      column_t("max_opening_m", "m", always, "Largest normal jump"), &
+      column_t("n_stick", "-", always, "Fracture cells that stick"), &
+      column_t("n_slip", "-", always, "Fracture cells that slip"), &
+      column_t("n_open", "-", always, "Fracture cells that are open"), &
+      column_t("fracture_length_m", "m", always, "Length of all fractures"), &
+      column_t("n_tips", "-", always, "Free tips"), &
+      column_t("n_intersections", "-", always, "Points where fractures meet"), &
+      column_t("seismic_moment_nm", "N m/m", always, &
+               "Shear modulus times the slip of all cells so far times their length"), &
+      column_t("load_factor", "-", without_fluid, "Factor on the loads of the scene"), &
+      column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body")]
+
+   type(column_t), parameter :: tip_columns(*) = [ &
+      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("tip", "-", always, "Number of the tip, from 1"), &
+      column_t("fracture", "-", always, "Number of its fracture, from 1 in the scene's order"), &
+      column_t("x_m", "m", always, "Place of the tip, before it grew"), &
+      column_t("y_m", "m", always, "Place of the tip, before it grew"), &
+      column_t("k1_pa_sqrtm", "Pa m^1/2", always, &
+               "Stress intensity factor of opening, by the interaction integral"), &
+      column_t("k2_pa_sqrtm", "Pa m^1/2", always, &
+               "Stress intensity factor of sliding, by the interaction integral"), &
+      column_t("k1_dc_pa_sqrtm", "Pa m^1/2", always, "The first by displacement correlation"), &
+      column_t("k2_dc_pa_sqrtm", "Pa m^1/2", always, "The second by displacement correlation"), &
+      column_t("keq_pa_sqrtm", "Pa m^1/2", always, &
+               "Equivalent stress intensity factor in the direction of growth, which the "// &
+               "toughness bounds"), &
+      column_t("g_j_m2", "J/m2", always, "Energy release rate in the direction of growth"), &
+      column_t("angle_deg", "degree", always, &
+               "Direction of growth from straight ahead, positive counter-clockwise"), &
+      column_t("advance_m", "m", always, "Length grown in this increment; 0: none"), &
+      column_t("k1_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k1_pa_sqrtm"), &
+      column_t("k2_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k2_pa_sqrtm"), &
+      column_t("g_ahead_j_m2", "J/m2", always, &
+               "Energy release rate straight ahead, by the J-integral"), &
+      column_t("g_ahead_error_j_m2", "J/m2", always, "Estimated error of g_ahead_j_m2"), &
+      column_t("k1_dc_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k1_dc_pa_sqrtm"), &
+      column_t("k2_dc_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k2_dc_pa_sqrtm"), &
+      column_t("k1_corrected_pa_sqrtm", "Pa m^1/2", always, &
+               "k1_pa_sqrtm with what the mesh lacks added, where that is known; else the same"), &
+      column_t("k2_corrected_pa_sqrtm", "Pa m^1/2", always, &
+               "k2_pa_sqrtm with what the mesh lacks added, where that is known; else the same")]
+
+   type(column_t), parameter :: fracture_columns(*) = [ &
+      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("fracture", "-", always, "Number of the fracture, from 1 in the scene's order"), &
+      column_t("s_m", "m", always, &
+               "Arc length of the cell's middle along the fracture; below 0 where it grew at "// &
+               "its start"), &
+      column_t("x_m", "m", always, "Middle of the cell"), &
+      column_t("y_m", "m", always, "Middle of the cell"), &
+      column_t("aperture_m", "m", always, "Hydraulic aperture; empty without a fluid"), &
+      column_t("jump_n_m", "m", always, "Normal jump of the displacement: opening"), &
+      column_t("jump_t_m", "m", always, "Tangential jump of the displacement: slip"), &
+      column_t("traction_n_pa", "Pa", always, "Normal traction of contact"), &
+      column_t("traction_t_pa", "Pa", always, "Tangential traction of contact"), &
+      column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
+      column_t("state", "-", always, "State of contact")]
+
+   !> NAME stands for each probe's name; all but the time repeat for each probe.
+   type(column_t), parameter :: probe_columns(*) = [ &
+      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("NAME_p_pa", "Pa", with_fluid, "Pore pressure"), &
+      column_t("NAME_ux_m", "m", always, "Displacement in x"), &
+      column_t("NAME_uy_m", "m", always, "Displacement in y"), &
+      column_t("NAME_sxx_pa", "Pa", always, "Total stress xx"), &
+      column_t("NAME_syy_pa", "Pa", always, "Total stress yy"), &
+      column_t("NAME_sxy_pa", "Pa", always, "Total stress xy")]
+
+   type(column_t), parameter :: event_columns(*) = [ &
+      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("kind", "-", always, "What happened"), &
+      column_t("fracture", "-", always, "Number of the fracture; empty where none is concerned"), &
+      column_t("x_m", "m", always, "Where; empty where that has no meaning"), &
+      column_t("y_m", "m", always, "Where; empty where that has no meaning"), &
+      column_t("detail", "-", always, "A few words for people")]
+
+   type(column_t), parameter :: record_keys(*) = [ &
+      column_t("scene", "-", always, "The scene's name"), &
+      column_t("version", "-", always, "Version of this program"), &
+      column_t("status", "-", always, "How the run ended"), &
+      column_t("reason", "-", always, "Why it ended, in words"), &
+      column_t("steps", "-", always, &
+               "Accepted time steps; without a fluid states at which the load stopped"), &
+      column_t("cells", "-", always, "Triangles of the mesh at the end"), &
+      column_t("fracture_cells", "-", always, "Fracture cells at the end"), &
+      column_t("dofs", "-", always, "Unknowns by kind"), &
+      column_t("dofs.displacement", "-", always, "Displacement of the body"), &
+      column_t("dofs.matrix_pressure", "-", with_fluid, "Pore pressure"), &
+      column_t("dofs.fracture_jump", "-", with_fluid, "Jump of the displacement"), &
+      column_t("dofs.fracture_face_pressure", "-", with_fluid, &
+               "Pore pressure on the faces of the fractures"), &
+      column_t("dofs.fracture_pressure", "-", with_fluid, "Pressure in the fractures"), &
+      column_t("dofs.fracture_flow", "-", with_fluid, "Flow between fracture cells"), &
+      column_t("dofs.windows", "-", with_fluid, "Displacement in the windows around the tips"), &
+      column_t("used", "-", always, "Features that the run used, in words"), &
+      column_t("left_out", "-", always, "Features that it did without, in words"), &
+      column_t("timers_s", "s", always, "Processor time by phase"), &
+      column_t("timers_s.mesh", "s", always, "The first mesh"), &
+      column_t("timers_s.discretize", "s", always, "Stencils of the finite volumes"), &
+      column_t("timers_s.assemble", "s", always, "Matrices and right-hand sides"), &
+      column_t("timers_s.factorize", "s", always, "Factors of matrices"), &
+      column_t("timers_s.solve", "s", always, "Solutions with these factors"), &
+      column_t("timers_s.contact", "s", always, "Newton iterations on the fractures"), &
+      column_t("timers_s.tips", "s", always, "Windows, stress intensity factors, growth"), &
+      column_t("timers_s.remesh", "s", always, "Meshes after the first"), &
+      column_t("timers_s.transfer", "s", always, "The state from one mesh to the next"), &
+      column_t("timers_s.output", "s", always, "Files and progress line"), &
+      column_t("cpu_s", "s", always, "Processor time of the whole run"), &
+      column_t("wall_s", "s", always, "Time that passed"), &
+      column_t("peak_memory_mb", "MB", always, "Largest memory held, in units of 2^20 bytes"), &
+      column_t("mass_error_relative", "-", always, &
+               "Largest mass_error_relative of history.csv; 0 without a fluid"), &
+      column_t("contact_residual", "-", always, &
+               "Largest relative residual of the contact problem at an accepted state"), &
+      column_t("condition_estimate", "-", with_fractures, &
+               "Largest estimated condition number of the Newton matrices"), &
+      column_t("forward_error_bound", "-", with_fractures, &
+               "Largest bound of the relative error of their solutions"), &
+      column_t("smallest_angle_deg", "degree", without_fluid, &
+               "Smallest angle of the triangles of all meshes"), &
+      column_t("energy_error_relative", "-", with_error, &
+               "Estimated error of the last solution in the energy norm"), &
+      column_t("newton_iterations", "-", always, "Iterations of the contact problem"), &
+      column_t("newton_iterations.total", "-", always, "All of them, those of cut steps too"), &
+      column_t("newton_iterations.max", "-", always, "Most in one accepted step"), &
+      column_t("step_cuts", "-", always, "How often a step was tried again with half its length"), &
+      column_t("increments", "-", with_growth, &
+               "Increments of growth, of any number of tips at once"), &
+      column_t("meshes", "-", with_growth, "Meshes made"), &
+      column_t("meshes.whole", "-", with_growth, "Of the whole body"), &
+      column_t("meshes.patched", "-", with_growth, "Around the growing tips only"), &
+      column_t("warnings", "-", always, "What the user should know, each once")]
+
+   type(column_t), parameter :: network_keys(*) = [ &
+      column_t("fractures", "-", always, "The fractures at the end, in the scene's order"), &
+      column_t("fractures[].fracture", "-", always, "Number of the fracture, from 1"), &
+      column_t("fractures[].name", "-", always, "Its name in the scene"), &
+      column_t("fractures[].length_m", "m", always, "Its length"), &
+      column_t("fractures[].s_start_m", "m", always, &
+               "Arc length of its first vertex: 0, or below after growth there"), &
+      column_t("fractures[].x_m", "m", always, "x of its vertices, a list"), &
+      column_t("fractures[].y_m", "m", always, "y of its vertices, a list"), &
+      column_t("tips", "-", always, "The free tips at the end"), &
+      column_t("tips[].tip", "-", always, "Number of the tip, from 1"), &
+      column_t("tips[].fracture", "-", always, "Number of its fracture"), &
+      column_t("tips[].end", "-", always, "Which end of the fracture it is: `start` or `end`"), &
+      column_t("tips[].x_m", "m", always, "Place of the tip"), &
+      column_t("tips[].y_m", "m", always, "Place of the tip"), &
+      column_t("tips[].direction", "-", always, "Unit vector straight ahead, x and y"), &
+      column_t("joints", "-", always, &
+               "Points where fractures meet each other or the boundary; may be empty"), &
+      column_t("joints[].kind", "-", always, "How they meet"), &
+      column_t("joints[].time_s", "s", always, "Time when that was first so"), &
+      column_t("joints[].x_m", "m", always, "Place of the joint"), &
+      column_t("joints[].y_m", "m", always, "Place of the joint"), &
+      column_t("joints[].fractures", "-", always, "Numbers of the fractures, each once"), &
+      column_t("steps", "-", always, "The network whenever it changed, the first one included"), &
+      column_t("steps[].time_s", "s", always, "Time of the change"), &
+      column_t("steps[].fractures", "-", always, "The fractures then, as above"), &
+      column_t("steps[].tips", "-", always, "The free tips then, as above")]
+
+   type(column_t), parameter :: matrix_fields(*) = [ &
+      column_t("nodal_displacement", "m", without_fluid, "Displacement at the nodes: X, Y, Z"), &
+      column_t("displacement", "m", always, "Displacement of the cells: X, Y, Z"), &
+      column_t("pressure", "Pa", with_fluid, "Pore pressure"), &
+      column_t("stress", "Pa", always, "Total stress: XX, YY, ZZ, XY, YZ, XZ"), &
+      column_t("permeability", "m2", with_fluid, "Permeability: XX, YY, ZZ, XY, YZ, XZ")]
+
+   type(column_t), parameter :: fracture_fields(*) = [ &
+      column_t("fracture", "-", always, "Number of the fracture, from 1"), &
+      column_t("arc_length", "m", always, "s_m of fractures.csv"), &
+      column_t("aperture", "m", with_fluid, "Hydraulic aperture"), &
+      column_t("jump", "m", always, "Jump of the displacement: normal, tangential"), &
+      column_t("traction", "Pa", always, "Traction of contact: normal, tangential"), &
+      column_t("pressure", "Pa", with_fluid, "Fluid pressure in the fracture"), &
+      column_t("state", "-", always, "State of contact: 0 stick, 1 slip, 2 open")]
+
+   type(column_t), parameter :: intersection_fields(*) = [ &
+      column_t("pressure", "Pa", with_fluid, "Fluid pressure where fractures meet")]
+
+   type(word_t), parameter :: contact_words(*) = [ &
+      word_t("stick", "the faces touch and hold"), &
+      word_t("slip", "the faces touch and slide"), &
+      word_t("open", "the faces do not touch")]
+
+   type(word_t), parameter :: event_words(*) = [ &
+      word_t("slip_onset", "a fracture slips for the first time"), &
+      word_t("opening", "a fracture opens for the first time"), &
+      word_t("growth", "a tip has grown; the place is where it is now"), &
+      word_t("joint", "a tip has met a fracture or the boundary"), &
+      word_t("arrest", "a tip has stopped for good, for the reason in `detail`"), &
+      word_t("step_cut", "a time step did not converge and is tried again, shorter"), &
+      word_t("remesh", "the mesh has followed the growth")]
+
+   type(word_t), parameter :: joint_words(*) = [ &
+      word_t("boundary", "a fracture ends on the outer boundary"), &
+      word_t("T", "a fracture ends on another one"), &
+      word_t("X", "two fractures cross"), &
+      word_t("V", "the ends of two fractures meet")]
+
+   type(word_t), parameter :: status_words(*) = [ &
+      word_t("finished", "the end that the scene asks for"), &
+      word_t("stopped", "interrupted from outside"), &
+      word_t("failed", "it could not go on")]
+   !&>
+
+contains
+
+   !> Whether a column is written in a run with or without a fluid, as far as that decides.
+   elemental logical function applies(column, has_fluid)
+      type(column_t), intent(in) :: column
+      logical, intent(in) :: has_fluid
+
+      applies = .true.
+      if (column%runs == with_fluid) applies = has_fluid
+      if (column%runs == without_fluid) applies = .not. has_fluid
+   end function applies
+
+end module output_columns

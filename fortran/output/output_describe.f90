@@ -1,0 +1,136 @@
+!> docs/output.md, written from the table of columns.
+module output_describe
+   use output_columns, only: column_t, contact_words, event_columns, event_words, &
+                             fracture_columns, fracture_fields, history_columns, &
+                             intersection_fields, joint_words, matrix_fields, network_keys, &
+                             probe_columns, record_keys, status_words, tip_columns, word_t
+   implicit none(type, external)
+   private
+
+   public :: describe_output
+
+   !&<
+   character(len=*), parameter :: introduction(*) = [character(len=128) :: &
+      "# Files of a run", &
+      "", &
+      "This page is written by `wingcrack-solver --describe-output` from the table that the", &
+      "writing follows; tests hold it against the code and against the files of real runs.", &
+      "", &
+      "Names stay once they are released; new ones may be added. Beside the files below, a run", &
+      "writes `scene.nml`, the scene as understood ([input.md](input.md)), and `run.log`, lines", &
+      "for people with the wall time before them.", &
+      "", &
+      "## Conventions", &
+      "", &
+      "* All numbers are in SI units, angles in degrees; a column's name ends with its unit.", &
+      "* Stress and traction are positive in tension, fluid pressure is positive. Stress is", &
+      "  total, not effective.", &
+      "* A fracture has the direction of its vertices in the scene. Its jump is the displacement", &
+      "  of its left side less that of its right side: the normal part is positive where it", &
+      "  opens, the tangential part where the left side moves along the direction. The traction", &
+      "  of contact has the same axes: its normal part is negative where the faces press.", &
+      "* The body has unit thickness. Volumes are in m2, that is m3 per metre of thickness;", &
+      "  energy (J/m) and seismic moment (N m/m) are per metre of thickness too.", &
+      "* Fractures and tips are numbered from 1.", &
+      "* A scene with `&fluid` is a run with a fluid, one without is mechanics only. The column", &
+      "  `in runs` below says in which of them a column, key or field is written.", &
+      "* Without a fluid there is no time: `time_s` is the share of the load programme that is", &
+      "  done, from 0 at `from` to 1 at `to` of `&load`, and `load_factor` in history.csv is the", &
+      "  factor itself. The rows of the other tables belong to the row of history.csv that has", &
+      "  the same `time_s`.", &
+      "* Files are whole at any time: they are written aside and renamed, the tables every few", &
+      "  seconds while a run goes on, run.json last.", &
+      "", &
+      "## Reading", &
+      "", &
+      "The tables are CSV with a header: commas, a point before the decimals, quotes where a", &
+      "text needs them. Numbers have the digits that read back as the same double.", &
+      "", &
+      "```python", &
+      "import json", &
+      "import pandas", &
+      "", &
+      "history = pandas.read_csv(""out/onset/history.csv"")", &
+      "history.plot(x=""time_s"", y=""well_pressure_pa"")", &
+      "cells = pandas.read_csv(""out/onset/fractures.csv"")", &
+      "last = cells[cells.time_s == cells.time_s.max()]  # the state at the end", &
+      "record = json.load(open(""out/onset/run.json""))  # null: not a number", &
+      "```", &
+      "", &
+      "In ParaView open `matrix.pvd`, `fractures.pvd` and `intersections.pvd`; these list the", &
+      "times with their files in `vtu/`. Tensors have the components that ParaView expects, and", &
+      "Warp By Vector shows `displacement`. In Python, `pyvista.read` reads each VTU file."]
+   !&>
+
+contains
+
+   !> Write the page to an open unit.
+   subroutine describe_output(unit)
+      integer, intent(in) :: unit  !< connected for formatted writing
+      integer :: i
+
+      do i = 1, size(introduction)
+         write (unit, "(a)") trim(introduction(i))
+      end do
+      call describe(unit, "history.csv", "A row per accepted time step, after that of the "// &
+                    "initial state if it was in equilibrium; without a fluid a row at the end "// &
+                    "of each step of the load programme and at each onset of growth. Growth "// &
+                    "follows its step: it shows in the next row.", history_columns)
+      call describe(unit, "tips.csv", "With growth or stress intensity factors: a row per free "// &
+                    "tip and state, or per tip and increment of growth. Where any tip grows, "// &
+                    "the rows of all hold the values before that.", tip_columns)
+      call describe(unit, "fractures.csv", "With fractures: a row per fracture cell and "// &
+                    "written time. These are the times that `interval` of `&output` asks for, "// &
+                    "without a fluid the ends of the load programme's steps, and the end of "// &
+                    "the run.", fracture_columns)
+      call describe_words(unit, "state", contact_words)
+      call describe(unit, "probes.csv", "With probes: a row per row of history.csv. `NAME` "// &
+                    "stands for the name of a probe; all columns but the time repeat for each "// &
+                    "probe.", probe_columns)
+      call describe(unit, "events.csv", "A row per event.", event_columns)
+      call describe_words(unit, "kind", event_words)
+      call describe(unit, "run.json", "How the run went. A dot in a name leads into an object.", &
+                    record_keys)
+      call describe_words(unit, "status", status_words)
+      call describe(unit, "network.json", "The fractures, their tips and joints. `[]` stands "// &
+                    "for each item of a list.", network_keys)
+      call describe_words(unit, "joints[].kind", joint_words)
+      call describe(unit, "matrix.vtu", "Fields of the rock at the times of fractures.csv, "// &
+                    "unless the scene turns VTU files off: values of the triangles. Without a "// &
+                    "fluid these have six nodes, and those their own displacement. The field "// &
+                    "data `TimeValue` of each file is its time_s.", matrix_fields)
+      call describe(unit, "fractures.vtu", "Fields of the fracture cells.", fracture_fields)
+      call describe(unit, "intersections.vtu", "Fields of the points where fractures meet; "// &
+                    "written only if there are any and a fluid.", intersection_fields)
+   end subroutine describe_output
+
+   !> A section of the page: a file, its rows and its columns, keys or fields.
+   subroutine describe(unit, file, meaning, columns)
+      integer, intent(in) :: unit
+      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: meaning  !< whole sentences
+      type(column_t), intent(in) :: columns(:)
+      integer :: i
+
+      write (unit, "(a)") "", "## "//file, "", meaning, "", "| name | unit | in runs | meaning |", &
+         "|---|---|---|---|"
+      do i = 1, size(columns)
+         write (unit, "(a)") "| `"//trim(columns(i)%name)//"` | "//trim(columns(i)%unit)//" | "// &
+            trim(columns(i)%runs)//" | "//trim(columns(i)%meaning)//" |"
+      end do
+   end subroutine describe
+
+   !> The words that the column or key above may hold.
+   subroutine describe_words(unit, name, words)
+      integer, intent(in) :: unit
+      character(len=*), intent(in) :: name  !< of the column or key
+      type(word_t), intent(in) :: words(:)
+      integer :: i
+
+      write (unit, "(a)") "", "`"//name//"` is one of these:", ""
+      do i = 1, size(words)
+         write (unit, "(a)") "* `"//trim(words(i)%word)//"`: "//trim(words(i)%meaning)
+      end do
+   end subroutine describe_words
+
+end module output_describe
