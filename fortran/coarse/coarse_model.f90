@@ -11,8 +11,9 @@ module coarse_model
                           phase_solve, timers_t
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
-   use coarse_equations, only: newton_settings_t
-   use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
+   use coarse_diffusion, only: cell_outflow
+   use coarse_fields, only: cell_contents, corner_tractions
+   use coarse_fractures, only: newton_settings_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
@@ -141,7 +142,7 @@ contains
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if
-      allocate (g(6*n), q(6*n))
+      allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known
       rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
@@ -181,13 +182,13 @@ contains
       end if
    end subroutine advance
 
-   !> Fluid that appeared or vanished in the step [m2]: what is stored less what came in.
+   !> Fluid that appeared or vanished in the step: what is stored less what came in.
    subroutine mass_error(self, mesh, dt, before, after, balance)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt
+      real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
-      real(rk), intent(out) :: balance
+      real(rk), intent(out) :: balance  !< [m2]
 
       real(rk), allocatable :: outflow(:)
 
@@ -200,7 +201,7 @@ contains
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
       if (self%drained) then
          allocate (outflow(mesh%n_cells))
-         call cell_outflow(mesh, self%regions, after%unknowns, outflow)
+         call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
          balance = balance + dt*sum(outflow)
          if (mesh%fracture%n_cells > 0) balance = balance &
                                                   + dt*sum(self%condensed%length*after%leakoff)
