@@ -160,11 +160,12 @@ contains
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: gradient(2)  !< [Pa/m]
 
-      integer(ik) :: faces(2), b, j, m, r, row
+      integer(ik) :: faces(2), b, before, j, m, r, row
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, flux, velocity(2)
 
       r = regions%region_of_node(mesh%cell_nodes(k, cell))
       m = regions%blocks%length(r)
+      before = regions%blocks%first(r) - 1
       call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
       velocity = 0.0_rk
       associate (response => responses(r)%matrix)
@@ -172,7 +173,7 @@ contains
             row = regions%flow_faces%place(r, faces(j))
             flux = response(row, m + 1)
             do b = 1, m
-               flux = flux + response(row, b)*scalars(regions%blocks%at(r, b))
+               flux = flux + response(row, b)*scalars(regions%blocks%item(before + b))
             end do
             velocity = velocity + sign_out(j)*lever(:, j)*flux
          end do

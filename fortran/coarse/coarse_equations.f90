@@ -1,5 +1,5 @@
-!> The equations of one time step on the fractures: contact at both ends of every cell, and the fluid
-!! (coarse_fracture_flow). Their unknowns are those of fracture_layout_t.
+!> The equations of one time step on the fractures: contact at both ends of every cell, and the
+!! fluid (coarse_fracture_flow). Their unknowns are those of fracture_layout_t.
 module coarse_equations
    use base_kinds, only: ik, rk
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
@@ -54,7 +54,7 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(equations_t), intent(inout) :: eq
 
-      real(rk) :: by_traction(2, 2), by_jump(2, 2), half_length
+      real(rk) :: by_force, by_traction(2, 2), by_jump(2, 2), half_length
       integer(ik) :: at, fluid, k, m, n, point, row
 
       n = size(eq%force_slope, 1)
@@ -70,8 +70,9 @@ contains
       do k = 1, 2
          associate (slope => eq%jacobian(:, row + k - 1))
             do m = 1, 2
-               if (abs(by_traction(k, m)) > 0.0_rk) slope(:n) = slope(:n) &
-                                       - by_traction(k, m)/half_length*eq%force_slope(:, at + m - 1)
+               if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
+               by_force = by_traction(k, m)/half_length
+               slope(:n) = slope(:n) - by_force*eq%force_slope(:, at + m - 1)
             end do
             slope(fluid) = slope(fluid) + by_traction(k, 1)
             slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/eq%stiffness

@@ -28,8 +28,8 @@ module coarse_matrix
       integer(ik) :: n_blocks = 0
       integer(ik) :: n_cells = 0
       type(lists_t) :: columns  !< of each row, from the first to the diagonal
-      !> (3, 3, n_entries), an entry per item of columns, for unknowns [m], [m], [Pa] and rows [N/m],
-      !! [N/m], [m2]
+      !> (3, 3, n_entries), an entry per item of columns, for unknowns [m], [m], [Pa] and rows
+      !! [N/m], [N/m], [m2]
       real(rk), allocatable :: elastic(:, :, :)
       real(rk), allocatable :: flow(:)  !< (n_entries) of the pressures alone [m2/(Pa s)]
       !> (3, n_blocks) right-hand side of the boundary data [N/m], [N/m], [m2]

@@ -59,9 +59,13 @@ contains
       self%rock = new_rock(scene%material, scene%fluid)
       self%sides = scene%sides
       self%drained = any(scene%sides%pressure_given)
-      self%settings = newton_settings_t(tolerance=scene%discretization%newton_tolerance, &
-                  iterations_max=scene%discretization%newton_max, viscosity=scene%fluid%viscosity, &
-                            compressibility=scene%fluid%compressibility, young=scene%material%young)
+      associate (choice => scene%discretization, fluid => scene%fluid)
+         self%settings = newton_settings_t(tolerance=choice%newton_tolerance, &
+                                           iterations_max=choice%newton_max, &
+                                           viscosity=fluid%viscosity, &
+                                           compressibility=fluid%compressibility, &
+                                           young=scene%material%young)
+      end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
       call self%condensed%solver%release()
@@ -220,8 +224,7 @@ contains
       do point = 1, mesh%fracture%n_points
          if (mesh%fracture%point_kind(point) /= point_interior) cycle
          n = n + 1
-         connections(:, n) = mesh%fracture%point_cells(mesh%fracture%point_first(point): &
-                                                       mesh%fracture%point_first(point) + 1)
+         connections(:, n) = mesh%fracture%point_cells%of(point)
       end do
       connections = connections(:, :n)
    end subroutine find_connections

@@ -88,9 +88,8 @@ contains
          end do
          do j = 1, 2
             do i = 1, 2
-               w = area/3.0_rk
-               call add_compliance(local%matrix, at(i), at(j), &
-                        w*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear), nu, lever(:, i), lever(:, j))
+               w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear)
+               call add_compliance(local%matrix, at(i), at(j), w, nu, lever(:, i), lever(:, j))
             end do
             w = sign_out(j)*area/(6.0_rk*rock%shear)
             call add_symmetric(local%matrix, at(j), rotation, -w*lever(2, j))

@@ -1,5 +1,5 @@
-!> Contact systems whose derivatives are a full matrix, as they are for a body that is condensed onto
-!! its fractures: the linear step by Gauss elimination.
+!> Contact systems whose derivatives are a full matrix, as they are for a body that is condensed
+!! onto its fractures: the linear step by Gauss elimination.
 module contact_dense
    use algebra_lapack, only: dgecon, dgetrf, dgetrs
    use base_kinds, only: ik, rk
@@ -19,8 +19,8 @@ module contact_dense
 
 contains
 
-   !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is that
-   !! of the scaled matrix in the 1-norm of its transpose.
+   !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
+   !! that of the scaled matrix in the 1-norm of its transpose.
    subroutine find_step(self, with_condition, step, quality)
       class(dense_system_t), intent(inout) :: self
       logical, intent(in) :: with_condition

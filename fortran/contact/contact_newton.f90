@@ -73,8 +73,8 @@ module contact_newton
          real(rk), intent(in) :: x(:)  !< (n) [Pa]
       end subroutine evaluate_system
 
-      !> The step that makes the linearized residuals zero, from where the system was last evaluated.
-      !! Residuals and derivatives may be used up: the next evaluation makes them anew.
+      !> The step that makes the linearized residuals zero, from where the system was last
+      !! evaluated. Residuals and derivatives may be used up: the next evaluation makes them anew.
       subroutine find_linear_step(self, with_condition, step, quality)
          import :: contact_system_t, rk, step_quality_t
          implicit none(type, external)
@@ -84,8 +84,8 @@ module contact_newton
          type(step_quality_t), intent(out) :: quality
       end subroutine find_linear_step
 
-      !> The sum of the sizes of the terms that a residual consists of, |d residual/d x_j| |x_j| over
-      !! all j [Pa], where last evaluated.
+      !> The sum of the sizes of the terms that a residual consists of, |d residual/d x_j| |x_j|
+      !! over all j, where last evaluated.
       pure function sum_terms(self, x, row) result(total)
          import :: contact_system_t, ik, rk
          implicit none(type, external)

@@ -116,9 +116,10 @@ contains
             do end = 1, 2
                at = model%condensed%layout%at_jump(i, end)
                slip = x(eq%layout%at_jump(i, end) + 1) - eq%stiffness*state%jump(2, end, i)
-               associate (half_length => 0.5_rk*model%condensed%length(i), k => 2*(i - 1) + end)
+               associate (half_length => 0.5_rk*model%condensed%length(i), k => 2*(i - 1) + end, &
+                          fluid => x(eq%layout%at_pressure(i)))
                   g(at:at + 1) = g(at:at + 1) + eq%force(at:at + 1) &
-                                 - half_length*[x(eq%layout%at_pressure(i)) - normal(k), slip - shear(2*n + k)]
+                                 - half_length*[fluid - normal(k), slip - shear(2*n + k)]
                end associate
             end do
          end do
@@ -179,14 +180,14 @@ contains
    !> What flows along a fracture leaves one balance and enters the next; the other ends are closed.
    subroutine test_exchange_along_fractures()
       type(equations_t) :: at_rest, flowing
-      real(rk), allocatable :: x(:)
-      real(rk) :: balance
-      integer(ik), allocatable :: contact(:, :)
+      real(rk), allocatable :: change(:), x(:)
+      integer(ik), allocatable :: balances(:), contact(:, :)
       type(fracture_layout_t) :: layout
       integer(ik) :: first, i, k
 
       layout = layout_of_model()
       call checks%is_true(layout%n_flows == layout%n_cells - 2, "two fractures, not connected")
+      balances = [(layout%at_pressure(i), i=1, layout%n_cells)]
       call some_unknowns(1, x)
       x(layout%at_flow(1_ik):) = 0.0_rk
       call equations_at(x, .false., at_rest, contact)
@@ -195,26 +196,11 @@ contains
          x(layout%at_flow(k)) = 3.0e6_rk
          call equations_at(x, .false., flowing, contact)
          first = model%connections(1, k)
-         balance = gain(first)
-         call checks%is_close(balance, 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, "out of the first cell")
-         balance = 0.0_rk
-         do i = 1, layout%n_cells
-            balance = balance + gain(i)
-         end do
-         call checks%is_close(balance, 0.0_rk, 1.0e-6_rk*3.0e6_rk, "nothing is lost on the way")
+         change = flowing%residual - at_rest%residual
+         call checks%is_close(change(layout%at_pressure(first)), 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, &
+                              "out of the first cell")
+         call checks%is_close(sum(change(balances)), 0.0_rk, 1.0e-6_rk*3.0e6_rk, "nothing is lost on the way")
       end do
-
-   contains
-
-      !> What the flow changes in the balance of a cell.
-      real(rk) function gain(cell)
-         integer(ik), intent(in) :: cell
-
-         associate (at => layout%at_pressure(cell))
-            gain = flowing%residual(at) - at_rest%residual(at)
-         end associate
-      end function gain
-
    end subroutine test_exchange_along_fractures
 
 end program test_coarse_equations

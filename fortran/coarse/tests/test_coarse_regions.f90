@@ -35,7 +35,8 @@ contains
       real(rk) :: place(2)
 
       associate (n => regions%n_regions, m => mesh%fracture%n_cells)
-         call checks%is_true(all(tally(regions%nodes%item, mesh%n_nodes) == 1), name//": nodes once")
+         call checks%is_true(all(tally(regions%nodes%item, mesh%n_nodes) == 1), &
+                             name//": nodes once")
          call checks%is_true(all(tally(regions%flow_faces%item, mesh%n_faces) == 2), &
                              name//": faces for the flow at both ends")
          allocate (found, source=tally(regions%faces%item, mesh%n_faces))
@@ -125,7 +126,8 @@ contains
                                               dim=1), dim=1))
       call checks%is_true(regions%nodes%length(r) == n_nodes, &
                           name//": nodes joined")
-      call checks%is_true(regions%blocks%length(r) - regions%cell_count(r) == 2*n_fracture_cells, name//": fracture cells")
+      call checks%is_true(regions%blocks%length(r) - regions%cell_count(r) &
+                          == 2*n_fracture_cells, name//": fracture cells")
    end subroutine check_place
 
    !> A free tip is one node; inside the fracture two nodes are joined; a tip-less end splits the
