@@ -199,7 +199,8 @@ contains
          change = flowing%residual - at_rest%residual
          call checks%is_close(change(layout%at_pressure(first)), 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, &
                               "out of the first cell")
-         call checks%is_close(sum(change(balances)), 0.0_rk, 1.0e-6_rk*3.0e6_rk, "nothing is lost on the way")
+         call checks%is_close(sum(change(balances)), 0.0_rk, 1.0e-6_rk*3.0e6_rk, &
+                              "nothing is lost on the way")
       end do
    end subroutine test_exchange_along_fractures
 
