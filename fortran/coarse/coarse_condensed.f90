@@ -7,11 +7,12 @@
 !!   S q - g = ( -l/2 (f_n - p_F), -l/2 f_tau at the start, dt l lambda+,
 !!               -l/2 (f_n - p_F), -l/2 f_tau at the end,   dt l lambda- )
 !!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
-!! six of each per fracture cell.
+!! six of each per fracture cell (condensed_layout_t), jumps and forces in n, tau of the cell.
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use algebra_mumps, only: mumps_indefinite, mumps_t
+   use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
    use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -22,13 +23,17 @@ module coarse_condensed
    !> Factors of the matrix and the dense system on the fractures, for one mesh and one time step.
    type :: condensed_t
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
-      real(rk), allocatable :: stiffness(:, :)  !< S (6 n, 6 n) in the order above, cell by cell
-      real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side -
+      !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]
+      real(rk), allocatable :: stiffness(:, :)
+      real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
       integer(ik) :: n = 0  !< fracture cells
+      type(condensed_layout_t) :: layout  !< of q
       type(mumps_t) :: solver
       logical :: analysed = .false.
-      real(rk), allocatable :: scale(:)  !< (3 n_blocks) unknown = scale * scaled unknown
+      !> (3 n_blocks) unknown = scale * scaled unknown [m], [m], [Pa] block by block
+      real(rk), allocatable :: scale(:)
+      integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
    contains
       procedure :: factorize
       procedure :: condense
@@ -52,10 +57,12 @@ contains
       self%dt = -1.0_rk
       if (.not. self%analysed) then
          self%n = mesh%fracture%n_cells
+         self%layout = condensed_layout(self%n)
+         self%at_fractures = at_component(matrix%n_cells + 1, 1)
          call find_frames(mesh, self%normal, self%length)
          call triplet_pattern(matrix, row, col)
          n = 3*matrix%n_blocks
-         schur = [(i, i=3*matrix%n_cells + 1, n)]
+         schur = [(i, i=self%at_fractures, n)]
          call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
          if (allocated(error)) return
          self%analysed = .true.
@@ -71,23 +78,23 @@ contains
    !> Load g on the fractures.
    subroutine condense(self, rhs, g, error)
       class(condensed_t), intent(inout) :: self
-      !> (3, n_blocks), fracture cells without their tractions and fluxes
+      !> (3, n_blocks) [N/m], [N/m], [m2], fracture cells without their tractions and fluxes
       real(rk), intent(in) :: rhs(:, :)
-      real(rk), intent(out) :: g(:)  !< (6 n)
+      real(rk), intent(out) :: g(:)  !< (6 n) [N/m], [N/m], [m2]
       type(error_t), allocatable, intent(out) :: error
 
       if (self%n == 0) return
       call self%solver%condense(reshape(rhs, [size(rhs)])*self%scale, g, error)
-      g = g/self%scale(size(self%scale) - 6*self%n + 1:)
+      g = g/self%scale(self%at_fractures:)
       call turn_to_normals(self, g)
    end subroutine condense
 
    !> All unknowns from q on the fractures, or, without fractures, from the right-hand side.
    subroutine expand(self, q, rhs, unknowns, error)
       class(condensed_t), intent(inout) :: self
-      real(rk), intent(in) :: q(:)  !< (6 n)
-      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks)
-      real(rk), intent(out) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(in) :: q(:)  !< (6 n) [m], [m], [Pa]
+      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
+      real(rk), intent(out) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       type(error_t), allocatable, intent(out) :: error
 
       real(rk) :: x(size(rhs), 1)
@@ -99,7 +106,7 @@ contains
       else
          jumps = q
          call turn_to_axes(self, jumps)
-         call self%solver%expand(jumps/self%scale(size(self%scale) - 6*self%n + 1:), x(:, 1), error)
+         call self%solver%expand(jumps/self%scale(self%at_fractures:), x(:, 1), error)
       end if
       unknowns = reshape(x(:, 1)*self%scale, shape(unknowns))
    end subroutine expand
@@ -108,18 +115,18 @@ contains
    subroutine find_stiffness(self)
       class(condensed_t), intent(inout) :: self
 
-      real(rk) :: schur(6*self%n, 6*self%n)
+      real(rk) :: schur(self%layout%count(), self%layout%count())
       integer(ik) :: i
 
       call self%solver%get_schur(schur)
-      associate (s => self%scale(size(self%scale) - 6*self%n + 1:))
-         do i = 1, 6*self%n
+      associate (s => self%scale(self%at_fractures:))
+         do i = 1, size(s)
             schur(:, i) = schur(:, i)/(s*s(i))
             call turn_to_normals(self, schur(:, i))
          end do
       end associate
       schur = transpose(schur)
-      do i = 1, 6*self%n
+      do i = 1, size(schur, 2)
          call turn_to_normals(self, schur(:, i))
       end do
       self%stiffness = schur
@@ -128,13 +135,14 @@ contains
    !> Components x, y of jumps or forces become n, tau; tau is n turned by -90 degrees.
    pure subroutine turn_to_normals(self, v)
       class(condensed_t), intent(in) :: self
-      real(rk), intent(inout) :: v(:)  !< (6 n)
+      real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
 
-      integer(ik) :: at, i
+      integer(ik) :: at, end, i
 
       do i = 1, self%n
          associate (n => self%normal(:, i))
-            do at = 6*i - 5, 6*i - 2, 3
+            do end = 1, 2
+               at = self%layout%at_jump(i, end)
                v(at:at + 1) = [n(1)*v(at) + n(2)*v(at + 1), n(2)*v(at) - n(1)*v(at + 1)]
             end do
          end associate
@@ -144,7 +152,7 @@ contains
    !> Components n, tau become x, y: the turn is its own inverse.
    pure subroutine turn_to_axes(self, v)
       class(condensed_t), intent(in) :: self
-      real(rk), intent(inout) :: v(:)  !< (6 n)
+      real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
 
       call turn_to_normals(self, v)
    end subroutine turn_to_axes
@@ -153,19 +161,19 @@ contains
    pure subroutine find_scale(matrix, dt, scale)
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
-      real(rk), allocatable, intent(out) :: scale(:)
+      real(rk), allocatable, intent(out) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
 
       real(rk) :: diagonal
       integer(ik) :: a, entry, i
 
       allocate (scale(3*matrix%n_blocks))
       do i = 1, matrix%n_blocks
-         entry = matrix%row_first(i + 1) - 1
+         entry = matrix%columns%last(i)
          do a = 1, 3
             diagonal = matrix%elastic(a, a, entry)
             if (a == 3) diagonal = diagonal + dt*matrix%flow(entry)
-            scale(3*(i - 1) + a) = 1.0_rk
-            if (abs(diagonal) > 0.0_rk) scale(3*(i - 1) + a) = 1.0_rk/sqrt(abs(diagonal))
+            scale(at_component(i, a)) = 1.0_rk
+            if (abs(diagonal) > 0.0_rk) scale(at_component(i, a)) = 1.0_rk/sqrt(abs(diagonal))
          end do
       end do
    end subroutine find_scale
@@ -173,7 +181,8 @@ contains
    !> Normal (from side + to side -) and length of each fracture cell.
    subroutine find_frames(mesh, normal, length)
       type(mesh_t), intent(in) :: mesh
-      real(rk), allocatable, intent(out) :: normal(:, :), length(:)
+      real(rk), allocatable, intent(out) :: normal(:, :)  !< (2, n) [-]
+      real(rk), allocatable, intent(out) :: length(:)  !< (n) [m]
 
       integer(ik) :: i
       real(rk) :: tangent(2)
@@ -188,50 +197,63 @@ contains
       end do
    end subroutine find_frames
 
+   !> Where the numbers of the lower triangle stand, one by one.
    subroutine triplet_pattern(matrix, row, col)
       type(matrix_t), intent(in) :: matrix
       integer(ik), allocatable, intent(out) :: row(:), col(:)
 
-      integer(ik) :: a, b, entry, i, n
+      integer(ik) :: a, b, block, entry, i, n
 
-      n = 9*(size(matrix%col) - matrix%n_blocks) + 6*matrix%n_blocks
+      n = triplet_count(matrix)
       allocate (row(n), col(n))
       n = 0
       do i = 1, matrix%n_blocks
-         do entry = matrix%row_first(i), matrix%row_first(i + 1) - 1
+         do entry = matrix%columns%first(i), matrix%columns%last(i)
+            block = matrix%columns%item(entry)
             do b = 1, 3
-               do a = merge(b, 1_ik, matrix%col(entry) == i), 3
+               do a = merge(b, 1_ik, block == i), 3
                   n = n + 1
-                  row(n) = 3*(i - 1) + a
-                  col(n) = 3*(matrix%col(entry) - 1) + b
+                  row(n) = at_component(i, a)
+                  col(n) = at_component(block, b)
                end do
             end do
          end do
       end do
    end subroutine triplet_pattern
 
+   !> The numbers themselves, for scaled unknowns and equations.
    subroutine triplet_values(matrix, scale, dt, values)
       type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: scale(:), dt
-      real(rk), allocatable, intent(out) :: values(:)
+      real(rk), intent(in) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), allocatable, intent(out) :: values(:)  !< [-]
 
-      integer(ik) :: a, b, entry, i, n
+      integer(ik) :: a, at_col, at_row, b, entry, i, n
       real(rk) :: block(3, 3)
 
-      allocate (values(9*(size(matrix%col) - matrix%n_blocks) + 6*matrix%n_blocks))
+      allocate (values(triplet_count(matrix)))
       n = 0
       do i = 1, matrix%n_blocks
-         do entry = matrix%row_first(i), matrix%row_first(i + 1) - 1
+         at_row = at_component(i, 1) - 1
+         do entry = matrix%columns%first(i), matrix%columns%last(i)
+            at_col = at_component(matrix%columns%item(entry), 1) - 1
             block = matrix%elastic(:, :, entry)
             block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
             do b = 1, 3
-               do a = merge(b, 1_ik, matrix%col(entry) == i), 3
+               do a = merge(b, 1_ik, at_col == at_row), 3
                   n = n + 1
-                  values(n) = block(a, b)*scale(3*(i - 1) + a)*scale(3*(matrix%col(entry) - 1) + b)
+                  values(n) = block(a, b)*scale(at_row + a)*scale(at_col + b)
                end do
             end do
          end do
       end do
    end subroutine triplet_values
+
+   !> How many numbers the lower triangle has: six in a diagonal block, nine in another.
+   pure integer(ik) function triplet_count(matrix)
+      type(matrix_t), intent(in) :: matrix
+
+      triplet_count = 9*(size(matrix%columns%item, kind=ik) - matrix%n_blocks) + 6*matrix%n_blocks
+   end function triplet_count
 
 end module coarse_condensed

@@ -1,4 +1,4 @@
-!> The matrix of the coarse level: cells and fracture cells in blocks of three (see coarse_regions).
+!> The matrix of the coarse level: cells and fracture cells in blocks of three (see coarse_layout).
 !!
 !! Rows: balance of forces on a cell [N/m]; its fluid content, negated [m2]; force through an end of
 !! a fracture cell, negated [N/m]; fluid that leaves the rock through a fracture face within the
@@ -8,27 +8,33 @@
 module coarse_matrix
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
+   use coarse_diffusion, only: find_flux_stencil
+   use coarse_elimination, only: response_t, share_t
+   use coarse_geometry, only: cell_area
+   use coarse_layout, only: at_component
    use coarse_regions, only: find_regions, regions_t
    use coarse_rock, only: rock_t
-   use coarse_stencil, only: region_matrix_t, solve_region
+   use coarse_stress, only: find_stress_stencil
    use mesh_types, only: mesh_t
    use scene_types, only: boundary_side_t
    implicit none(type, external)
    private
 
-   public :: cell_area, discretize, matrix_t
+   public :: discretize, matrix_t
 
    !> Lower triangle in blocks, by rows; the diagonal block is the last one of its row.
    type :: matrix_t
       integer(ik) :: n_blocks = 0
       integer(ik) :: n_cells = 0
-      integer(ik), allocatable :: row_first(:)  !< (n_blocks+1) into col
-      integer(ik), allocatable :: col(:)
-      real(rk), allocatable :: elastic(:, :, :)  !< (3, 3, n_entries)
-      real(rk), allocatable :: flow(:)  !< (n_entries) of the pressures, per second
-      !> (3, n_blocks) right-hand side of the boundary data
+      type(lists_t) :: columns  !< of each row, from the first to the diagonal
+      !> (3, 3, n_entries), an entry per item of columns, for unknowns [m], [m], [Pa] and rows
+      !! [N/m], [N/m], [m2]
+      real(rk), allocatable :: elastic(:, :, :)
+      real(rk), allocatable :: flow(:)  !< (n_entries) of the pressures alone [m2/(Pa s)]
+      !> (3, n_blocks) right-hand side of the boundary data [N/m], [N/m], [m2]
       real(rk), allocatable :: elastic_known(:, :)
-      real(rk), allocatable :: flow_known(:)  !< (n_blocks) the same for the fluid, per second
+      real(rk), allocatable :: flow_known(:)  !< (n_blocks) the same for the flow [m2/s]
       !> (n_cells) content per pressure at fixed traction [m2/Pa]
       real(rk), allocatable :: storage(:)
    end type matrix_t
@@ -44,32 +50,43 @@ contains
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
 
-      type(region_matrix_t) :: local
+      type(response_t) :: flux, traction
+      type(share_t) :: elastic, flow
       integer(ik) :: c, info, r
-      character(len=80) :: place
 
       call find_regions(mesh, regions)
       call find_pattern(mesh, regions, matrix)
       do r = 1, regions%n_regions
-         call solve_region(mesh, rock, sides, r, regions, local, info)
+         call find_stress_stencil(mesh, rock, sides, regions, r, traction, elastic, info)
+         if (info == 0) call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, &
+                                               sides%pressure, regions, r, flux, flow, info)
          if (info /= 0) then
-            associate (xy => mesh%xy(:, regions%nodes(regions%node_first(r))))
-               write (place, "(a,es12.5,a,es12.5,a)") "(", xy(1), ",", xy(2), ")"
-            end associate
-            call raise_error(error, "coarse_matrix", "degenerate cells around the mesh node at "// &
-                             place)
+            call refuse_place(mesh%xy(:, regions%nodes%at(r, 1_ik)), error)
             return
          end if
-         call add_region(regions, r, local, matrix)
+         call move_alloc(traction%matrix, regions%traction(r)%matrix)
+         call move_alloc(flux%matrix, regions%flux(r)%matrix)
+         call add_region(regions, r, elastic, flow, matrix)
       end do
       do c = 1, mesh%n_cells
          matrix%storage(c) = cell_area(mesh, c)*(rock%storage &
                                                  + rock%biot**2/(rock%lame + rock%shear))
-         associate (diagonal => matrix%row_first(c + 1) - 1)
+         associate (diagonal => matrix%columns%last(c))
             matrix%elastic(3, 3, diagonal) = matrix%elastic(3, 3, diagonal) - matrix%storage(c)
          end associate
       end do
    end subroutine discretize
+
+   !> The error of cells that no stencil can be found on.
+   subroutine refuse_place(xy, error)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=80) :: place
+
+      write (place, "(a,es12.5,a,es12.5,a)") "(", xy(1), ",", xy(2), ")"
+      call raise_error(error, "coarse_matrix", "degenerate cells around the mesh node at "//place)
+   end subroutine refuse_place
 
    !> Which blocks meet in some region.
    subroutine find_pattern(mesh, regions, matrix)
@@ -78,85 +95,66 @@ contains
       type(matrix_t), intent(inout) :: matrix
 
       integer(ik), allocatable :: last_row(:), found(:)
-      integer(ik) :: i, j, n, r, around(3), n_around
+      integer(ik) :: block, i, k, n, r, side
 
       matrix%n_blocks = regions%n_blocks
       matrix%n_cells = mesh%n_cells
-      allocate (matrix%row_first(matrix%n_blocks + 1))
+      allocate (matrix%columns%first(matrix%n_blocks + 1))
       allocate (last_row(matrix%n_blocks), source=0_ik)
       allocate (found(20*matrix%n_blocks))
       n = 0
       do i = 1, matrix%n_blocks
-         matrix%row_first(i) = n + 1
-         if (i <= mesh%n_cells) then
-            around = regions%region_of_node(mesh%cell_nodes(:, i))
-            n_around = 3
-         else
-            associate (face => mesh%fracture%cell_faces(1, (i - mesh%n_cells + 1)/2))
-               around(:2) = regions%region_of_node(mesh%face_nodes(:, face))
-            end associate
-            n_around = 2
-         end if
+         matrix%columns%first(i) = n + 1
          last_row(i) = i
-         do r = 1, n_around
-            do j = regions%block_first(around(r)), regions%block_first(around(r) + 1) - 1
-               if (regions%blocks(j) > i) cycle
-               if (last_row(regions%blocks(j)) == i) cycle
-               last_row(regions%blocks(j)) = i
+         do side = 1, 3
+            r = regions%regions_of_block(side, i)
+            if (r == 0) cycle
+            do k = regions%blocks%first(r), regions%blocks%last(r)
+               block = regions%blocks%item(k)
+               if (block > i) cycle
+               if (last_row(block) == i) cycle
+               last_row(block) = i
                n = n + 1
                if (n + 1 > size(found)) found = [found, found]
-               found(n) = regions%blocks(j)
+               found(n) = block
             end do
          end do
          n = n + 1
          found(n) = i
       end do
-      matrix%row_first(matrix%n_blocks + 1) = n + 1
-      matrix%col = found(:n)
+      matrix%columns%first(matrix%n_blocks + 1) = n + 1
+      matrix%columns%item = found(:n)
       allocate (matrix%elastic(3, 3, n), matrix%flow(n), source=0.0_rk)
       allocate (matrix%elastic_known(3, matrix%n_blocks), source=0.0_rk)
       allocate (matrix%flow_known(matrix%n_blocks), matrix%storage(mesh%n_cells), source=0.0_rk)
    end subroutine find_pattern
 
-   subroutine add_region(regions, region, local, matrix)
+   !> Add the shares of one region.
+   subroutine add_region(regions, region, elastic, flow, matrix)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
-      type(region_matrix_t), intent(in) :: local
+      type(share_t), intent(in) :: elastic, flow
       type(matrix_t), intent(inout) :: matrix
 
-      integer(ik) :: a, b, entry
+      integer(ik) :: a, at_a, at_b, b, entry, row
+      integer(ik), allocatable :: blocks(:)
 
-      associate (blocks => regions%blocks(regions%block_first(region): &
-                                          regions%block_first(region + 1) - 1))
-         do a = 1, size(blocks)
-            associate (row => blocks(a))
-               do b = 1, size(blocks)
-                  if (blocks(b) > row) cycle
-                  do entry = matrix%row_first(row), matrix%row_first(row + 1) - 1
-                     if (matrix%col(entry) == blocks(b)) exit
-                  end do
-                  matrix%elastic(:, :, entry) = matrix%elastic(:, :, entry) &
-                                                + local%elastic(3*a - 2:3*a, 3*b - 2:3*b)
-                  matrix%flow(entry) = matrix%flow(entry) + local%flow(a, b)
-               end do
-               matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
-                                              + local%elastic_known(3*a - 2:3*a)
-               matrix%flow_known(row) = matrix%flow_known(row) + local%flow_known(a)
-            end associate
+      allocate (blocks, source=regions%blocks%of(region))
+      do a = 1, size(blocks)
+         row = blocks(a)
+         at_a = at_component(a, 1)
+         do b = 1, size(blocks)
+            if (blocks(b) > row) cycle
+            at_b = at_component(b, 1)
+            entry = matrix%columns%first(row) - 1 + matrix%columns%place(row, blocks(b))
+            matrix%elastic(:, :, entry) = matrix%elastic(:, :, entry) &
+                                          + elastic%matrix(at_a:at_a + 2, at_b:at_b + 2)
+            matrix%flow(entry) = matrix%flow(entry) + flow%matrix(a, b)
          end do
-      end associate
+         matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
+                                        + elastic%known(at_a:at_a + 2)
+         matrix%flow_known(row) = matrix%flow_known(row) + flow%known(a)
+      end do
    end subroutine add_region
-
-   pure function cell_area(mesh, cell) result(area)
-      type(mesh_t), intent(in) :: mesh
-      integer(ik), intent(in) :: cell
-      real(rk) :: area  !< [m2]
-
-      associate (a => mesh%xy(:, mesh%cell_nodes(1, cell)), &
-                 b => mesh%xy(:, mesh%cell_nodes(2, cell)), &
-                 c => mesh%xy(:, mesh%cell_nodes(3, cell)))
-         area = 0.5_rk*((b(1) - a(1))*(c(2) - a(2)) - (b(2) - a(2))*(c(1) - a(1)))
-      end associate
-   end function cell_area
 
 end module coarse_matrix

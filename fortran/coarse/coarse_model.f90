@@ -11,8 +11,9 @@ module coarse_model
                           phase_solve, timers_t
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
-   use coarse_equations, only: newton_settings_t
-   use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
+   use coarse_diffusion, only: cell_outflow
+   use coarse_fields, only: cell_contents, corner_tractions
+   use coarse_fractures, only: newton_settings_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
@@ -58,9 +59,13 @@ contains
       self%rock = new_rock(scene%material, scene%fluid)
       self%sides = scene%sides
       self%drained = any(scene%sides%pressure_given)
-      self%settings = newton_settings_t(tolerance=scene%discretization%newton_tolerance, &
-                  iterations_max=scene%discretization%newton_max, viscosity=scene%fluid%viscosity, &
-                            compressibility=scene%fluid%compressibility, young=scene%material%young)
+      associate (choice => scene%discretization, fluid => scene%fluid)
+         self%settings = newton_settings_t(tolerance=choice%newton_tolerance, &
+                                           iterations_max=choice%newton_max, &
+                                           viscosity=fluid%viscosity, &
+                                           compressibility=fluid%compressibility, &
+                                           young=scene%material%young)
+      end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
       call self%condensed%solver%release()
@@ -141,7 +146,7 @@ contains
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if
-      allocate (g(6*n), q(6*n))
+      allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known
       rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
@@ -181,13 +186,13 @@ contains
       end if
    end subroutine advance
 
-   !> Fluid that appeared or vanished in the step [m2]: what is stored less what came in.
+   !> Fluid that appeared or vanished in the step: what is stored less what came in.
    subroutine mass_error(self, mesh, dt, before, after, balance)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt
+      real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
-      real(rk), intent(out) :: balance
+      real(rk), intent(out) :: balance  !< [m2]
 
       real(rk), allocatable :: outflow(:)
 
@@ -200,7 +205,7 @@ contains
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
       if (self%drained) then
          allocate (outflow(mesh%n_cells))
-         call cell_outflow(mesh, self%regions, after%unknowns, outflow)
+         call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
          balance = balance + dt*sum(outflow)
          if (mesh%fracture%n_cells > 0) balance = balance &
                                                   + dt*sum(self%condensed%length*after%leakoff)
@@ -219,8 +224,7 @@ contains
       do point = 1, mesh%fracture%n_points
          if (mesh%fracture%point_kind(point) /= point_interior) cycle
          n = n + 1
-         connections(:, n) = mesh%fracture%point_cells(mesh%fracture%point_first(point): &
-                                                       mesh%fracture%point_first(point) + 1)
+         connections(:, n) = mesh%fracture%point_cells%of(point)
       end do
       connections = connections(:, :n)
    end subroutine find_connections

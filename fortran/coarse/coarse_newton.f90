@@ -3,7 +3,8 @@
 module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_equations, only: equations_t, newton_settings_t, per_cell, prepare
+   use coarse_equations, only: equations_t
+   use coarse_fractures, only: newton_settings_t, prepare
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
@@ -25,23 +26,17 @@ contains
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system
+      real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(inout), target :: state
-      real(rk), intent(out) :: q(:)  !< (6 n) unknowns of the condensed system
+      real(rk), intent(out) :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       type(step_report_t), intent(out) :: report
 
       type(equations_t) :: eq
       type(iteration_report_t) :: found
       real(rk), allocatable :: x(:)
-      integer(ik) :: i
 
       call prepare(condensed, cells, connections, settings, dt, g, state, eq)
-      allocate (x(size(eq%residual)), source=0.0_rk)
-      do i = 1, condensed%n
-         x(7*i - 6:7*i - 5) = state%jump(:, 1, i)*eq%stiffness
-         x(7*i - 3:7*i - 2) = state%jump(:, 2, i)*eq%stiffness
-         x([7*i - 4, 7*i - 1, 7*i]) = state%pressure(i)
-      end do
+      call first_guess(eq, state, x)
       call iterate(eq, x, iteration_settings_t(tolerance=settings%tolerance, &
                                                iterations_max=settings%iterations_max, &
                                                with_condition=.true., &
@@ -64,29 +59,51 @@ contains
       if (report%converged) call accept(condensed, cells, dt, eq, x, state, report)
    end subroutine solve_fractures
 
+   !> The state before, the rock at the fractures having their pressure, without flow.
+   pure subroutine first_guess(eq, state, x)
+      type(equations_t), intent(in) :: eq
+      type(state_t), intent(in) :: state
+      real(rk), allocatable, intent(out) :: x(:)  !< [Pa]
+
+      integer(ik) :: at, i, k
+
+      allocate (x(eq%layout%count()), source=0.0_rk)
+      do i = 1, eq%layout%n_cells
+         do k = 1, 2
+            at = eq%layout%at_jump(i, k)
+            x(at:at + 1) = state%jump(:, k, i)*eq%stiffness
+            x(eq%layout%at_face_pressure(i, k)) = state%pressure(i)
+         end do
+         x(eq%layout%at_pressure(i)) = state%pressure(i)
+      end do
+   end subroutine first_guess
+
    !> Check the solution against the law itself and make it the state.
    subroutine accept(condensed, cells, dt, eq, x, state, report)
       type(condensed_t), intent(in) :: condensed
       type(fracture_cells_t), intent(in) :: cells
-      real(rk), intent(in) :: dt
+      real(rk), intent(in) :: dt  !< [s]
       type(equations_t), intent(in) :: eq
-      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: x(:)  !< the solution [Pa]
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(inout) :: report
 
       real(rk) :: aperture(condensed%n), residual
-      integer(ik) :: at, end, i, n
+      integer(ik) :: at, end, i
 
-      n = condensed%n
-      aperture = cells%residual_aperture + 0.5_rk*(eq%q(1:6*n:6) + eq%q(4:6*n:6))
+      do i = 1, condensed%n
+         aperture(i) = cells%residual_aperture(i) &
+                       + 0.5_rk*(eq%q(condensed%layout%at_jump(i, 1)) &
+                                 + eq%q(condensed%layout%at_jump(i, 2)))
+      end do
       if (.not. all(aperture > 0.0_rk)) then
          report%converged = .false.
          report%reason = "a fracture cell has an aperture that is not positive"
          return
       end if
-      do i = 1, n
+      do i = 1, condensed%n
          do end = 1, 2
-            at = 6*i - 5 + 3*(end - 1)
+            at = condensed%layout%at_jump(i, end)
             residual = contact_residual(cells%law(i), eq%stiffness, eq%traction(:, end, i), &
                                         eq%q(at:at + 1), state%jump(2, end, i))
             report%contact_residual = max(report%contact_residual, residual/report%stress_scale)
@@ -97,13 +114,17 @@ contains
          report%reason = "the law of contact is not fulfilled on some fracture cell"
          return
       end if
-      do i = 1, n
-         state%jump(:, 1, i) = eq%q(6*i - 5:6*i - 4)
-         state%jump(:, 2, i) = eq%q(6*i - 2:6*i - 1)
-         state%leakoff(i) = -(eq%force(6*i - 3) + eq%force(6*i))/(dt*condensed%length(i))
+      do i = 1, condensed%n
+         do end = 1, 2
+            at = condensed%layout%at_jump(i, end)
+            state%jump(:, end, i) = eq%q(at:at + 1)
+         end do
+         state%leakoff(i) = -(eq%force(condensed%layout%at_face_pressure(i, 1)) &
+                              + eq%force(condensed%layout%at_face_pressure(i, 2))) &
+                            /(dt*condensed%length(i))
+         state%pressure(i) = x(eq%layout%at_pressure(i))
       end do
       state%traction = eq%traction
-      state%pressure = x(7:per_cell*n:7)
       state%aperture = aperture
       state%contact = reshape(eq%state, shape(state%contact))
    end subroutine accept

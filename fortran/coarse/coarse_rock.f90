@@ -21,7 +21,7 @@ module coarse_rock
 
 contains
 
-   !> Constants from the scene (model.md section 2).
+   !> Constants from the scene (docs/theory.md).
    pure function new_rock(material, fluid) result(rock)
       type(material_t), intent(in) :: material
       type(fluid_t), intent(in) :: fluid

@@ -17,10 +17,10 @@ module coarse_state
    !> Unknowns and what is remembered of them.
    type :: state_t
       real(rk) :: time = 0.0_rk  !< [s]
-      !> (3, n_blocks) in blocks as in coarse_regions [m], [Pa]
+      !> (3, n_blocks) in blocks as in coarse_layout [m], [m], [Pa]
       real(rk), allocatable :: unknowns(:, :)
       real(rk), allocatable :: content(:)  !< (n_cells) fluid content above the initial state [m2]
-      real(rk), allocatable :: tractions(:)  !< corner tractions [Pa], packed as in coarse_fields
+      real(rk), allocatable :: tractions(:)  !< of coarse_fields' corner_tractions [Pa]
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
       !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end

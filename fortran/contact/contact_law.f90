@@ -1,8 +1,8 @@
 !> Contact with Coulomb friction and shear dilation at one point of a fracture, as equations for
 !! Newton's method.
 !!
-!! Complementarity functions of a primal-dual active set (Huber and Wohlmuth 2005; model.md section
-!! 4) in their scalar form, each divided by its positive factor so that it is a stress [Pa] or,
+!! Complementarity functions of a primal-dual active set (Hueeber and Wohlmuth 2005; docs/theory.md)
+!! in their scalar form, each divided by its positive factor so that it is a stress [Pa] or,
 !! times the stiffness c, a displacement. With the trial pressure z = -f_n - c ([u]_n - g) and the
 !! trial shear q = f_tau + c d[u]_tau:
 !!   open   z <= 0:             f_n = 0,               f_tau = 0
@@ -16,7 +16,7 @@
 !!
 !! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
 !! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip
-!! increment; it opposes the slip on side -, where the traction is -f. (Model.md writes -f_tau for
+!! increment; it opposes the slip on side -, where the traction is -f. (The thesis writes -f_tau for
 !! f_tau, as for a traction on side -; with sigma n as above that would let friction do work on the
 !! slip.)
 module contact_law
@@ -95,8 +95,11 @@ contains
    !! method solves.
    pure function contact_residual(law, stiffness, traction, jump, slip_before) result(worst)
       type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness, traction(2), jump(2), slip_before
-      real(rk) :: worst
+      real(rk), intent(in) :: stiffness  !< c [Pa/m]
+      real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
+      real(rk) :: worst  !< [Pa]
 
       real(rk) :: bound, opening, slip
 

@@ -1,9 +1,10 @@
 !> Semismooth Newton iteration on equations that hold the law of contact: one iteration for bodies
 !! condensed onto their fractures on both levels.
 !!
-!! A system knows its residuals, their derivatives and the contact state of each point; all
-!! unknowns and residuals are scaled to stresses. The iteration has converged when the residuals
-!! are small and no point has changed its state.
+!! A system knows its residuals and the contact state of each point, and solves its linearized
+!! equations for a step; how it keeps their derivatives is its own affair (contact_dense: as a full
+!! matrix). All unknowns and residuals are scaled to stresses. The iteration has converged when the
+!! residuals are small and no point has changed its state.
 !!
 !! Such an iteration may cycle between states (the primal-dual active set is monotone for
 !! M-matrices only, and the condensed stiffness of a body is none; Hintermueller, Ito and Kunisch
@@ -13,11 +14,10 @@
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use algebra_lapack, only: dgecon, dgetrf, dgetrs
    implicit none(type, external)
    private
 
-   public :: contact_system_t, iterate, iteration_report_t, iteration_settings_t
+   public :: contact_system_t, iterate, iteration_report_t, iteration_settings_t, step_quality_t
    public :: outcome_converged, outcome_not_a_number, outcome_singular, outcome_stuck
 
    integer(ik), parameter :: outcome_converged = 0
@@ -25,16 +25,24 @@ module contact_newton
    integer(ik), parameter :: outcome_singular = 2  !< a matrix was singular
    integer(ik), parameter :: outcome_not_a_number = 3  !< a residual was not a number
 
+   !> How well a linear step could be found.
+   type :: step_quality_t
+      logical :: is_singular = .false.  !< there is no step
+      !> Condition number of the matrix, its equations scaled (estimated; 0: not asked for) [-]
+      real(rk) :: condition = 0.0_rk
+   end type step_quality_t
+
    !> Equations for the iteration.
    type, abstract :: contact_system_t
-      real(rk), allocatable :: residual(:)  !< (n) [Pa]
-      real(rk), allocatable :: jacobian(:, :)  !< (n, n) an equation per column [-]
+      real(rk), allocatable :: residual(:)  !< (n) where last evaluated [Pa]
       real(rk) :: stress_scale = 0.0_rk  !< residuals are relative to it [Pa]
       ! Points where the law of contact holds.
       integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
       integer(ik), allocatable :: state(:)  !< of contact_states
    contains
       procedure(evaluate_system), deferred :: evaluate
+      procedure(find_linear_step), deferred :: find_step
+      procedure(sum_terms), deferred :: size_of_terms
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
@@ -53,9 +61,8 @@ module contact_newton
       integer(ik) :: outcome = outcome_stuck
       integer(ik) :: iterations = 0
       logical :: was_restarted = .false.
-      !> Condition number of the last matrix, scaled (1-norm of its transpose, estimated), and the
-      !! bound that it gives for the relative error of the solution [-]
-      real(rk) :: condition = 0.0_rk, error_bound = 0.0_rk
+      real(rk) :: condition = 0.0_rk  !< of the last matrix, see step_quality_t [-]
+      real(rk) :: error_bound = 0.0_rk  !< what it gives for the solution's relative error [-]
    end type iteration_report_t
 
    abstract interface
@@ -64,8 +71,30 @@ module contact_newton
          import :: contact_system_t, rk
          implicit none(type, external)
          class(contact_system_t), intent(inout) :: self
-         real(rk), intent(in) :: x(:)  !< [Pa]
+         real(rk), intent(in) :: x(:)  !< (n) [Pa]
       end subroutine evaluate_system
+
+      !> The step that makes the linearized residuals zero, from where the system was last
+      !! evaluated. Residuals and derivatives may be used up: the next evaluation makes them anew.
+      subroutine find_linear_step(self, with_condition, step, quality)
+         import :: contact_system_t, rk, step_quality_t
+         implicit none(type, external)
+         class(contact_system_t), intent(inout) :: self
+         logical, intent(in) :: with_condition  !< estimate the condition of the matrix
+         real(rk), intent(out) :: step(:)  !< (n) [Pa]; undefined without one
+         type(step_quality_t), intent(out) :: quality
+      end subroutine find_linear_step
+
+      !> The sum of the sizes of the terms that a residual consists of, |d residual/d x_j| |x_j|
+      !! over all j, where last evaluated.
+      pure function sum_terms(self, x, row) result(total)
+         import :: contact_system_t, ik, rk
+         implicit none(type, external)
+         class(contact_system_t), intent(in) :: self
+         real(rk), intent(in) :: x(:)  !< (n) [Pa]
+         integer(ik), intent(in) :: row  !< number of the residual
+         real(rk) :: total  !< [Pa]
+      end function sum_terms
    end interface
 
 contains
@@ -123,16 +152,16 @@ contains
    !! hold is free to move.
    logical function is_loose(system, x)
       class(contact_system_t), intent(inout) :: system
-      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: x(:)  !< the solution [Pa]
       real(rk), parameter :: largest_condition = 1.0e12_rk
-      type(iteration_report_t) :: report
+      type(step_quality_t) :: quality
       real(rk) :: step(size(x))
 
       call system%end_restart()
       call system%evaluate(x)
-      call newton_step(system, step, .true., report)
-      is_loose = report%outcome == outcome_singular
-      if (.not. is_loose) is_loose = .not. report%condition <= largest_condition
+      call system%find_step(.true., step, quality)
+      is_loose = quality%is_singular
+      if (.not. is_loose) is_loose = .not. quality%condition <= largest_condition
    end function is_loose
 
    !> Iterate until convergence or failure. A start that is good enough is not accepted as it is: a
@@ -140,12 +169,13 @@ contains
    !! onset of growth would not end.
    subroutine iterate_from(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
-      real(rk), intent(inout) :: x(:)
+      real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
       integer(ik) :: before(size(system%state))
       integer(ik) :: seen(2*size(system%state), 0:settings%iterations_max)
       real(rk) :: seen_worst(0:settings%iterations_max), step(size(x)), worst
+      type(step_quality_t) :: quality
       integer(ik) :: k
       logical :: is_small, was_small
 
@@ -174,8 +204,13 @@ contains
          seen(:, k) = [system%state, system%way]
          seen_worst(k) = worst
          before = system%state
-         call newton_step(system, step, settings%with_condition, report)
-         if (report%outcome == outcome_singular) return
+         call system%find_step(settings%with_condition, step, quality)
+         if (quality%is_singular) then
+            report%outcome = outcome_singular
+            return
+         end if
+         report%condition = quality%condition
+         report%error_bound = min(1.0_rk, quality%condition*epsilon(1.0_rk))
          x = x + step
          report%iterations = report%iterations + 1
       end do
@@ -185,9 +220,9 @@ contains
    !! residual.
    pure logical function has_been(system, worst, seen, seen_worst)
       class(contact_system_t), intent(in) :: system
-      real(rk), intent(in) :: worst
-      integer(ik), intent(in) :: seen(:, :)
-      real(rk), intent(in) :: seen_worst(:)
+      real(rk), intent(in) :: worst  !< residual now [Pa]
+      integer(ik), intent(in) :: seen(:, :)  !< (states then ways of all points, iterations)
+      real(rk), intent(in) :: seen_worst(:)  !< (iterations) residuals then [Pa]
       integer(ik) :: k, n
 
       n = size(system%state)
@@ -199,48 +234,12 @@ contains
       has_been = .false.
    end function has_been
 
-   !> Solve for the step; equations are scaled to a largest coefficient of one.
-   subroutine newton_step(system, step, with_condition, report)
-      class(contact_system_t), intent(inout) :: system
-      real(rk), intent(out) :: step(:)
-      logical, intent(in) :: with_condition
-      type(iteration_report_t), intent(inout) :: report
-      real(rk) :: inverse_condition, norm, rhs(size(step), 1), scale
-      real(rk), allocatable :: work(:)
-      integer(ik) :: info, n, pivots(size(step)), row
-      integer(ik), allocatable :: iwork(:)
-
-      n = size(step, kind=ik)
-      norm = 0.0_rk
-      do row = 1, n
-         scale = maxval(abs(system%jacobian(:, row)))
-         if (scale > 0.0_rk) then
-            system%jacobian(:, row) = system%jacobian(:, row)/scale
-            system%residual(row) = system%residual(row)/scale
-         end if
-         if (with_condition) norm = max(norm, sum(abs(system%jacobian(:, row))))
-      end do
-      rhs(:, 1) = -system%residual
-      call dgetrf(n, n, system%jacobian, n, pivots, info)
-      if (info /= 0) then
-         report%outcome = outcome_singular
-         return
-      end if
-      call dgetrs("T", n, 1_ik, system%jacobian, n, pivots, rhs, n, info)
-      step = rhs(:, 1)
-      if (.not. with_condition) return
-      allocate (work(4*n), iwork(n))
-      call dgecon("1", n, system%jacobian, n, norm, inverse_condition, work, iwork, info)
-      report%condition = 1.0_rk/max(inverse_condition, tiny(1.0_rk))
-      report%error_bound = min(1.0_rk, report%condition*epsilon(1.0_rk))
-   end subroutine newton_step
-
    !> Whether every residual is either below the tolerance or no more than the rounding errors of
    !! the terms it is the sum of: where rock conducts well, those of the fluid balance are larger
    !! than any fixed tolerance.
    pure function is_rounding(system, x, tolerance) result(is_small)
       class(contact_system_t), intent(in) :: system
-      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]
       real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
       logical :: is_small
       integer(ik) :: row
@@ -248,8 +247,7 @@ contains
       is_small = .true.
       do row = 1, size(x)
          if (abs(system%residual(row)) <= tolerance*system%stress_scale) cycle
-         is_small = abs(system%residual(row)) <= 8.0_rk*epsilon(1.0_rk) &
-                    *dot_product(abs(system%jacobian(:, row)), abs(x))
+         is_small = abs(system%residual(row)) <= 8.0_rk*epsilon(1.0_rk)*system%size_of_terms(x, row)
          if (.not. is_small) return
       end do
    end function is_rounding

@@ -5,8 +5,8 @@
 !! contact at every pair closes the system.
 module contact_pairs
    use base_kinds, only: ik, rk
+   use contact_dense, only: dense_system_t
    use contact_law, only: contact_equations, contact_law_t, contact_residual
-   use contact_newton, only: contact_system_t
    use contact_pivoting, only: pivot_to_solution
    implicit none(type, external)
    private
@@ -14,7 +14,7 @@ module contact_pairs
    public :: contact_pairs_t
 
    !> The pairs, their history and their load.
-   type, extends(contact_system_t) :: contact_pairs_t
+   type, extends(dense_system_t) :: contact_pairs_t
       integer(ik) :: n = 0  !< pairs in contact
       real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
       real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
@@ -42,7 +42,7 @@ contains
    !! stress scale is the largest traction, of the faces as they are or as if their jumps were none.
    subroutine evaluate(self, x)
       class(contact_pairs_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
       real(rk) :: force(2*self%n), jump(2*self%n), by_traction(2, 2), by_jump(2, 2)
       integer(ik) :: i, k, m, row
 
@@ -81,10 +81,10 @@ contains
       end do
    end subroutine evaluate
 
-   !> How far the pairs are from the law itself where last evaluated, over the stress scale.
+   !> How far the pairs are from the law itself where last evaluated, over the stress scale [-].
    pure real(rk) function law_residual(self, x) result(worst)
       class(contact_pairs_t), intent(in) :: self
-      real(rk), intent(in) :: x(:)
+      real(rk), intent(in) :: x(:)  !< (2 n) where last evaluated [Pa]
       real(rk) :: jump(2), traction(2)
       integer(ik) :: i
 
@@ -107,8 +107,8 @@ contains
    !> The law itself, whatever the states.
    logical function obeys_law(self, x, tolerance)
       class(contact_pairs_t), intent(in) :: self
-      real(rk), intent(in) :: x(:)
-      real(rk), intent(in) :: tolerance
+      real(rk), intent(in) :: x(:)  !< (2 n) where last evaluated [Pa]
+      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
 
       obeys_law = self%law_residual(x) <= tolerance
    end function obeys_law
@@ -118,7 +118,7 @@ contains
    !! jumps, on that foundation.
    subroutine restart(self, x, has_start)
       class(contact_pairs_t), intent(inout) :: self
-      real(rk), intent(inout) :: x(:)
+      real(rk), intent(inout) :: x(:)  !< (2 n) [Pa]
       logical, intent(out) :: has_start
       real(rk), parameter :: softness = 1.0e-7_rk
       real(rk) :: on_spring(2*self%n, 2*self%n), mean

@@ -92,8 +92,8 @@ contains
 
    !> Jumps by forces.
    subroutine invert(stiffness, flexibility, is_regular)
-      real(rk), intent(in) :: stiffness(:, :)
-      real(rk), intent(out) :: flexibility(:, :)
+      real(rk), intent(in) :: stiffness(:, :)  !< (2 n, 2 n) an equation per column [-]
+      real(rk), intent(out) :: flexibility(:, :)  !< (2 n, 2 n) jump, force [-]
       logical, intent(out) :: is_regular
       real(rk) :: factors(size(stiffness, 1), size(stiffness, 1))
       integer(ik) :: i, info, n, pivots(size(stiffness, 1))
@@ -113,7 +113,7 @@ contains
    pure subroutine place_unknowns(law, slip_given, slip_before, places, dictionary)
       type(contact_law_t), intent(in) :: law(:)
       logical, intent(in) :: slip_given(:)
-      real(rk), intent(in) :: slip_before(:)
+      real(rk), intent(in) :: slip_before(:)  !< (n) [Pa]; whether it is zero counts
       type(places_t), intent(out) :: places(:)
       type(dictionary_t), intent(out) :: dictionary
       integer(ik) :: i, m
@@ -157,10 +157,12 @@ contains
    !> The equations.
    pure subroutine fill(flexibility, load, law, slip_given, slip_before, given, x, places, &
                         dictionary)
-      real(rk), intent(in) :: flexibility(:, :), load(:)
+      real(rk), intent(in) :: flexibility(:, :)  !< (2 n, 2 n) jump, force [-]
+      real(rk), intent(in) :: load(:)  !< (2 n) over the largest of all loads and jumps [-]
       type(contact_law_t), intent(in) :: law(:)
       logical, intent(in) :: slip_given(:)
-      real(rk), intent(in) :: slip_before(:), given(:), x(:)
+      real(rk), intent(in) :: slip_before(:), given(:)  !< (n) over that scale [-]
+      real(rk), intent(in) :: x(:)  !< (2 n) the last jumps [Pa]; their signs count
       type(places_t), intent(in) :: places(:)
       type(dictionary_t), intent(inout) :: dictionary
       real(rk) :: motion(size(load)), side, slope
@@ -211,9 +213,9 @@ contains
 
       !> Add a component of the jumps, as a function of the forces, to an equation.
       pure subroutine add_motion(entry, row, component, factor)
-         real(rk), intent(inout) :: entry(:, :)
+         real(rk), intent(inout) :: entry(:, :)  !< of the dictionary [-]
          integer(ik), intent(in) :: row, component
-         real(rk), intent(in) :: factor
+         real(rk), intent(in) :: factor  !< [-]
          integer(ik) :: j
 
          entry(row, constant) = entry(row, constant) + factor*motion(component)

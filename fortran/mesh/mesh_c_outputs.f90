@@ -41,8 +41,8 @@ contains
          f%cell_fracture = f%cell_fracture + 1
          f%cell_points = f%cell_points + 1
          f%cell_faces = f%cell_faces + 1
-         f%point_first = f%point_first + 1
-         f%point_cells = f%point_cells + 1
+         f%point_cells%first = f%point_cells%first + 1
+         f%point_cells%item = f%point_cells%item + 1
          f%tip_point = f%tip_point + 1
          f%tip_node = f%tip_node + 1
          f%tip_fracture = f%tip_fracture + 1
@@ -68,7 +68,7 @@ contains
       type(mesh_t), intent(in), target :: mesh
       type(cm_arrays_t), intent(inout) :: arrays
 
-      arrays%point_first = c_loc(mesh%fracture%point_first)
+      arrays%point_first = c_loc(mesh%fracture%point_cells%first)
       if (mesh%fracture%n_cells > 0) then
          arrays%fcell_fracture = c_loc(mesh%fracture%cell_fracture)
          arrays%fcell_points = c_loc(mesh%fracture%cell_points)
@@ -76,7 +76,7 @@ contains
          arrays%fcell_s = c_loc(mesh%fracture%cell_s)
          arrays%point_xy = c_loc(mesh%fracture%point_xy)
          arrays%point_kind = c_loc(mesh%fracture%point_kind)
-         arrays%point_cells = c_loc(mesh%fracture%point_cells)
+         arrays%point_cells = c_loc(mesh%fracture%point_cells%item)
       end if
       if (mesh%fracture%n_tips > 0) then
          arrays%tip_point = c_loc(mesh%fracture%tip_point)
@@ -106,7 +106,7 @@ contains
          f%n_tips = counts%n_tips
          allocate (f%cell_fracture(n), f%cell_points(2, n), f%cell_faces(2, n), f%cell_s(2, n))
          allocate (f%point_xy(2, f%n_points), f%point_kind(f%n_points))
-         allocate (f%point_first(f%n_points + 1), f%point_cells(counts%n_point_cells))
+         allocate (f%point_cells%first(f%n_points + 1), f%point_cells%item(counts%n_point_cells))
          allocate (f%tip_point(f%n_tips), f%tip_node(f%n_tips), f%tip_fracture(f%n_tips))
          allocate (f%tip_end(f%n_tips), f%tip_direction(2, f%n_tips), f%tip_radius(f%n_tips))
       end associate

@@ -5,6 +5,7 @@
 !! [u]_n > 0 opens.
 module mesh_types
    use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
    implicit none(type, external)
    private
 
@@ -42,8 +43,7 @@ module mesh_types
       real(rk), allocatable :: cell_s(:, :)  !< (2, n_cells) arc length of start and end [m]
       real(rk), allocatable :: point_xy(:, :)  !< (2, n_points) [m]
       integer(ik), allocatable :: point_kind(:)  !< (n_points) point_interior .. point_corner
-      integer(ik), allocatable :: point_first(:)  !< (n_points+1) into point_cells
-      integer(ik), allocatable :: point_cells(:)  !< fracture cells that meet at each point
+      type(lists_t) :: point_cells  !< fracture cells that meet at each point
       ! Free tips.
       integer(ik), allocatable :: tip_point(:)  !< (n_tips) fracture point
       integer(ik), allocatable :: tip_node(:)  !< (n_tips) mesh node

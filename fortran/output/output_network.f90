@@ -183,8 +183,8 @@ contains
       integer(ik) :: i, f
 
       allocate (fractures(0))
-      do i = mesh%point_first(point), mesh%point_first(point + 1) - 1_ik
-         f = mesh%cell_fracture(mesh%point_cells(i))
+      do i = 1, mesh%point_cells%length(point)
+         f = mesh%cell_fracture(mesh%point_cells%at(point, i))
          if (.not. any(fractures == f)) fractures = [fractures, f]
       end do
    end function fractures_at

@@ -44,7 +44,7 @@ contains
       associate (fracture => fine%fracture)
          frame%node = fracture%tip_node(tip)
          frame%fracture = fracture%tip_fracture(tip)
-         frame%face = fracture%point_cells(fracture%point_first(fracture%tip_point(tip)))
+         frame%face = fracture%point_cells%at(fracture%tip_point(tip), 1_ik)
          frame%origin = fine%xy(:, frame%node)
          frame%axes(1, :) = fracture%tip_direction(:, tip)
          frame%axes(2, :) = [-frame%axes(1, 2), frame%axes(1, 1)]

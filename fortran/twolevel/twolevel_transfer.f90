@@ -7,7 +7,8 @@
 !! or "prefilled".
 module twolevel_transfer
    use base_kinds, only: ik, rk
-   use coarse_matrix, only: cell_area
+   use coarse_geometry, only: cell_area
+   use coarse_layout, only: block_count, end_block
    use coarse_state, only: fracture_cells_t, state_t
    use mesh_types, only: mesh_map_t, mesh_t
    implicit none(type, external)
@@ -52,12 +53,13 @@ contains
       type(state_t), intent(out) :: after
       real(rk), intent(out) :: prefilled
 
+      integer(ik), parameter :: both(2) = [1_ik, 2_ik]  ! ends of a fracture cell
       integer(ik) :: c, i, k, n, old
       real(rk) :: area
 
       n = mesh%fracture%n_cells
       after%time = before%time
-      allocate (after%unknowns(3, mesh%n_cells + 2*n), after%content(mesh%n_cells), source=0.0_rk)
+      allocate (after%unknowns(3, block_count(mesh)), after%content(mesh%n_cells), source=0.0_rk)
       do c = 1, mesh%n_cells
          old = map%cell_old(c)
          if (old > 0) then
@@ -88,11 +90,11 @@ contains
             after%pressure(i) = before%pressure(old)
             after%aperture(i) = before%aperture(old)
             after%leakoff(i) = before%leakoff(old)
-            after%unknowns(:, mesh%n_cells + 2*i - 1:mesh%n_cells + 2*i) = &
-               before%unknowns(:, mesh_before%n_cells + 2*old - 1:mesh_before%n_cells + 2*old)
+            after%unknowns(:, end_block(mesh, i, both)) = &
+               before%unknowns(:, end_block(mesh_before, old, both))
          else
             after%pressure(i) = before%pressure(nearest_old(map, mesh, i))
-            after%unknowns(3, mesh%n_cells + 2*i - 1:mesh%n_cells + 2*i) = after%pressure(i)
+            after%unknowns(3, end_block(mesh, i, both)) = after%pressure(i)
             after%aperture(i) = 0.0_rk
             if (is_prefilled) then
                after%aperture(i) = cells%residual_aperture(i)

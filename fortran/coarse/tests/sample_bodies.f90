@@ -5,9 +5,10 @@ module sample_bodies
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use contact_law, only: contact_law_t
+   use coarse_geometry, only: face_length
+   use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_regions, only: face_length
    use coarse_state, only: fracture_cells_t, state_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
@@ -185,9 +186,9 @@ contains
          unknowns(3, c) = p0 + dot_product(slope, centre)
       end do
       do i = 1, mesh%fracture%n_cells
-         associate (points => mesh%fracture%point_xy(:, mesh%fracture%cell_points(:, i)), &
-                    at => mesh%n_cells + 2*i)
-            unknowns(3, at - 1:at) = p0 + dot_product(slope, 0.5_rk*sum(points, dim=2))
+         associate (points => mesh%fracture%point_xy(:, mesh%fracture%cell_points(:, i)))
+            unknowns(3, end_block(mesh, i, [1_ik, 2_ik])) = &
+               p0 + dot_product(slope, 0.5_rk*sum(points, dim=2))
          end associate
       end do
    end function linear_unknowns
@@ -225,8 +226,8 @@ contains
 
       allocate (full(3*matrix%n_blocks, 3*matrix%n_blocks), source=0.0_rk)
       do row = 1, matrix%n_blocks
-         do entry = matrix%row_first(row), matrix%row_first(row + 1) - 1
-            col = matrix%col(entry)
+         do entry = matrix%columns%first(row), matrix%columns%last(row)
+            col = matrix%columns%item(entry)
             block = matrix%elastic(:, :, entry)
             block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
             full(3*row - 2:3*row, 3*col - 2:3*col) = block

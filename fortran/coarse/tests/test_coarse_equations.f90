@@ -5,7 +5,9 @@ program test_coarse_equations
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_equations, only: equations_t, newton_settings_t, per_cell, prepare
+   use coarse_equations, only: equations_t
+   use coarse_fractures, only: newton_settings_t, prepare
+   use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t
@@ -17,6 +19,7 @@ program test_coarse_equations
    implicit none(type, external)
 
    real(rk), parameter :: dt = 10.0_rk  !< [s]
+   integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< sides
    type(checks_t) :: checks
    type(mesh_t) :: mesh
    type(coarse_model_t), target :: model
@@ -72,19 +75,25 @@ contains
       integer, intent(in) :: variant
       real(rk), allocatable, intent(out) :: x(:)
       real(rk), allocatable :: numbers(:)
-      integer(ik) :: i, n
+      type(fracture_layout_t) :: layout
+      integer(ik) :: i
 
-      n = mesh%fracture%n_cells
-      allocate (numbers, source=scattered(int(variant, ik)*(per_cell*n &
-                                                            + size(model%connections, 2))))
+      layout = layout_of_model()
+      allocate (numbers, source=scattered(int(variant, ik)*layout%count()))
       x = numbers((variant - 1)*size(numbers)/variant + 1:)
       x = 4.0e6_rk*x
-      do i = 1, n
-         x([7*i - 4, 7*i - 1, 7*i]) = x([7*i - 4, 7*i - 1, 7*i]) + 6.0e6_rk
+      do i = 1, layout%n_cells
+         associate (at => [layout%at_face_pressure(i, both), layout%at_pressure(i)])
+            x(at) = x(at) + 6.0e6_rk
+         end associate
       end do
       ! Flows that the cubic law takes some MPa for.
-      x(per_cell*n + 1:) = 5.0e-5_rk*x(per_cell*n + 1:)
+      x(layout%at_flow(1_ik):) = 5.0e-5_rk*x(layout%at_flow(1_ik):)
    end subroutine some_unknowns
+
+   type(fracture_layout_t) function layout_of_model()
+      layout_of_model = fracture_layout(mesh%fracture%n_cells, size(model%connections, 2, kind=ik))
+   end function layout_of_model
 
    !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial
    !! shear f_tau + c d[u]_tau some MPa.
@@ -99,17 +108,18 @@ contains
 
       associate (n => mesh%fracture%n_cells)
          ! In the rows of the fluid: volumes [m2], whose way into the fracture takes some MPa.
-         g = volume*scattered(6*n)
+         g = volume*scattered(model%condensed%layout%count())
          call equations_at(x, .false., eq, contact)
          allocate (normal, source=-6.0e6_rk + 8.0e6_rk*scattered(2*n))
          allocate (shear, source=1.5e6_rk*scattered(4*n))
          do i = 1, n
             do end = 1, 2
-               at = 6*i - 5 + 3*(end - 1)
-               slip = x(7*i - 5 + 3*(end - 1)) - eq%stiffness*state%jump(2, end, i)
-               associate (half_length => 0.5_rk*model%condensed%length(i), k => 2*(i - 1) + end)
+               at = model%condensed%layout%at_jump(i, end)
+               slip = x(eq%layout%at_jump(i, end) + 1) - eq%stiffness*state%jump(2, end, i)
+               associate (half_length => 0.5_rk*model%condensed%length(i), k => 2*(i - 1) + end, &
+                          fluid => x(eq%layout%at_pressure(i)))
                   g(at:at + 1) = g(at:at + 1) + eq%force(at:at + 1) &
-                                 - half_length*[x(7*i) - normal(k), slip - shear(2*n + k)]
+                                 - half_length*[fluid - normal(k), slip - shear(2*n + k)]
                end associate
             end do
          end do
@@ -170,25 +180,27 @@ contains
    !> What flows along a fracture leaves one balance and enters the next; the other ends are closed.
    subroutine test_exchange_along_fractures()
       type(equations_t) :: at_rest, flowing
-      real(rk), allocatable :: x(:)
-      real(rk) :: balance
-      integer(ik), allocatable :: contact(:, :)
-      integer(ik) :: first, k, n
+      real(rk), allocatable :: change(:), x(:)
+      integer(ik), allocatable :: balances(:), contact(:, :)
+      type(fracture_layout_t) :: layout
+      integer(ik) :: first, i, k
 
-      n = mesh%fracture%n_cells
-      call checks%is_true(size(model%connections, 2) == n - 2, "two fractures, not connected")
+      layout = layout_of_model()
+      call checks%is_true(layout%n_flows == layout%n_cells - 2, "two fractures, not connected")
+      balances = [(layout%at_pressure(i), i=1, layout%n_cells)]
       call some_unknowns(1, x)
-      x(per_cell*n + 1:) = 0.0_rk
+      x(layout%at_flow(1_ik):) = 0.0_rk
       call equations_at(x, .false., at_rest, contact)
-      do k = 1, size(model%connections, 2)
-         x(per_cell*n + 1:) = 0.0_rk
-         x(per_cell*n + k) = 3.0e6_rk
+      do k = 1, layout%n_flows
+         x(layout%at_flow(1_ik):) = 0.0_rk
+         x(layout%at_flow(k)) = 3.0e6_rk
          call equations_at(x, .false., flowing, contact)
          first = model%connections(1, k)
-         balance = flowing%residual(7*first) - at_rest%residual(7*first)
-         call checks%is_close(balance, 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, "out of the first cell")
-         balance = sum(flowing%residual(7:7*n:7) - at_rest%residual(7:7*n:7))
-         call checks%is_close(balance, 0.0_rk, 1.0e-6_rk*3.0e6_rk, "nothing is lost on the way")
+         change = flowing%residual - at_rest%residual
+         call checks%is_close(change(layout%at_pressure(first)), 3.0e6_rk, 1.0e-6_rk*3.0e6_rk, &
+                              "out of the first cell")
+         call checks%is_close(sum(change(balances)), 0.0_rk, 1.0e-6_rk*3.0e6_rk, &
+                              "nothing is lost on the way")
       end do
    end subroutine test_exchange_along_fractures
 

@@ -5,10 +5,11 @@ program test_coarse_matrix
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use algebra_lapack, only: dpotrf
-   use coarse_fields, only: cell_contents, cell_outflow, corner_tractions
-   use coarse_matrix, only: cell_area, discretize, matrix_t
-   use coarse_regions, only: corner_geometry, face_length, regions_t, traction_face, &
-                             traction_position
+   use coarse_diffusion, only: cell_outflow
+   use coarse_fields, only: cell_contents, corner_tractions
+   use coarse_geometry, only: cell_area, corner_geometry, face_length
+   use coarse_matrix, only: discretize, matrix_t
+   use coarse_regions, only: regions_t, traction_face
    use coarse_rock, only: new_rock, rock_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
@@ -213,7 +214,7 @@ contains
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
       allocate (outflow(body%n_cells))
-      call cell_outflow(body, regions, unknowns, outflow)
+      call cell_outflow(body, regions, regions%flux, unknowns(3, :), outflow)
       worst = 0.0_rk
       do i = 1, body%n_cells
          associate (x => body%xy(1, body%cell_nodes(:, i)))
@@ -295,9 +296,7 @@ contains
             r = regions%region_of_node(mesh%cell_nodes(k, c))
             do j = 1, 2
                call traction_face(mesh, faces(j), sign_out(j))
-               at = traction_position(regions, r) &
-                    + 2*(findloc(regions%faces(regions%face_first(r):regions%face_first(r + 1) &
-                                               - 1), faces(j), dim=1) - 1)
+               at = regions%at_traction(r, faces(j))
                force(:, c) = force(:, c) + sign_out(j)*0.5_rk*length(j)*tractions(at:at + 1)
             end do
          end do
@@ -330,12 +329,12 @@ contains
       matrix%elastic = 0.0_rk
       matrix%elastic_known = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
-      call cell_outflow(mesh, regions, unknowns, outflow)
+      call cell_outflow(mesh, regions, regions%flux, unknowns(3, :), outflow)
       call checks%is_close(maxval(abs(rows(3, :mesh%n_cells) + outflow)), 0.0_rk, &
                            1.0e-12_rk*maxval(abs(outflow)), "outflow by the matrix and by fluxes")
       ! Without open sides, what leaves the cells enters the fractures.
       call prepare(porous_body(), rock, regions, matrix)
-      call cell_outflow(mesh, regions, unknowns, outflow)
+      call cell_outflow(mesh, regions, regions%flux, unknowns(3, :), outflow)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
       into_fractures = sum(rows(3, mesh%n_cells + 1:))

@@ -3,8 +3,8 @@
 program test_coarse_regions
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_regions, only: corner_geometry, face_length, find_regions, fracture_end_region, &
-                             regions_t, traction_face, traction_position
+   use coarse_geometry, only: corner_geometry, face_length
+   use coarse_regions, only: find_regions, fracture_end_region, regions_t, traction_face
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: mesh_square, shake, straight_network
@@ -35,50 +35,51 @@ contains
       real(rk) :: place(2)
 
       associate (n => regions%n_regions, m => mesh%fracture%n_cells)
-         call checks%is_true(all(tally(regions%nodes, mesh%n_nodes) == 1), name//": nodes once")
-         call checks%is_true(all(tally(regions%flow_faces, mesh%n_faces) == 2), &
+         call checks%is_true(all(tally(regions%nodes%item, mesh%n_nodes) == 1), &
+                             name//": nodes once")
+         call checks%is_true(all(tally(regions%flow_faces%item, mesh%n_faces) == 2), &
                              name//": faces for the flow at both ends")
-         allocate (found, source=tally(regions%faces, mesh%n_faces))
+         allocate (found, source=tally(regions%faces%item, mesh%n_faces))
          do i = 1, m
             call checks%is_true(found(mesh%fracture%cell_faces(2, i)) == 0, &
                                 name//": side + carries the traction")
             found(mesh%fracture%cell_faces(2, i)) = 2
          end do
          call checks%is_true(all(found == 2), name//": faces for tractions at both ends")
-         found = tally(regions%blocks, regions%n_blocks)
+         found = tally(regions%blocks%item, regions%n_blocks)
          call checks%is_true(regions%n_blocks == mesh%n_cells + 2*m, name//": number of blocks")
          call checks%is_true(all(found(:mesh%n_cells) == 3), name//": cells in three regions")
          call checks%is_true(all(found(mesh%n_cells + 1:) == 2), name//": fractures in two")
          n_wrong = 0
          do r = 1, n
-            place = mesh%xy(:, regions%nodes(regions%node_first(r)))
-            do i = regions%node_first(r), regions%node_first(r + 1) - 1
-               if (.not. norm2(mesh%xy(:, regions%nodes(i)) - place) <= 1.0e-12_rk) then
+            place = mesh%xy(:, regions%nodes%at(r, 1_ik))
+            do i = 1, regions%nodes%length(r)
+               if (.not. norm2(mesh%xy(:, regions%nodes%at(r, i)) - place) <= 1.0e-12_rk) then
                   n_wrong = n_wrong + 1
                end if
             end do
-            do i = regions%flow_first(r), regions%flow_first(r + 1) - 1
-               associate (ends => mesh%xy(:, mesh%face_nodes(:, regions%flow_faces(i))))
+            do i = 1, regions%flow_faces%length(r)
+               associate (ends => mesh%xy(:, mesh%face_nodes(:, regions%flow_faces%at(r, i))))
                   if (.not. minval(norm2(ends - spread(place, 2, 2), dim=1)) <= 1.0e-12_rk) then
                      n_wrong = n_wrong + 1
                   end if
                end associate
             end do
-            do i = regions%block_first(r), regions%block_first(r + 1) - 1
-               if ((regions%blocks(i) <= mesh%n_cells) .neqv. &
-                   (i - regions%block_first(r) < regions%cell_count(r))) n_wrong = n_wrong + 1
+            do i = 1, regions%blocks%length(r)
+               if ((regions%blocks%at(r, i) <= mesh%n_cells) .neqv. &
+                   (i <= regions%cell_count(r))) n_wrong = n_wrong + 1
             end do
          end do
          call checks%is_true(n_wrong == 0, name//": everything lies in its region, cells first")
-         call checks%is_true(traction_position(regions, n + 1) - 1 &
-                             == 2*size(regions%faces) + size(regions%nodes), &
+         call checks%is_true(regions%traction_count() &
+                             == 2*size(regions%faces%item) + size(regions%nodes%item), &
                              name//": packed tractions")
          n_wrong = 0
          do i = 1, m
             do r = 1, 2
                associate (region => fracture_end_region(mesh, regions, i, r), &
                           point => mesh%fracture%point_xy(:, mesh%fracture%cell_points(r, i)))
-                  if (.not. norm2(mesh%xy(:, regions%nodes(regions%node_first(region))) &
+                  if (.not. norm2(mesh%xy(:, regions%nodes%at(region, 1_ik)) &
                                   - point) <= 1.0e-12_rk) n_wrong = n_wrong + 1
                end associate
             end do
@@ -123,10 +124,10 @@ contains
 
       r = regions%region_of_node(minloc(norm2(mesh%xy - spread(place, 2, size(mesh%xy, 2)), &
                                               dim=1), dim=1))
-      call checks%is_true(regions%node_first(r + 1) - regions%node_first(r) == n_nodes, &
+      call checks%is_true(regions%nodes%length(r) == n_nodes, &
                           name//": nodes joined")
-      call checks%is_true(regions%block_first(r + 1) - regions%block_first(r) &
-                          - regions%cell_count(r) == 2*n_fracture_cells, name//": fracture cells")
+      call checks%is_true(regions%blocks%length(r) - regions%cell_count(r) &
+                          == 2*n_fracture_cells, name//": fracture cells")
    end subroutine check_place
 
    !> A free tip is one node; inside the fracture two nodes are joined; a tip-less end splits the

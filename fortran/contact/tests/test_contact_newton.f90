@@ -3,7 +3,7 @@
 !!
 !! The bodies are far worse than elastic ones: their stiffness is any positive definite matrix,
 !! opening and slip are coupled as strongly as that allows. Reference: the law as it is stated
-!! (model.md section 4), written out here anew.
+!! (docs/theory.md), written out here anew.
 program test_contact_newton
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk

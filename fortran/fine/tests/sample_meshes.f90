@@ -122,7 +122,8 @@ contains
          allocate (fracture%cell_fracture(n), source=1_ik)
          allocate (fracture%cell_points(2, n), fracture%cell_faces(2, n), fracture%cell_s(2, n))
          allocate (fracture%point_xy(2, fracture%n_points), fracture%point_kind(fracture%n_points))
-         allocate (fracture%point_first(fracture%n_points + 1), fracture%point_cells(2*n))
+         allocate (fracture%point_cells%first(fracture%n_points + 1))
+         allocate (fracture%point_cells%item(2*n))
          k = 0
          do point = 1, fracture%n_points
             i = first - 2 + point
@@ -132,13 +133,13 @@ contains
                fracture%point_kind(point) = merge(point_boundary, point_tip, i == 0 &
                                                   .or. i == n_boxes)
             end if
-            fracture%point_first(point) = k + 1
-            if (point > 1) fracture%point_cells(k + 1) = point - 1
+            fracture%point_cells%first(point) = k + 1
+            if (point > 1) fracture%point_cells%item(k + 1) = point - 1
             if (point > 1) k = k + 1
-            if (point <= n) fracture%point_cells(k + 1) = point
+            if (point <= n) fracture%point_cells%item(k + 1) = point
             if (point <= n) k = k + 1
          end do
-         fracture%point_first(fracture%n_points + 1) = k + 1
+         fracture%point_cells%first(fracture%n_points + 1) = k + 1
          do k = 1, n
             i = first - 2 + k
             fracture%cell_points(:, k) = [k, k + 1]

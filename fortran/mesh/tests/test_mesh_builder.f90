@@ -197,7 +197,7 @@ contains
          end do
          call checks%is_true(count(f%point_kind == point_tip) == 2 .and. &
                              count(f%point_kind == point_interior) == 9, "single: kinds of points")
-         call checks%is_true(f%point_first(1) == 1 .and. f%point_first(12) == 21, &
+         call checks%is_true(f%point_cells%length(1_ik) == 1 .and. size(f%point_cells%item) == 20, &
                              "single: cells of points")
          do t = 1, 2
             call checks%is_true(f%tip_fracture(t) == 1 .and. f%tip_end(t) == t, "single: tips")

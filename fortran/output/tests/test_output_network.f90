@@ -36,8 +36,8 @@ program test_output_network
    mesh%cell_fracture = [1_ik, 2_ik]
    mesh%point_xy = network%xy
    mesh%point_kind = [point_boundary, point_tip, point_tip, point_tip]
-   mesh%point_first = [1_ik, 2_ik, 3_ik, 4_ik, 5_ik]
-   mesh%point_cells = [1_ik, 1_ik, 2_ik, 2_ik]
+   mesh%point_cells%first = [1_ik, 2_ik, 3_ik, 4_ik, 5_ik]
+   mesh%point_cells%item = [1_ik, 1_ik, 2_ik, 2_ik]
    mesh%n_tips = 3
    mesh%tip_point = [2_ik, 3_ik, 4_ik]
    mesh%tip_fracture = [1_ik, 2_ik, 2_ik]
@@ -63,8 +63,8 @@ program test_output_network
       & 1.5_rk, 1.0_rk, 1.5_rk, 0.25_rk], [2, 6])
    mesh%point_kind = [point_boundary, point_interior, point_joint_t, point_tip, point_tip, &
       & point_interior]
-   mesh%point_first = [1_ik, 2_ik, 4_ik, 7_ik, 8_ik, 9_ik, 11_ik]
-   mesh%point_cells = [1_ik, 1_ik, 2_ik, 2_ik, 3_ik, 5_ik, 3_ik, 4_ik, 4_ik, 5_ik]
+   mesh%point_cells%first = [1_ik, 2_ik, 4_ik, 7_ik, 8_ik, 9_ik, 11_ik]
+   mesh%point_cells%item = [1_ik, 1_ik, 2_ik, 2_ik, 3_ik, 5_ik, 3_ik, 4_ik, 4_ik, 5_ik]
    mesh%n_tips = 2
    mesh%tip_point = [4_ik, 5_ik]
    mesh%tip_fracture = [1_ik, 2_ik]

@@ -302,8 +302,8 @@ contains
          f%point_xy = reshape([0.0_rk, 0.5_rk, 0.5_rk, 0.5_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.25_rk], &
             & [2, 4])
          f%point_kind = [point_boundary, point_joint_t, point_tip, point_tip]
-         f%point_first = [1_ik, 2_ik, 5_ik, 6_ik, 7_ik]
-         f%point_cells = [1_ik, 1_ik, 2_ik, 3_ik, 2_ik, 3_ik]
+         f%point_cells%first = [1_ik, 2_ik, 5_ik, 6_ik, 7_ik]
+         f%point_cells%item = [1_ik, 1_ik, 2_ik, 3_ik, 2_ik, 3_ik]
          f%tip_point = [3_ik, 4_ik]
          f%tip_fracture = [1_ik, 2_ik]
          f%tip_end = [2_ik, 1_ik]

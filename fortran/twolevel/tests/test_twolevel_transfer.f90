@@ -4,7 +4,7 @@ program test_twolevel_transfer
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_matrix, only: cell_area
+   use coarse_geometry, only: cell_area
    use coarse_state, only: fracture_cells_t, state_t
    use contact_law, only: contact_law_t
    use contact_states, only: state_open, state_slip, state_stick

@@ -1,0 +1,184 @@
+!> The flow of a quantity that follows the gradient of a scalar: multi-point flux stencil around one
+!! vertex, and what follows from the fluxes. For the fluid the scalar is the pressure p [Pa] and the
+!! flux the Darcy velocity q = -(K/mu) grad p [m/s]; nothing here knows of fluids, and the
+!! comments give the units of that case.
+!!
+!! Mixed form, as for the stress (coarse_stress): each face has a normal flux at each of its two
+!! ends; around a vertex these couple only to each other and to the scalars of the cells there. The
+!! scalar is continuous at a third of each face. On both sides of a fracture it has a value of its
+!! own, an unknown, at which the flux leaves the rock. Local system (coarse_elimination):
+!!   B q = H p - given scalars on the boundary.
+module coarse_diffusion
+   use base_kinds, only: ik, rk
+   use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
+                                 response_t, share_t
+   use coarse_geometry, only: corner_geometry, face_length
+   use coarse_layout, only: end_of_block, fracture_cell_of_block
+   use coarse_regions, only: regions_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: cell_outflow, corner_gradient, find_flux_stencil
+
+contains
+
+   !> Eliminate the fluxes of one region.
+   !!
+   !! `info` is 0, or the local system could not be solved (degenerate cells).
+   subroutine find_flux_stencil(mesh, resistivity, is_given, given, regions, region, response, &
+                                share, info)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: resistivity(2, 2)  !< gradient = -resistivity flux [Pa s/m2]
+      logical, intent(in) :: is_given(:)  !< (sides) the scalar is given; else nothing flows there
+      real(rk), intent(in) :: given(:)  !< (sides) its value [Pa]
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(response_t), intent(out) :: response  !< fluxes [m/s]
+      type(share_t), intent(out) :: share  !< flows into cells, and into fractures negated [m2/s]
+      integer(ik), intent(out) :: info
+
+      type(local_system_t) :: local
+      integer(ik) :: m
+
+      m = regions%blocks%length(region)
+      call new_local_system(regions%flow_faces%length(region), m, local)
+      call add_corners(mesh, resistivity, regions, region, local)
+      call add_fracture_faces(mesh, regions, region, local)
+      local%rhs(:, :m) = local%coupling
+      call apply_sides(mesh, is_given, given, regions, region, local)
+      call eliminate(local, response, share, info)
+   end subroutine find_flux_stencil
+
+   !> What the cells' corners around the vertex give.
+   subroutine add_corners(mesh, resistivity, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: resistivity(2, 2)  !< [Pa s/m2]
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: at(2), c, cell, faces(2), i, j, k
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, w
+
+      do c = 1, regions%cell_count(region)
+         cell = regions%blocks%at(region, c)
+         k = findloc(regions%regions_of_block(:, cell), region, dim=1)
+         call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
+         do j = 1, 2
+            at(j) = regions%flow_faces%place(region, faces(j))
+         end do
+         w = area/3.0_rk
+         do j = 1, 2
+            do i = 1, 2
+               local%matrix(at(i), at(j)) = local%matrix(at(i), at(j)) &
+                                            + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
+                                                                   matmul(resistivity, lever(:, j)))
+            end do
+            local%coupling(at(j), c) = 0.5_rk*sign_out(j)*length(j)
+         end do
+      end do
+   end subroutine add_corners
+
+   !> Scalars on the fracture faces, which are unknowns.
+   subroutine add_fracture_faces(mesh, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: at, b, block, cell
+
+      do b = regions%cell_count(region) + 1, regions%blocks%length(region)
+         block = regions%blocks%at(region, b)
+         cell = fracture_cell_of_block(mesh, block)
+         at = regions%flow_faces%place(region, &
+                                       mesh%fracture%cell_faces(end_of_block(mesh, block), cell))
+         local%coupling(at, b) = -0.5_rk*face_length(mesh, mesh%fracture%cell_faces(1, cell))
+      end do
+   end subroutine add_fracture_faces
+
+   !> Outer boundary: the scalar is given, or nothing flows.
+   subroutine apply_sides(mesh, is_given, given, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      logical, intent(in) :: is_given(:)  !< (sides)
+      real(rk), intent(in) :: given(:)  !< (sides) [Pa]
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: f, j, last
+
+      last = size(local%rhs, 2)
+      do j = 1, regions%flow_faces%length(region)
+         f = regions%flow_faces%at(region, j)
+         associate (side => mesh%face_side(f))
+            if (side == 0) cycle
+            if (is_given(side)) then
+               local%rhs(j, last) = local%rhs(j, last) - 0.5_rk*face_length(mesh, f)*given(side)
+            else
+               call fix_unknown(local, j, 0.0_rk)
+            end if
+         end associate
+      end do
+   end subroutine apply_sides
+
+   !> What leaves each cell through its faces.
+   subroutine cell_outflow(mesh, regions, responses, scalars, outflow)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
+      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      real(rk), intent(out) :: outflow(:)  !< (n_cells) [m2/s]
+
+      real(rk), allocatable :: flux(:)
+      integer(ik) :: f, j, r
+
+      outflow = 0.0_rk
+      do r = 1, regions%n_regions
+         allocate (flux(regions%flow_faces%length(r)))
+         call responses(r)%apply(scalars(regions%blocks%of(r)), flux)
+         do j = 1, size(flux)
+            f = regions%flow_faces%at(r, j)
+            associate (cells => mesh%face_cells(:, f), flow => 0.5_rk*face_length(mesh, f)*flux(j))
+               outflow(cells(1)) = outflow(cells(1)) + flow
+               if (cells(2) > 0) outflow(cells(2)) = outflow(cells(2)) - flow
+            end associate
+         end do
+         deallocate (flux)
+      end do
+   end subroutine cell_outflow
+
+   !> Gradient of the scalar at corner k of a cell.
+   pure subroutine corner_gradient(mesh, resistivity, regions, responses, scalars, cell, k, &
+                                   gradient)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: resistivity(2, 2)  !< [Pa s/m2]
+      type(regions_t), intent(in) :: regions
+      type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
+      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      integer(ik), intent(in) :: cell, k
+      real(rk), intent(out) :: gradient(2)  !< [Pa/m]
+
+      integer(ik) :: faces(2), b, before, j, m, r, row
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, flux, velocity(2)
+
+      r = regions%region_of_node(mesh%cell_nodes(k, cell))
+      m = regions%blocks%length(r)
+      before = regions%blocks%first(r) - 1
+      call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
+      velocity = 0.0_rk
+      associate (response => responses(r)%matrix)
+         do j = 1, 2
+            row = regions%flow_faces%place(r, faces(j))
+            flux = response(row, m + 1)
+            do b = 1, m
+               flux = flux + response(row, b)*scalars(regions%blocks%item(before + b))
+            end do
+            velocity = velocity + sign_out(j)*lever(:, j)*flux
+         end do
+      end associate
+      gradient = -matmul(resistivity, velocity)
+   end subroutine corner_gradient
+
+end module coarse_diffusion

@@ -1,0 +1,189 @@
+!> Multi-point stress stencil around one vertex.
+!!
+!! Multi-point stress approximation with weakly symmetric stress (Nordbotten 2016; Keilegavlen and
+!! Nordbotten 2017), in its mixed form on triangles: each face has, at each of its two ends, a
+!! traction [Pa] of its own; around a vertex these are found from the displacements and pressures of
+!! the cells there, so that the displacement is continuous at a third of each face, and that the
+!! stress is symmetric in the mean over the vertex (a rotation is the multiplier). With the corners'
+!! areas as weights this is a lumped mixed method (Wheeler and Yotov 2006; Ambartsumyan, Khattatov,
+!! Nordbotten and Yotov 2020): the matrix is symmetric, and stable for nearly incompressible rock.
+!!
+!! The pressure enters the stress-strain relation itself, eps = A (sigma + alpha p I), and the fluid
+!! content takes its volume change from the same tractions: these are the stabilizing terms, for
+!! vanishing permeability and time steps.
+!!
+!! The local system (coarse_elimination) is
+!!   A t + C r + G d = given displacements,  C^T t = 0
+!! with tractions t, rotations r and the unknowns d (displacements, jumps, pressures) around the
+!! vertex. The rotations times 2 G are the unknowns, of the size of a traction, so that pivots stay
+!! comparable.
+module coarse_stress
+   use base_kinds, only: ik, rk
+   use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
+                                 response_t, share_t
+   use coarse_geometry, only: corner_geometry, face_length
+   use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
+   use coarse_regions, only: fracture_end_region, regions_t, traction_face
+   use coarse_rock, only: rock_t
+   use mesh_types, only: mesh_t
+   use scene_types, only: boundary_side_t
+   implicit none(type, external)
+   private
+
+   public :: find_stress_stencil
+
+contains
+
+   !> Eliminate the tractions and the rotations of one region.
+   !!
+   !! `info` is 0, or the local system could not be solved (degenerate cells).
+   subroutine find_stress_stencil(mesh, rock, sides, regions, region, response, share, info)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(response_t), intent(out) :: response  !< tractions x, y [Pa], then rotations [-]
+      type(share_t), intent(out) :: share  !< forces [N/m] and contents [m2]
+      integer(ik), intent(out) :: info
+
+      type(local_system_t) :: local
+      integer(ik) :: m, n_tractions
+
+      n_tractions = 2*regions%faces%length(region)
+      m = 3*regions%blocks%length(region)
+      call new_local_system(n_tractions + regions%nodes%length(region), m, local)
+      call add_corners(mesh, rock, regions, region, local)
+      call add_jumps(mesh, regions, region, local)
+      local%rhs(:, :m) = -local%coupling
+      call apply_sides(mesh, sides, regions, region, local)
+      call eliminate(local, response, share, info)
+      if (info /= 0) return
+      associate (rotations => response%matrix(n_tractions + 1:, :))
+         rotations = rotations/(2.0_rk*rock%shear)
+      end associate
+   end subroutine find_stress_stencil
+
+   !> What the cells' corners around the vertex give.
+   subroutine add_corners(mesh, rock, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: at(2), c, cell, faces(2), i, j, k, rotation
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, nu, w
+
+      nu = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+      do c = 1, regions%cell_count(region)
+         cell = regions%blocks%at(region, c)
+         k = findloc(regions%regions_of_block(:, cell), region, dim=1)
+         rotation = 2*regions%faces%length(region) &
+                    + regions%nodes%place(region, mesh%cell_nodes(k, cell))
+         call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
+         do j = 1, 2
+            call traction_face(mesh, faces(j), sign_out(j))
+            at(j) = 2*regions%faces%place(region, faces(j)) - 1
+         end do
+         do j = 1, 2
+            do i = 1, 2
+               w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear)
+               call add_compliance(local%matrix, at(i), at(j), w, nu, lever(:, i), lever(:, j))
+            end do
+            w = sign_out(j)*area/(6.0_rk*rock%shear)
+            call add_symmetric(local%matrix, at(j), rotation, -w*lever(2, j))
+            call add_symmetric(local%matrix, at(j) + 1, rotation, w*lever(1, j))
+            w = sign_out(j)*area/3.0_rk
+            local%coupling(at(j), at_component(c, 1)) = 0.5_rk*sign_out(j)*length(j)
+            local%coupling(at(j) + 1, at_component(c, 2)) = 0.5_rk*sign_out(j)*length(j)
+            local%coupling(at(j):at(j) + 1, at_component(c, 3)) = &
+               w*lever(:, j)*rock%biot/(2.0_rk*(rock%lame + rock%shear))
+         end do
+      end do
+   end subroutine add_corners
+
+   !> Jumps of the fracture cells, which are unknowns: each end's acts in the region where it lies.
+   subroutine add_jumps(mesh, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: at, b, block, cell, f
+      real(rk) :: half_length
+
+      do b = regions%cell_count(region) + 1, regions%blocks%length(region)
+         block = regions%blocks%at(region, b)
+         cell = fracture_cell_of_block(mesh, block)
+         if (fracture_end_region(mesh, regions, cell, end_of_block(mesh, block)) /= region) cycle
+         f = mesh%fracture%cell_faces(1, cell)
+         half_length = 0.5_rk*face_length(mesh, f)
+         at = 2*regions%faces%place(region, f) - 1
+         local%coupling(at, at_component(b, 1)) = half_length
+         local%coupling(at + 1, at_component(b, 2)) = half_length
+      end do
+   end subroutine add_jumps
+
+   !> A t_j (x) m_j : t_i (x) m_i for unit tractions, A the isotropic compliance.
+   pure subroutine add_compliance(matrix, row, col, factor, nu, lever_i, lever_j)
+      real(rk), intent(inout) :: matrix(:, :)  !< [m2/Pa]
+      integer(ik), intent(in) :: row, col  !< of the x components
+      real(rk), intent(in) :: factor  !< weight/(2G) [m2/Pa]
+      real(rk), intent(in) :: nu  !< lambda/(2(lambda+G)) [-]
+      real(rk), intent(in) :: lever_i(2), lever_j(2)  !< m_i, m_j [-]
+
+      integer(ik) :: a, b
+
+      do b = 1, 2
+         do a = 1, 2
+            matrix(row + a - 1, col + b - 1) = matrix(row + a - 1, col + b - 1) &
+                                               - factor*nu*lever_i(a)*lever_j(b)
+         end do
+         matrix(row + b - 1, col + b - 1) = matrix(row + b - 1, col + b - 1) &
+                                            + factor*dot_product(lever_i, lever_j)
+      end do
+   end subroutine add_compliance
+
+   pure subroutine add_symmetric(matrix, row, col, value)
+      real(rk), intent(inout) :: matrix(:, :)  !< [m2/Pa]
+      integer(ik), intent(in) :: row, col
+      real(rk), intent(in) :: value  !< [m2/Pa]
+
+      matrix(row, col) = matrix(row, col) + value
+      matrix(col, row) = matrix(col, row) + value
+   end subroutine add_symmetric
+
+   !> Outer boundary: a component is either displaced as given or loaded as given.
+   subroutine apply_sides(mesh, sides, regions, region, local)
+      type(mesh_t), intent(in) :: mesh
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local
+
+      integer(ik) :: axis, f, j, last, n
+
+      last = size(local%rhs, 2)
+      do j = 1, regions%faces%length(region)
+         f = regions%faces%at(region, j)
+         if (mesh%face_side(f) == 0) cycle
+         associate (side => sides(mesh%face_side(f)), half_length => 0.5_rk*face_length(mesh, f))
+            do axis = 1, 2
+               n = 2*(j - 1) + axis
+               if (side%displacement_given(axis)) then
+                  local%rhs(n, last) = local%rhs(n, last) + half_length*side%displacement(axis)
+               else
+                  call fix_unknown(local, n, side%traction(axis))
+               end if
+            end do
+         end associate
+      end do
+      ! Where all tractions are given, as in a loaded corner, the rotation is free and without
+      ! effect.
+      do n = 2*regions%faces%length(region) + 1, size(local%matrix, 1)
+         if (.not. any(abs(local%matrix(n, :)) > 0.0_rk)) local%matrix(n, n) = 1.0_rk
+      end do
+   end subroutine apply_sides
+
+end module coarse_stress
