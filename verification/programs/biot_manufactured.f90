@@ -8,7 +8,7 @@ program biot_manufactured
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
-   use coarse_matrix, only: cell_area
+   use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use fine_quadrature, only: triangle_rule_7
