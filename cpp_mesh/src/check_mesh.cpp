@@ -13,8 +13,8 @@ void require(bool condition, const std::string& what) {
         throw MeshError("the mesh is not valid: " + what);
 }
 
-// The areas are summed with the rounding errors of the sum kept aside (Neumaier 1974), else those of
-// a hundred thousand cells would hide a gap.
+// The areas are summed with the rounding errors of the sum kept aside (Neumaier 1974), else those
+// of a hundred thousand cells would hide a gap.
 void check_areas(const SplitMesh& mesh, const Domain& domain) {
     double total = 0.0, lost = 0.0;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {

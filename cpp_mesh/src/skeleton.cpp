@@ -1,5 +1,7 @@
 #include "skeleton.hpp"
 
+#include <set>
+
 namespace cpp_mesh {
 
 namespace {
@@ -98,6 +100,28 @@ private:
 };
 
 } // namespace
+
+std::vector<FractureCell> cells_outside_rosettes(const Skeleton& skeleton) {
+    std::set<int> tips;
+    for (const Rosette& rosette : skeleton.rosettes)
+        tips.insert(rosette.tip_node);
+    std::vector<FractureCell> cells;
+    for (const FractureCell& cell : skeleton.cells)
+        if (tips.count(cell.node[0]) == 0 && tips.count(cell.node[1]) == 0)
+            cells.push_back(cell);
+    return cells;
+}
+
+std::vector<int> nodes_of_lone_points(const Graph& graph, const std::vector<int>& node_of_point) {
+    std::set<int> on_fracture;
+    for (const GraphEdge& edge : graph.edges)
+        on_fracture.insert(edge.point.begin(), edge.point.end());
+    std::set<int> nodes;
+    for (int p : graph.fixed_points)
+        if (!graph.points[p].on_boundary && on_fracture.count(p) == 0)
+            nodes.insert(node_of_point[p]);
+    return {nodes.begin(), nodes.end()};
+}
 
 Skeleton divide_graph(const Graph& graph, const std::vector<int>& node_of_point,
                       const std::vector<RosettePlan>& plans, int sectors, const SizeField& size,

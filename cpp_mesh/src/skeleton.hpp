@@ -17,6 +17,12 @@ struct Skeleton {
     std::vector<Rosette> rosettes;
 };
 
+// The cells that end at the tip of no rosette: those within a ring are edges of its triangles.
+std::vector<FractureCell> cells_outside_rosettes(const Skeleton& skeleton);
+
+// Nodes of the fixed points inside the body that lie on no fracture.
+std::vector<int> nodes_of_lone_points(const Graph& graph, const std::vector<int>& node_of_point);
+
 // Divide the edges of the graph; node_of_point gives the mesh node of each graph point, and new
 // nodes are appended to xy. Edges of an old mesh stay whole.
 Skeleton divide_graph(const Graph& graph, const std::vector<int>& node_of_point,
