@@ -87,7 +87,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     region.loops.push_back(mesh_boundary(domain, graph, mesh.size, xy));
     limit_sizes_at_short_edges(domain, region.loops[0], xy, mesh.size);
     Skeleton skeleton =
-        divide_graph(graph, node_of_point, plans, specification.rosette_sectors, mesh.size, xy);
+        divide_graph(graph, node_of_point, plans, specification.rosette_sectors, {}, mesh.size, xy);
     for (const FractureCell& cell : cells_outside_rosettes(skeleton))
         region.embedded.push_back(cell.node);
     region.points = nodes_of_lone_points(graph, node_of_point);

@@ -6,7 +6,6 @@
 #include "mesh.hpp"
 #include "narrow_places.hpp"
 #include "patch_choice.hpp"
-#include "patch_fractures.hpp"
 #include "patch_mesher.hpp"
 
 namespace cpp_mesh {
@@ -22,6 +21,9 @@ constexpr double largest_ratio = 1.83;
 // A patch that holds more than this share of the cells is no patch.
 constexpr double largest_share = 0.6;
 
+// Cells of unfit size that hang together in smaller numbers are left as they are.
+constexpr int smallest_part = 30;
+
 // New cells may have smaller angles than those that they replace, down to this one [rad].
 constexpr double fair_angle = 0.384;
 
@@ -35,6 +37,19 @@ void set_sizes(const std::vector<Segment>& grown, PatchTask& task) {
         task.plans = plan_rosettes(task.graph, spec.domain, spec.rosette_radii);
     size.set_discs(rosette_discs(task.graph, task.plans, spec.rosette_sectors));
     limit_sizes_in_narrow_places(task.graph, spec.domain, size);
+}
+
+// Fracture cells that the patch does not hold.
+std::vector<FractureCell> kept_cells(const PlaneMesh& old_mesh, const Patch& patch,
+                                     const EdgeTable& edges) {
+    std::vector<FractureCell> kept;
+    for (std::size_t i = 0; i < old_mesh.fracture_cells.size(); ++i) {
+        if (patch.holds(edges, old_mesh.fracture_cells[i]))
+            continue;
+        kept.push_back(old_mesh.fracture_cells[i]);
+        kept.back().old_cell = static_cast<int>(i);
+    }
+    return kept;
 }
 
 double shape(const PlaneMesh& mesh, const Triangle& node) {
@@ -70,6 +85,9 @@ Mesh grow_within(double margin_in_cells, const Mesh& old_mesh, const Network& ne
     request.marked.assign(old_mesh.plane.cells.size(), 0);
     request.margin_in_cells = margin_in_cells;
     request.largest_ratio = largest_ratio;
+    // An old mesh's own sizes never come back.
+    request.size = task.made.size.less(old_mesh.size);
+    request.smallest_part = smallest_part;
     for (const Segment& segment : grown)
         request.new_segments.push_back(segment.end);
     Patch patch = choose_patch(request, task);
@@ -77,8 +95,7 @@ Mesh grow_within(double margin_in_cells, const Mesh& old_mesh, const Network& ne
     if (static_cast<double>(std::count(patch.is_made_anew.begin(), patch.is_made_anew.end(), 1)) >
         largest_share * n_cells)
         throw MeshError("most of the mesh would have to be made anew");
-    keep_fracture_cells(patch, task);
-    Mesh mesh = mesh_patch(task, patch, Rim::moves);
+    Mesh mesh = mesh_patch(task, patch, kept_cells(old_mesh.plane, patch, task.edges), Rim::moves);
     check_shapes(old_mesh.plane, patch, mesh.plane);
     return mesh;
 }

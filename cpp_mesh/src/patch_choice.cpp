@@ -11,9 +11,6 @@ constexpr double smallest_ratio = 0.77;
 // So far around such tips, in radii of their rosettes.
 constexpr double reach_of_rosettes = 7.0;
 
-// Cells of unfit size that hang together in smaller numbers are left as they are.
-constexpr int smallest_part = 30;
-
 // Rosettes are the same if their radii differ by no more than rounding errors.
 constexpr double same_radius = 1e-6;
 
@@ -84,10 +81,8 @@ private:
                 mark_rosette(old_.rosettes[k]);
     }
 
-    // Where sizes have become much smaller, or a tip has moved on. An old mesh's own sizes never
-    // come back.
+    // Where sizes have become much smaller, or a tip has moved on.
     void mark_unfit() {
-        const SizeField added = task_.made.size.less(task_.old_mesh.size);
         std::vector<Rosette> gone;
         for (std::size_t k = 0; k < old_.rosettes.size(); ++k)
             if (!patch_.rosette_stays[k])
@@ -101,7 +96,7 @@ private:
                 return distance(centre, old_.xy[rosette.tip_node]) <
                        reach_of_rosettes * rosette.radius;
             };
-            if (longest > request_.largest_ratio * added(centre) ||
+            if (longest > request_.largest_ratio * request_.size(centre) ||
                 (std::any_of(gone.begin(), gone.end(), is_reached_by) &&
                  longest < smallest_ratio * task_.made.size(centre)))
                 patch_.is_made_anew[c] = 1;
@@ -125,7 +120,7 @@ private:
     // Some cells of unfit size apart from the growth are not worth a patch of their own.
     void leave_small_parts(const std::vector<char>& is_at_growth) {
         const auto is_small = [&](const PatchPart& part) {
-            return static_cast<int>(part.cells.size()) < smallest_part &&
+            return static_cast<int>(part.cells.size()) < request_.smallest_part &&
                    std::none_of(
                        part.cells.begin(), part.cells.end(),
                        [&](int c) { return is_at_growth[c] != 0; });

@@ -16,9 +16,12 @@ struct PatchRequest {
     // Cells go that are nearer to new segments, and to rosettes that come or go, than so many cells
     // of the size wanted there: room for cells of good shape.
     double margin_in_cells = 0.0;
-    // Cells go that are longer than this times the size that the growth asks for: they would leave
-    // no room to grow smoothly.
+    // Cells go that are longer than this times these sizes: they would leave no room to grow
+    // smoothly.
     double largest_ratio = 0.0;
+    SizeField size;
+    // Cells of unfit size apart from the growth that hang together in smaller numbers are left.
+    int smallest_part = 0;
 };
 
 // The cells of the request, those of unfit size around them, and what makes the patch simple. A

@@ -78,13 +78,13 @@ std::vector<int> free_nodes_of_rims(const PatchTask& task, const Patch& patch) {
 
 } // namespace
 
-Mesh mesh_patch(PatchTask& task, Patch& patch, Rim rim) {
+Mesh mesh_patch(PatchTask& task, Patch& patch, const std::vector<FractureCell>& kept, Rim rim) {
     const PlaneMesh& old_plane = task.old_mesh.plane;
     const Domain& domain = task.old_mesh.specification.domain;
     divide_rims(task, patch);
     Skeleton skeleton =
         divide_graph(task.graph, task.node_of_point, task.plans,
-                     task.made.specification.rosette_sectors, task.made.size, task.xy);
+                     task.made.specification.rosette_sectors, kept, task.made.size, task.xy);
     const int first_free = static_cast<int>(task.xy.size());
     const std::vector<Triangle> cells = new_cells(task, patch, skeleton);
 

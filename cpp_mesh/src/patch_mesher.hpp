@@ -11,9 +11,10 @@ namespace cpp_mesh {
 // the patch where nothing holds them?
 enum class Rim { stays, moves };
 
-// The new mesh, checked: old cells that stay, in their order, then new ones. Throws MeshError. The
+// The new mesh, checked. Fractures are the graph's, divided anew but for edges of old cells and the
+// kept cells. Cells: old cells that stay, in their order, then new ones. Throws MeshError. The
 // task and the patch are used up.
-Mesh mesh_patch(PatchTask& task, Patch& patch, Rim rim);
+Mesh mesh_patch(PatchTask& task, Patch& patch, const std::vector<FractureCell>& kept, Rim rim);
 
 } // namespace cpp_mesh
 
