@@ -35,10 +35,12 @@ std::vector<Region> regions_of(const PatchTask& task, const Patch& patch,
 }
 
 // The cells that fill the patch; their nodes are appended to those of the task.
-std::vector<Triangle> new_cells(PatchTask& task, const Patch& patch, const Skeleton& skeleton) {
+std::vector<Triangle> new_cells(const PatchStyle& style, const Skeleton& skeleton,
+                                const Patch& patch, PatchTask& task) {
     std::vector<Triangle> cells;
     for (const Region& region : regions_of(task, patch, skeleton)) {
-        check_region_edges(region, task.xy, task.tolerances.angle);
+        if (style.refuses_narrow_places)
+            check_region_edges(region, task.xy, task.tolerances.angle);
         // As at the outer boundary: cells start from the length of short edges there.
         limit_sizes_at_short_edges(task.old_mesh.specification.domain, region.loops[0], task.xy,
                                    task.made.size);
@@ -78,15 +80,15 @@ std::vector<int> free_nodes_of_rims(const PatchTask& task, const Patch& patch) {
 
 } // namespace
 
-Mesh mesh_patch(PatchTask& task, Patch& patch, const std::vector<FractureCell>& kept, Rim rim) {
+Mesh mesh_patch(const PatchStyle& style, PatchTask& task, Patch& patch) {
     const PlaneMesh& old_plane = task.old_mesh.plane;
     const Domain& domain = task.old_mesh.specification.domain;
     divide_rims(task, patch);
-    Skeleton skeleton =
-        divide_graph(task.graph, task.node_of_point, task.plans,
-                     task.made.specification.rosette_sectors, kept, task.made.size, task.xy);
+    Skeleton skeleton = divide_graph(task.graph, task.node_of_point, task.plans,
+                                     task.made.specification.rosette_sectors, style.kept_cells,
+                                     task.made.size, task.xy);
     const int first_free = static_cast<int>(task.xy.size());
-    const std::vector<Triangle> cells = new_cells(task, patch, skeleton);
+    const std::vector<Triangle> cells = new_cells(style, skeleton, patch, task);
 
     PlaneMesh& plane = task.made.plane;
     for (std::size_t c = 0; c < old_plane.cells.size(); ++c)
@@ -100,7 +102,7 @@ Mesh mesh_patch(PatchTask& task, Patch& patch, const std::vector<FractureCell>& 
     plane.rosettes.insert(plane.rosettes.end(), skeleton.rosettes.begin(), skeleton.rosettes.end());
 
     std::vector<int> movable;
-    if (rim == Rim::moves)
+    if (style.smooths_rim)
         movable = free_nodes_of_rims(task, patch);
     for (int node = first_free; node < static_cast<int>(task.xy.size()); ++node)
         movable.push_back(node);

@@ -7,14 +7,19 @@
 
 namespace cpp_mesh {
 
-// Do the nodes on the rim inside the body stay where they are, or are they smoothed with those in
-// the patch where nothing holds them?
-enum class Rim { stays, moves };
+// What the two levels want differently.
+struct PatchStyle {
+    std::vector<FractureCell> kept_cells; // old cells on edges of the graph that are divided anew
+    // Nodes on the rim inside the body are smoothed with those in the patch where nothing holds
+    // them; else they stay where they are.
+    bool smooths_rim = false;
+    // Edges that leave no room for cells of good shape are refused; else there are bad cells.
+    bool refuses_narrow_places = false;
+};
 
-// The new mesh, checked. Fractures are the graph's, divided anew but for edges of old cells and the
-// kept cells. Cells: old cells that stay, in their order, then new ones. Throws MeshError. The
+// The new mesh, checked: old cells that stay, in their order, then new ones. Throws MeshError. The
 // task and the patch are used up.
-Mesh mesh_patch(PatchTask& task, Patch& patch, const std::vector<FractureCell>& kept, Rim rim);
+Mesh mesh_patch(const PatchStyle& style, PatchTask& task, Patch& patch);
 
 } // namespace cpp_mesh
 

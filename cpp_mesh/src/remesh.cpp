@@ -59,7 +59,7 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
     }
     request.size = task.made.size;
     Patch patch = choose_patch(request, task);
-    Mesh mesh = mesh_patch(task, patch, {}, Rim::stays);
+    Mesh mesh = mesh_patch(PatchStyle{}, task, patch);
     mesh.map = map_of_patch(old_mesh.plane, patch.is_made_anew, mesh.plane);
     return mesh;
 }
