@@ -29,10 +29,9 @@ std::vector<int> nodes_of_corners(const Domain& domain, const Graph& graph,
     return corner_node;
 }
 
-} // namespace
-
-void divide_boundary(int start, int stop, const SizeField& size, std::vector<Vec2>& xy,
-                     std::vector<int>& loop) {
+// Append the node `start` and new nodes after it on the way to `stop`.
+void divide_edge(int start, int stop, const SizeField& size, std::vector<Vec2>& xy,
+                 std::vector<int>& loop) {
     const Vec2 a = xy[start], b = xy[stop];
     const std::vector<double> t = divide_segment(a, b, size);
     loop.push_back(start);
@@ -48,6 +47,20 @@ void divide_boundary(int start, int stop, const SizeField& size, std::vector<Vec
     }
 }
 
+} // namespace
+
+void divide_boundary(int start, std::vector<int> between, int stop, const SizeField& size,
+                     std::vector<Vec2>& xy, std::vector<int>& loop) {
+    const Vec2 first = xy[start];
+    std::sort(between.begin(), between.end(),
+              [&](int p, int q) { return distance(first, xy[p]) < distance(first, xy[q]); });
+    between.push_back(stop);
+    for (int next : between) {
+        divide_edge(start, next, size, xy, loop);
+        start = next;
+    }
+}
+
 std::vector<int> mesh_boundary(const Domain& domain, const Graph& graph, const SizeField& size,
                                std::vector<Vec2>& xy) {
     std::vector<int> on_boundary;
@@ -57,18 +70,15 @@ std::vector<int> mesh_boundary(const Domain& domain, const Graph& graph, const S
     const std::vector<int> corner_node = nodes_of_corners(domain, graph, on_boundary, xy);
     std::vector<int> loop;
     for (int edge = 0; edge < domain.edge_count(); ++edge) {
-        const Vec2 a = domain.start(edge), b = domain.stop(edge);
-        std::vector<int> stops = {corner_node[edge]};
+        std::vector<int> between;
         for (int p : on_boundary) {
             const Vec2 place = graph.points[p].xy;
-            if (place != a && place != b && domain.is_on_edge(place, edge))
-                stops.push_back(p);
+            if (place != domain.start(edge) && place != domain.stop(edge) &&
+                domain.is_on_edge(place, edge))
+                between.push_back(p);
         }
-        std::sort(stops.begin() + 1, stops.end(),
-                  [&](int p, int q) { return distance(a, xy[p]) < distance(a, xy[q]); });
-        stops.push_back(corner_node[(edge + 1) % domain.edge_count()]);
-        for (std::size_t k = 0; k + 1 < stops.size(); ++k)
-            divide_boundary(stops[k], stops[k + 1], size, xy, loop);
+        divide_boundary(corner_node[edge], between, corner_node[(edge + 1) % domain.edge_count()],
+                        size, xy, loop);
     }
     return loop;
 }

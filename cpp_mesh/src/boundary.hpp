@@ -16,10 +16,10 @@ namespace cpp_mesh {
 std::vector<int> mesh_boundary(const Domain& domain, const Graph& graph, const SizeField& size,
                                std::vector<Vec2>& xy);
 
-// Append the node `start` on the boundary to the loop, and new nodes after it on the way to `stop`
-// on the same edge.
-void divide_boundary(int start, int stop, const SizeField& size, std::vector<Vec2>& xy,
-                     std::vector<int>& loop);
+// Append the node `start` on the boundary to the loop, and nodes after it on the way to `stop` on
+// the same edge: those between, in any order, and new ones as the sizes ask.
+void divide_boundary(int start, std::vector<int> between, int stop, const SizeField& size,
+                     std::vector<Vec2>& xy, std::vector<int>& loop);
 
 // Where corners of a polygon are so near to each other that edges are shorter than cells should be,
 // cells start from the edge's length and grow inwards, so that they keep their shape. The sides of

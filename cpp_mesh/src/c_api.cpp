@@ -2,7 +2,6 @@
 #include "cpp_mesh/c_api.h"
 
 #include "errors.hpp"
-#include "join.hpp"
 #include "locate.hpp"
 #include "mesh.hpp"
 
@@ -229,17 +228,6 @@ int cm_quality(const cm_mesh* mesh, double* smallest_angle, int32_t* worst_cell)
         const Quality quality = quality_of(mesh->mesh.plane);
         *smallest_angle = quality.smallest_angle;
         *worst_cell = quality.worst_cell;
-    });
-}
-
-int cm_nearest_target(const cm_spec* spec, const cm_network* network, double x, double y,
-                      int32_t fracture, int32_t end, cm_target* target) {
-    return guarded([&] {
-        require(target != nullptr, "no place was given for the target");
-        const Network fractures = network_from(network);
-        const JoinTarget found = nearest_target(specification_from(spec, fractures.size()),
-                                                fractures, {x, y}, fracture, end - 1);
-        *target = {found.xy.x, found.xy.y, found.distance, found.s, found.fracture, found.side};
     });
 }
 

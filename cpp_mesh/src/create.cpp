@@ -9,8 +9,6 @@
 #include "skeleton.hpp"
 #include "smooth.hpp"
 
-#include <set>
-
 namespace cpp_mesh {
 
 namespace {
@@ -49,18 +47,6 @@ bool is_for_elements(const Specification& spec) {
            (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
 }
 
-// Nodes of the fixed points inside the body that lie on no fracture.
-std::vector<int> points_of_their_own(const Graph& graph, const std::vector<int>& node_of_point) {
-    std::set<int> on_fracture;
-    for (const GraphEdge& edge : graph.edges)
-        on_fracture.insert(edge.point.begin(), edge.point.end());
-    std::set<int> nodes;
-    for (int p : graph.fixed_points)
-        if (!graph.points[p].on_boundary && on_fracture.count(p) == 0)
-            nodes.insert(node_of_point[p]);
-    return {nodes.begin(), nodes.end()};
-}
-
 // The sizes are wanted at the nodes of another mesh, or else grow from the fractures.
 Mesh make_mesh(const Specification& specification, const Network& network,
                std::shared_ptr<const NodalSizes> wanted) {
@@ -87,11 +73,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     std::vector<RosettePlan> plans;
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
-    std::vector<SizeDisc> discs;
-    for (const RosettePlan& plan : plans)
-        discs.push_back(
-            rosette_disc(graph.points[plan.point].xy, plan.radius, specification.rosette_sectors));
-    mesh.size.set_discs(std::move(discs));
+    mesh.size.set_discs(rosette_discs(graph, plans, specification.rosette_sectors));
     if (mesh.size.is_scale_free())
         limit_sizes_in_narrow_places(graph, domain, mesh.size);
 
@@ -105,14 +87,10 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     region.loops.push_back(mesh_boundary(domain, graph, mesh.size, xy));
     limit_sizes_at_short_edges(domain, region.loops[0], xy, mesh.size);
     Skeleton skeleton =
-        divide_graph(graph, node_of_point, plans, specification.rosette_sectors, mesh.size, xy);
-    std::set<int> tip_nodes;
-    for (const Rosette& rosette : skeleton.rosettes)
-        tip_nodes.insert(rosette.tip_node);
-    for (const FractureCell& cell : skeleton.cells)
-        if (tip_nodes.count(cell.node[0]) == 0 && tip_nodes.count(cell.node[1]) == 0)
-            region.embedded.push_back(cell.node);
-    region.points = points_of_their_own(graph, node_of_point);
+        divide_graph(graph, node_of_point, plans, specification.rosette_sectors, {}, mesh.size, xy);
+    for (const FractureCell& cell : cells_outside_rosettes(skeleton))
+        region.embedded.push_back(cell.node);
+    region.points = nodes_of_lone_points(graph, node_of_point);
     for (const std::vector<int>& ring : skeleton.rings)
         region.loops.push_back(ring);
 

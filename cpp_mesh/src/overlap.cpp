@@ -51,8 +51,13 @@ double common_area(const std::array<Vec2, 3>& first, const std::array<Vec2, 3>& 
     return std::max(area, 0.0);
 }
 
-void find_overlaps(const PlaneMesh& old_mesh, const std::vector<int>& patch,
-                   const PlaneMesh& new_mesh, PatchMap& map) {
+PatchMap map_of_patch(const PlaneMesh& old_mesh, const std::vector<char>& is_made_anew,
+                      const PlaneMesh& new_mesh) {
+    PatchMap map;
+    std::vector<int> patch;
+    for (int c = 0; c < static_cast<int>(old_mesh.cells.size()); ++c)
+        (is_made_anew[c] ? patch : map.cell_old).push_back(c);
+    map.cell_old.resize(new_mesh.cells.size(), -1);
     const CellTree tree(old_mesh.xy, old_mesh.cells, patch);
     std::vector<int> candidates;
     map.overlap_first.assign(1, 0);
@@ -80,6 +85,7 @@ void find_overlaps(const PlaneMesh& old_mesh, const std::vector<int>& patch,
         }
         map.overlap_first.push_back(static_cast<int>(map.overlap_cell.size()));
     }
+    return map;
 }
 
 } // namespace cpp_mesh

@@ -87,17 +87,15 @@ double loop_area(const std::vector<int>& loop, const std::vector<Vec2>& xy) {
 
 } // namespace
 
-void mark_discs(const PlaneMesh& mesh, const std::vector<Vec2>& centres, double radius,
-                std::vector<char>& marked) {
-    for (const Vec2& centre : centres) {
-        for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-            bool is_within = true;
-            for (int node : mesh.cells[c])
-                is_within = is_within && distance(mesh.xy[node], centre) <= radius;
-            if (is_within)
-                marked[c] = 1;
-        }
-    }
+std::vector<char> cells_in_discs(const PlaneMesh& mesh, const std::vector<Vec2>& centres,
+                                 double radius) {
+    std::vector<char> marked;
+    for (const Triangle& cell : mesh.cells)
+        marked.push_back(std::any_of(centres.begin(), centres.end(), [&](Vec2 centre) {
+            return std::all_of(cell.begin(), cell.end(),
+                               [&](int node) { return distance(mesh.xy[node], centre) <= radius; });
+        }));
+    return marked;
 }
 
 void mark_near(const PlaneMesh& mesh, const std::array<Vec2, 2>& segment, double margin,

@@ -9,11 +9,11 @@
 
 namespace cpp_mesh {
 
-// Cells with all nodes within `radius` of a centre.
-void mark_discs(const PlaneMesh& mesh, const std::vector<Vec2>& centres, double radius,
-                std::vector<char>& marked);
+// Which cells have all nodes within `radius` of a centre?
+std::vector<char> cells_in_discs(const PlaneMesh& mesh, const std::vector<Vec2>& centres,
+                                 double radius);
 
-// Cells nearer than `margin` to a segment.
+// Mark cells nearer than `margin` to a segment.
 void mark_near(const PlaneMesh& mesh, const std::array<Vec2, 2>& segment, double margin,
                std::vector<char>& marked);
 
@@ -25,6 +25,27 @@ void make_simple(const PlaneMesh& mesh, const EdgeTable& edges, std::vector<char
 struct PatchPart {
     std::vector<std::vector<int>> loops; // as in Region
     std::vector<int> cells;
+};
+
+// The old cells that are made anew, and the old rosettes that are not.
+struct Patch {
+    std::vector<char> is_made_anew; // by cell
+    std::vector<PatchPart> parts;
+    std::vector<char> rosette_stays; // by rosette
+
+    bool touches(const EdgeTable& edges, int node) const {
+        return std::any_of(edges.begin(node), edges.end(node),
+                           [&](int c) { return is_made_anew[c] != 0; });
+    }
+    bool surrounds(const EdgeTable& edges, int node) const {
+        return std::all_of(edges.begin(node), edges.end(node),
+                           [&](int c) { return is_made_anew[c] != 0; });
+    }
+    // Cells on both sides of it are made anew.
+    bool holds(const EdgeTable& edges, const FractureCell& cell) const {
+        return is_made_anew[edges.cell(cell.node[0], cell.node[1])] &&
+               is_made_anew[edges.cell(cell.node[1], cell.node[0])];
+    }
 };
 
 std::vector<PatchPart> patch_parts(const PlaneMesh& mesh, const EdgeTable& edges,

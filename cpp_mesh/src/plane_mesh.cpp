@@ -6,16 +6,14 @@
 
 namespace cpp_mesh {
 
-int drop_unused_nodes(PlaneMesh& mesh, int watched) {
+void drop_unused_nodes(PlaneMesh& mesh) {
     const int n_before = static_cast<int>(mesh.xy.size());
     std::vector<int> number(n_before, -1);
     for (const Triangle& cell : mesh.cells)
         for (int node : cell)
             number[node] = 0;
-    int n = 0, watched_now = n_before;
+    int n = 0;
     for (int node = 0; node < n_before; ++node) {
-        if (node == watched)
-            watched_now = n;
         if (number[node] < 0)
             continue;
         mesh.xy[n] = mesh.xy[node];
@@ -35,7 +33,6 @@ int drop_unused_nodes(PlaneMesh& mesh, int watched) {
     }
     for (Rosette& rosette : mesh.rosettes)
         rosette.tip_node = number[rosette.tip_node];
-    return std::min(watched_now, n);
 }
 
 void sort_fracture_cells(std::vector<FractureCell>& cells) {

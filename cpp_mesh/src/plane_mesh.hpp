@@ -40,9 +40,8 @@ struct Quality {
 
 Quality quality_of(const PlaneMesh& mesh);
 
-// Leave out the nodes that no cell uses; node `watched` or the first used one after it becomes the
-// node whose number is returned.
-int drop_unused_nodes(PlaneMesh& mesh, int watched);
+// Leave out the nodes that no cell uses.
+void drop_unused_nodes(PlaneMesh& mesh);
 
 // By fracture, then by arc length.
 void sort_fracture_cells(std::vector<FractureCell>& cells);

@@ -89,8 +89,13 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
     return plans;
 }
 
-SizeDisc rosette_disc(Vec2 tip, double radius, int sectors) {
-    return {tip, radius, 2.0 * radius * std::sin(pi / sectors), growth_around};
+std::vector<SizeDisc> rosette_discs(const Graph& graph, const std::vector<RosettePlan>& plans,
+                                    int sectors) {
+    std::vector<SizeDisc> discs;
+    for (const RosettePlan& plan : plans)
+        discs.push_back({graph.points[plan.point].xy, plan.radius,
+                         2.0 * plan.radius * std::sin(pi / sectors), growth_around});
+    return discs;
 }
 
 std::vector<int> add_ring(Vec2 tip, Vec2 direction, double radius, int sectors, int crack_node,

@@ -35,8 +35,9 @@ struct RosetteRadii {
 std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
                                        const RosetteRadii& radii);
 
-// The ring's sizes for the size field.
-SizeDisc rosette_disc(Vec2 tip, double radius, int sectors);
+// The rings' sizes for the size field.
+std::vector<SizeDisc> rosette_discs(const Graph& graph, const std::vector<RosettePlan>& plans,
+                                    int sectors);
 
 // Ring nodes, counter-clockwise, appended to xy; the first is given and lies on the crack.
 std::vector<int> add_ring(Vec2 tip, Vec2 direction, double radius, int sectors, int crack_node,

@@ -77,7 +77,9 @@ namespace {
 // Cells counted from the start of a segment, at samples along it.
 struct CellCount {
     std::vector<double> t, cells;
-    bool is_uniform = false;
+    bool is_even = false;    // samples
+    bool is_uniform = false; // sizes
+    bool is_resolved = true; // by the samples
 };
 
 // Samples a quarter of the size apart wherever they are; sizes may differ by orders of magnitude.
@@ -100,7 +102,10 @@ CellCount count_cells(Vec2 a, Vec2 b, const SizeField& size) {
     return count;
 }
 
-// Evenly spaced samples.
+// Evenly spaced samples. They do not resolve sizes that differ by more than this factor from one to
+// the next.
+constexpr double largest_jump = 2.0;
+
 CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
     const double whole = distance(a, b);
     double smallest_seen = size(a);
@@ -109,7 +114,7 @@ CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
     const double nudge = size.is_scale_free() ? tie_margin : 0.0;
     const int n_samples = static_cast<int>(
         std::clamp(std::ceil(4.0 * whole / smallest_seen * (1.0 - nudge)), 16.0, 1024.0));
-    CellCount count{{0.0}, {0.0}};
+    CellCount count{{0.0}, {0.0}, true};
     double previous = size(a), smallest = previous, largest = previous;
     for (int k = 1; k <= n_samples; ++k) {
         count.t.push_back(static_cast<double>(k) / n_samples);
@@ -118,6 +123,8 @@ CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
                               0.5 * (1.0 / previous + 1.0 / here) * whole / n_samples);
         smallest = std::min(smallest, here);
         largest = std::max(largest, here);
+        count.is_resolved = count.is_resolved &&
+                            std::max(here, previous) <= largest_jump * std::min(here, previous);
         previous = here;
     }
     count.is_uniform = largest - smallest <= 1e-9 * largest;
@@ -127,8 +134,10 @@ CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
 } // namespace
 
 std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
-    const CellCount count =
+    CellCount count =
         size.follows_other_mesh() ? count_cells(a, b, size) : count_cells_evenly(a, b, size);
+    if (!count.is_resolved)
+        count = count_cells(a, b, size);
     const double total = count.cells.back();
     const double nudge = size.is_scale_free() ? tie_margin : 0.0;
     const int n = std::max(1, static_cast<int>(std::lround(total * (1.0 + nudge))));
@@ -142,9 +151,9 @@ std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
         while (count.cells[k + 1] < wanted)
             ++k;
         const double share = (wanted - count.cells[k]) / (count.cells[k + 1] - count.cells[k]);
-        t[i] = size.follows_other_mesh()
-                   ? count.t[k] + share * (count.t[k + 1] - count.t[k])
-                   : (static_cast<double>(k) + share) / static_cast<double>(count.t.size() - 1);
+        t[i] = count.is_even
+                   ? (static_cast<double>(k) + share) / static_cast<double>(count.t.size() - 1)
+                   : count.t[k] + share * (count.t[k + 1] - count.t[k]);
     }
     return t;
 }

@@ -17,10 +17,19 @@ struct Skeleton {
     std::vector<Rosette> rosettes;
 };
 
+// The cells that end at the tip of no rosette: those within a ring are edges of its triangles.
+std::vector<FractureCell> cells_outside_rosettes(const Skeleton& skeleton);
+
+// Nodes of the fixed points inside the body that lie on no fracture.
+std::vector<int> nodes_of_lone_points(const Graph& graph, const std::vector<int>& node_of_point);
+
 // Divide the edges of the graph; node_of_point gives the mesh node of each graph point, and new
-// nodes are appended to xy. Edges of an old mesh stay whole.
+// nodes are appended to xy. Edges of an old mesh stay whole, and so do the kept cells, which lie on
+// other edges and are sorted by fracture and arc length. Throws MeshError where a joint or a
+// rosette leaves no room for these.
 Skeleton divide_graph(const Graph& graph, const std::vector<int>& node_of_point,
-                      const std::vector<RosettePlan>& plans, int sectors, const SizeField& size,
+                      const std::vector<RosettePlan>& plans, int sectors,
+                      const std::vector<FractureCell>& kept, const SizeField& size,
                       std::vector<Vec2>& xy);
 
 } // namespace cpp_mesh

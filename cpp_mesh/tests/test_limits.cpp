@@ -134,6 +134,23 @@ void narrow_places(Checks& checks) {
                            std::to_string(free.counts.n_cells));
 }
 
+// Rosettes far smaller than their body: fracture cells grow away from them as cells around do, by
+// about 0.3 of their length, so that a factor of ten takes some eight cells at each end.
+void tiny_rosettes(Checks& checks) {
+    const TestNetwork network({{{0.9, 1.0}, {1.1, 1.02}}});
+    for (int power = 3; power <= 6; ++power) {
+        cm_spec spec = rectangle_spec(2.0, 2.0, 0.02, 0.2);
+        spec.rosette_sectors = 12;
+        spec.rosette_radius = std::pow(10.0, -power);
+        ApiMesh mesh;
+        const std::string name = "rosettes of 1e-" + std::to_string(power) + " m";
+        checks.is_true(mesh.create(spec, network), name + ": " + mesh.error);
+        check_quality(checks, mesh, 25.0, name);
+        checks.is_close(mesh.counts.n_fracture_cells, 30.0 + 15.4 * (power - 3), 3.0,
+                        name + ": fracture cells");
+    }
+}
+
 } // namespace
 
 int main() {
@@ -142,5 +159,6 @@ int main() {
     flat_angles(checks);
     sharp_kinks(checks);
     narrow_places(checks);
+    tiny_rosettes(checks);
     return checks.finish();
 }

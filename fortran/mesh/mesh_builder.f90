@@ -3,8 +3,7 @@ module mesh_builder
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_grow, cm_locate, &
-                             cm_nearest_target, cm_network_t, cm_quality, cm_remesh, cm_spec_t, &
-                             cm_target_t
+                             cm_network_t, cm_quality, cm_remesh, cm_spec_t
    use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
    use mesh_c_outputs, only: copy_map, copy_mesh, raise_library_error
    use mesh_types, only: mesh_map_t, mesh_t, network_t
@@ -12,18 +11,9 @@ module mesh_builder
    implicit none(type, external)
    private
 
-   public :: join_target_t, mesh_spec_t, mesher_t
-   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, nearest_target, remesh
+   public :: mesh_spec_t, mesher_t
+   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, remesh
    public :: transfer_mesher
-
-   !> Where a growing end may join a fracture or the boundary.
-   type :: join_target_t
-      real(rk) :: xy(2) = 0.0_rk  !< [m]
-      real(rk) :: distance = huge(1.0_rk)  !< from the point that was asked about [m]
-      integer(ik) :: fracture = 0  !< that holds the target; 0: the boundary
-      real(rk) :: s = 0.0_rk  !< arc length on that fracture [m]
-      integer(ik) :: side = 0  !< of the boundary; 0: a fracture
-   end type join_target_t
 
    !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
    !! empty; use transfer_mesher to move one.
@@ -195,40 +185,6 @@ contains
          worst_cell = worst_cell + 1
       end if
    end subroutine mesh_quality
-
-   !> The point nearest to a place on the other fractures, the boundary, and parts of the fracture
-   !! itself that it approaches anew, among those that the fracture's end comes nearer to. An end
-   !! put exactly there can be meshed, unless the new segment is far shorter than a cell (then move
-   !! the last vertex there instead) or meets another one at less than 3 degrees.
-   subroutine nearest_target(spec, network, point, fracture, end, target, error)
-      type(mesh_spec_t), intent(in) :: spec
-      type(network_t), intent(in) :: network
-      real(rk), intent(in) :: point(2)  !< place of the end, or to which it would grow [m]
-      integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
-      type(join_target_t), intent(out) :: target
-      type(error_t), allocatable, intent(out) :: error
-      type(cm_spec_t) :: c_spec
-      type(cm_network_t) :: c_network
-      type(cm_target_t) :: found
-      type(mesh_spec_t), target :: kept
-      type(c_network_arrays_t), target :: arrays
-
-      kept = spec
-      call prepare_network(network, arrays, c_network, error)
-      if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
-      if (allocated(error)) return
-      if (cm_nearest_target(c_spec, c_network, point(1), point(2), fracture - 1_ik, end, &
-                            found) /= 0) then
-         call raise_library_error(error, "nearest_target")
-         return
-      end if
-      target%xy = [found%x, found%y]
-      target%distance = found%distance
-      target%fracture = found%fracture + 1
-      target%s = found%s
-      target%side = found%side
-   end subroutine nearest_target
 
    !> Move a mesh from one owner to another; what the other held before is released.
    subroutine transfer_mesher(from, to)

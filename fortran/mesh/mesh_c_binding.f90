@@ -5,9 +5,9 @@ module mesh_c_binding
    implicit none(type, external)
    private
 
-   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t, cm_target_t
+   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t
    public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
-   public :: cm_map_copy, cm_map_sizes, cm_nearest_target, cm_quality, cm_remesh, cm_sizes
+   public :: cm_map_copy, cm_map_sizes, cm_quality, cm_remesh, cm_sizes
    public :: c_string_length
 
    !> Fracture polylines.
@@ -64,15 +64,6 @@ module mesh_c_binding
       type(c_ptr) :: tip_radius = c_null_ptr
    end type cm_arrays_t
 
-   !> Where a growing end may join.
-   type, bind(C) :: cm_target_t
-      real(c_double) :: x, y
-      real(c_double) :: distance
-      real(c_double) :: s
-      integer(c_int32_t) :: fracture
-      integer(c_int32_t) :: side
-   end type cm_target_t
-
    interface
       !> Why the last call of this thread failed, ended by a null character.
       function cm_last_error() result(text) bind(C, name="cm_last_error")
@@ -112,18 +103,6 @@ module mesh_c_binding
          integer(c_int32_t), intent(out) :: worst_cell
          integer(c_int) :: status
       end function cm_quality
-
-      function cm_nearest_target(spec, network, x, y, fracture, end, target) result(status) &
-         bind(C, name="cm_nearest_target")
-         import :: c_double, c_int, c_int32_t, cm_network_t, cm_spec_t, cm_target_t
-         implicit none(type, external)
-         type(cm_spec_t), intent(in) :: spec
-         type(cm_network_t), intent(in) :: network
-         real(c_double), value :: x, y
-         integer(c_int32_t), value :: fracture, end
-         type(cm_target_t), intent(out) :: target
-         integer(c_int) :: status
-      end function cm_nearest_target
 
       function cm_remesh(old_mesh, network, n_centres, centres, radius, size, new_mesh) &
          result(status) bind(C, name="cm_remesh")

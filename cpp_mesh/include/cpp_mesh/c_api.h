@@ -122,26 +122,6 @@ int cm_map_copy(const cm_mesh* new_mesh, int32_t* cell_old /* [n_cells] */,
 /* The smallest angle of all cells [rad], and the cell that has it. */
 int cm_quality(const cm_mesh* mesh, double* smallest_angle, int32_t* worst_cell);
 
-/* Where a growing end may join a fracture or the boundary. */
-typedef struct {
-    double x, y;
-    double distance;  /* from the point that was asked about [m] */
-    double s;         /* arc length on the fracture */
-    int32_t fracture; /* that holds the target; -1: the boundary */
-    int32_t side;     /* of the boundary; 0: a fracture */
-} cm_target;
-
-/* The point nearest to (x, y) on the other fractures, the boundary, and parts of the fracture
-   itself that it approaches anew, among those that a fracture's end (1 start, 2 end) comes nearer
-   to; (x, y) is the place of the end or the place to which it would grow. What the end moves away
-   from is no target, such as a joint behind it or the side where an edge crack begins. A target
-   close to a vertex, joint, tip or corner is that point. A network whose end is put exactly on the
-   target can be meshed, unless the new segment is shorter than size_fracture/1000 or meets another
-   one at less than 3 degrees: where the end is very near already, move its last vertex to the
-   target instead of adding one. */
-int cm_nearest_target(const cm_spec* spec, const cm_network* network, double x, double y,
-                      int32_t fracture, int32_t end, cm_target* target);
-
 /* The cell that holds each point, -1 outside the body. */
 int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy /* [n_points][2] */,
               int32_t* cells);

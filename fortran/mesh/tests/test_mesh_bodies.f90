@@ -1,11 +1,10 @@
-!> Whole bodies through the Fortran interface: polygons, fixed points, rosettes, wanted sizes,
-!! quality and targets of growth. The meshes themselves are tested in C++ (cpp_mesh/tests).
+!> Whole bodies through the Fortran interface: polygons, fixed points, rosettes, wanted sizes
+!! and quality. The meshes themselves are tested in C++ (cpp_mesh/tests).
 program test_mesh_bodies
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use mesh_builder, only: build_mesh, build_mesh_sized, join_target_t, mesh_quality, mesh_spec_t, &
-                           mesher_t, nearest_target
+   use mesh_builder, only: build_mesh, build_mesh_sized, mesh_quality, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, point_boundary
    implicit none(type, external)
 
@@ -14,7 +13,6 @@ program test_mesh_bodies
 
    call test_disc(checks)
    call test_sized(checks)
-   call test_targets(checks)
    call test_refusals(checks)
    call checks%finish()
 
@@ -167,35 +165,6 @@ contains
       call build_mesh_sized(spec, network, mesher, sizes(2:), mesher_new, mesh_new, error)
       call checks%is_true(allocated(error), "sized: one size too few is refused")
    end subroutine test_sized
-
-   !> Ends ahead of a fracture and of the boundary.
-   subroutine test_targets(checks)
-      type(checks_t), intent(inout) :: checks
-      type(mesh_spec_t) :: spec
-      type(network_t) :: network
-      type(join_target_t) :: target
-      type(error_t), allocatable :: error
-
-      spec%x_max = 1.0_rk
-      spec%y_max = 1.0_rk
-      spec%size_fracture = 0.02_rk
-      spec%size_boundary = 0.1_rk
-      allocate (network%first, source=[1_ik, 3_ik, 5_ik])
-      allocate (network%xy, source=reshape([0.3_rk, 0.5_rk, 0.6_rk, 0.5_rk, &
-                                            0.7_rk, 0.2_rk, 0.7_rk, 0.8_rk], [2, 4]))
-      allocate (network%s_start, source=[0.0_rk, 1.0_rk])
-      call nearest_target(spec, network, [0.6_rk, 0.5_rk], 1_ik, 2_ik, target, error)
-      call checks%no_error(error, "target")
-      call checks%is_true(target%fracture == 2 .and. target%side == 0, "target: fracture")
-      call checks%is_close(norm2(target%xy - [0.7_rk, 0.5_rk]), 0.0_rk, 1.0e-15_rk, &
-                           "target: place")
-      call checks%is_close(target%distance, 0.1_rk, 1.0e-15_rk, "target: distance")
-      call checks%is_close(target%s, 1.3_rk, 1.0e-15_rk, "target: arc length")
-      call nearest_target(spec, network, [0.3_rk, 0.5_rk], 1_ik, 1_ik, target, error)
-      call checks%no_error(error, "target on the boundary")
-      call checks%is_true(target%fracture == 0 .and. target%side == 1, "target: left side")
-      call checks%is_close(target%distance, 0.3_rk, 1.0e-15_rk, "target: distance of the side")
-   end subroutine test_targets
 
    !> Arrays that do not fit.
    subroutine test_refusals(checks)
