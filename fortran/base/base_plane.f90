@@ -8,7 +8,7 @@ module base_plane
    private
 
    public :: barycentric, cross, crosses, meeting, nearest_place, nearest_share
-   public :: point_distance, polygon_area, segment_distance, triangle_area, turned, turned_left
+   public :: point_distance, polygon_area, triangle_area, turned, turned_left
 
 contains
 
@@ -65,16 +65,6 @@ contains
 
       distance = norm2(point - ends(:, 1) - nearest_share(point, ends)*(ends(:, 2) - ends(:, 1)))
    end function point_distance
-
-   !> Distance between two segments; 0 where they cross.
-   pure real(rk) function segment_distance(first, second) result(distance)
-      real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends
-
-      distance = 0.0_rk
-      if (crosses(first, second)) return
-      distance = min(point_distance(first(:, 1), second), point_distance(first(:, 2), second), &
-                     point_distance(second(:, 1), first), point_distance(second(:, 2), first))
-   end function segment_distance
 
    !> Where the lines through two segments meet, as shares of both; -1 if they are parallel.
    pure function meeting(first, second) result(share)

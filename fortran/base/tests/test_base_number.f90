@@ -35,6 +35,7 @@ program test_base_number
    call same_text(scale(1.0_rk, -44), "5.684341886080802e-14")  ! 5.6843418860808015e-14
    call same_text(scale(1.0_rk, 1023), "8.98846567431158e+307")
    call same_text(1097718834198879.25_rk, "1097718834198879.2")  ! .3 is as near: the even digit
+   call same_text(scale(1.0_rk, -25), "2.9802322387695312e-08")  ! and of 2.98023223876953125e-08
    call same_text(-5.0e-324_rk, "-5e-324")
    call same_text(ieee_value(1.0_rk, ieee_quiet_nan), "nan")
    call same_text(ieee_value(1.0_rk, ieee_positive_inf), "inf")
