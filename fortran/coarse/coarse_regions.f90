@@ -31,8 +31,8 @@ module coarse_regions
       !> (n_regions) x, y of the tractions [Pa] on the faces, then rotations [-] of the nodes
       type(response_t), allocatable :: traction(:)
       type(response_t), allocatable :: flux(:)  !< (n_regions) fluxes [m/s] through the flow faces
-      !> (3, corner, n_cells) where, in the packed tractions of at_traction, those on the faces after
-      !! and before a corner begin, and where the rotation of its node stands
+      !> (3, corner, n_cells) where, in the packed tractions of at_traction, those on the faces
+      !! after and before a corner begin, and where the rotation of its node stands
       integer(ik), allocatable :: at_corner(:, :, :)
    contains
       procedure :: traction_count
