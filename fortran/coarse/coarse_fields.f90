@@ -154,20 +154,19 @@ contains
       real(rk), intent(out) :: stress(2, 2)  !< not symmetric by itself [Pa]
       real(rk), intent(out) :: rotation  !< [-]
 
-      integer(ik) :: at, faces(2), i, j, r
+      integer(ik) :: at, faces(2), i, j
       real(rk) :: sign_out(2), length(2), lever(2, 2), area
 
-      r = regions%region_of_node(mesh%cell_nodes(k, cell))
       call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
       stress = 0.0_rk
       do j = 1, 2
          call traction_face(mesh, faces(j), sign_out(j))
-         at = regions%at_traction(r, faces(j))
+         at = regions%at_corner(j, k, cell)
          do i = 1, 2
             stress(:, i) = stress(:, i) + sign_out(j)*lever(i, j)*tractions(at:at + 1)
          end do
       end do
-      rotation = tractions(regions%at_rotation(r, mesh%cell_nodes(k, cell)))
+      rotation = tractions(regions%at_corner(3, k, cell))
    end subroutine corner_stress
 
    !> Whether the tractions of a region are all given, so that its rotation means nothing.

@@ -31,6 +31,9 @@ module coarse_regions
       !> (n_regions) x, y of the tractions [Pa] on the faces, then rotations [-] of the nodes
       type(response_t), allocatable :: traction(:)
       type(response_t), allocatable :: flux(:)  !< (n_regions) fluxes [m/s] through the flow faces
+      !> (3, corner, n_cells) where, in the packed tractions of at_traction, those on the faces
+      !! after and before a corner begin, and where the rotation of its node stands
+      integer(ik), allocatable :: at_corner(:, :, :)
    contains
       procedure :: traction_count
       procedure :: at_traction
@@ -78,8 +81,32 @@ contains
          ends(:, mesh%fracture%cell_faces(2, i)) = 0
       end do
       regions%faces = inverted(ends, n)
+      call find_corners(mesh, regions)
       allocate (regions%traction(n), regions%flux(n))
    end subroutine find_regions
+
+   !> Where the tractions and rotations at all corners of cells stand.
+   subroutine find_corners(mesh, regions)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(inout) :: regions
+
+      integer(ik) :: c, faces(2), j, k, r
+      real(rk) :: sign_out
+
+      allocate (regions%at_corner(3, 3, mesh%n_cells))
+      do c = 1, mesh%n_cells
+         do k = 1, 3
+            r = regions%regions_of_block(k, c)
+            faces = mesh%cell_faces([k, mod(k + 1, 3_ik) + 1], c)
+            do j = 1, 2
+               sign_out = 1.0_rk
+               call traction_face(mesh, faces(j), sign_out)
+               regions%at_corner(j, k, c) = regions%at_traction(r, faces(j))
+            end do
+            regions%at_corner(3, k, c) = regions%at_rotation(r, mesh%cell_nodes(k, c))
+         end do
+      end do
+   end subroutine find_corners
 
    !> Nodes on both sides of a fracture that lie at the same point belong to one region.
    subroutine join_nodes(mesh, regions)
