@@ -1,6 +1,7 @@
 !> Lengths and areas of the mesh, and the corners of its cells.
 module coarse_geometry
    use base_kinds, only: ik, rk
+   use base_plane, only: triangle_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -54,11 +55,7 @@ contains
       integer(ik), intent(in) :: cell
       real(rk) :: area  !< [m2]
 
-      associate (a => mesh%xy(:, mesh%cell_nodes(1, cell)), &
-                 b => mesh%xy(:, mesh%cell_nodes(2, cell)), &
-                 c => mesh%xy(:, mesh%cell_nodes(3, cell)))
-         area = 0.5_rk*((b(1) - a(1))*(c(2) - a(2)) - (b(2) - a(2))*(c(1) - a(1)))
-      end associate
+      area = triangle_area(mesh%xy(:, mesh%cell_nodes(:, cell)))
    end function cell_area
 
 end module coarse_geometry

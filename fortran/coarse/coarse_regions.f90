@@ -5,6 +5,7 @@
 !! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
 !! varies linearly along the cell. Each node has a rotation of its own.
 module coarse_regions
+   use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
    use coarse_elimination, only: response_t
@@ -113,52 +114,22 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(inout) :: regions
 
-      integer(ik), allocatable :: leader(:)
-      integer(ik) :: a, b, i, v
+      type(groups_t) :: groups
+      integer(ik) :: a, b, i
 
-      leader = [(v, v=1, mesh%n_nodes)]
+      groups = single_groups(mesh%n_nodes)
       do i = 1, mesh%fracture%n_cells
          associate (plus => mesh%face_nodes(:, mesh%fracture%cell_faces(1, i)), &
                     minus => mesh%face_nodes(:, mesh%fracture%cell_faces(2, i)))
             do a = 1, 2
                b = minloc(norm2(mesh%xy(:, minus) - spread(mesh%xy(:, plus(a)), 2, 2), dim=1), &
                           dim=1)
-               call unite(plus(a), minus(b))
+               call groups%join(plus(a), minus(b))
             end do
          end associate
       end do
-      allocate (regions%region_of_node(mesh%n_nodes))
-      regions%n_regions = 0
-      do v = 1, mesh%n_nodes
-         if (find(v) == v) then
-            regions%n_regions = regions%n_regions + 1
-            regions%region_of_node(v) = regions%n_regions
-         else
-            regions%region_of_node(v) = regions%region_of_node(find(v))
-         end if
-      end do
-
-   contains
-
-      !> The smallest node that v is united with.
-      function find(node) result(root)
-         integer(ik), intent(in) :: node
-         integer(ik) :: root
-
-         root = node
-         do while (leader(root) /= root)
-            root = leader(root)
-         end do
-      end function find
-
-      subroutine unite(node_a, node_b)
-         integer(ik), intent(in) :: node_a, node_b
-
-         associate (root_a => find(node_a), root_b => find(node_b))
-            leader(max(root_a, root_b)) = min(root_a, root_b)
-         end associate
-      end subroutine unite
-
+      regions%region_of_node = groups%numbers()
+      regions%n_regions = groups%count_groups()
    end subroutine join_nodes
 
    !> The face that carries the traction: of a fracture, the one on side +, with the sign turned on

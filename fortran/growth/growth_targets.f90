@@ -1,6 +1,7 @@
 !> Where a growing tip meets another fracture or the outer boundary.
 module growth_targets
    use base_kinds, only: ik, rk
+   use base_plane, only: crosses, meeting, nearest_place
    use mesh_types, only: network_t
    implicit none(type, external)
    private
@@ -59,46 +60,8 @@ contains
       before = norm2(nearest_place(from, ends) - from)
       after = norm2(nearest_place(to, ends) - to)
       is_behind = before <= same*norm2(to - from) .or. &
-                  (after >= before .and. .not. crosses(from, to, ends))
+                  (after >= before .and. .not. crosses(reshape([from, to], [2, 2]), ends))
    end function is_behind
-
-   !> Two segments cross.
-   pure logical function crosses(from, to, ends)
-      real(rk), intent(in) :: from(2), to(2), ends(2, 2)  !< [m]
-      real(rk) :: share(2)
-
-      share = meeting(from, to, ends)
-      crosses = all(share >= 0.0_rk .and. share <= 1.0_rk)
-   end function crosses
-
-   !> Where the lines through two segments meet, as shares of both; never within parallel ones.
-   pure function meeting(from, to, ends) result(share)
-      real(rk), intent(in) :: from(2), to(2), ends(2, 2)  !< [m]
-      real(rk) :: share(2)
-      real(rk) :: along(2), side(2), determinant
-
-      along = to - from
-      side = ends(:, 2) - ends(:, 1)
-      determinant = along(1)*side(2) - along(2)*side(1)
-      share = -1.0_rk
-      if (abs(determinant) > 0.0_rk) then
-         associate (between => ends(:, 1) - from)
-            share = [between(1)*side(2) - between(2)*side(1), &
-                     between(1)*along(2) - between(2)*along(1)]/determinant
-         end associate
-      end if
-   end function meeting
-
-   !> The place on a segment nearest to a point [m].
-   pure function nearest_place(point, ends) result(place)
-      real(rk), intent(in) :: point(2), ends(2, 2)  !< [m]
-      real(rk) :: place(2)
-
-      associate (side => ends(:, 2) - ends(:, 1))
-         place = ends(:, 1) + side*min(1.0_rk, max(0.0_rk, dot_product(point - ends(:, 1), side) &
-                                                   /dot_product(side, side)))
-      end associate
-   end function nearest_place
 
    !> Keep the candidate if it comes first. Crossings rank by their share of the segment, below 1;
    !! nearness follows after all of them.
@@ -112,7 +75,7 @@ contains
       integer :: k
 
       rank = huge(1.0_rk)
-      share = meeting(from, to, ends)
+      share = meeting(reshape([from, to], [2, 2]), ends)
       if (all(share >= 0.0_rk .and. share <= 1.0_rk)) then
          rank = share(1)
          place = ends(:, 1) + share(2)*(ends(:, 2) - ends(:, 1))

@@ -2,6 +2,7 @@
 module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: barycentric
    use coarse_fields, only: cell_stresses
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: total_length
@@ -101,7 +102,7 @@ contains
       do i = 1, n
          associate (nodes => simulation%mesh%cell_nodes(:, cells(i)))
             values(:, i) = matmul(simulation%level%nodal(:, nodes), &
-                                  corner_weights(simulation%mesh%xy(:, nodes), xy(:, i)))
+                                  barycentric(simulation%mesh%xy(:, nodes), xy(:, i)))
          end associate
       end do
       stresses = stresses_of(simulation)
@@ -109,21 +110,6 @@ contains
       row%pressure = values(3, :)
       row%stress = stresses(:, cells)
    end subroutine probes_of_levels
-
-   !> Barycentric coordinates.
-   pure function corner_weights(corners, point) result(weight)
-      real(rk), intent(in) :: corners(:, :), point(:)
-      real(rk) :: weight(3)
-      integer :: i
-
-      do i = 1, 3
-         associate (a => corners(:, mod(i, 3) + 1) - point, &
-                    b => corners(:, mod(i + 1, 3) + 1) - point)
-            weight(i) = a(1)*b(2) - a(2)*b(1)
-         end associate
-      end do
-      weight = weight/sum(weight)
-   end function corner_weights
 
    !> Stress of each cell: xx, yy, xy [Pa].
    function stresses_of(simulation) result(stresses)

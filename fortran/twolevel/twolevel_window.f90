@@ -13,6 +13,7 @@
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: barycentric
    use contact_states, only: state_open, state_slip
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t
@@ -342,20 +343,5 @@ contains
       if (same) same = all(model%conditions%condition == conditions%condition)
       if (same) same = .not. any(abs(model%conditions%dilation - conditions%dilation) > 0.0_rk)
    end function same_conditions
-
-   !> Weights of a triangle's corners at a point.
-   pure function barycentric(corners, point) result(weight)
-      real(rk), intent(in) :: corners(2, 3), point(2)
-      real(rk) :: weight(3)
-
-      real(rk) :: a(2), b(2), p(2)
-
-      a = corners(:, 2) - corners(:, 1)
-      b = corners(:, 3) - corners(:, 1)
-      p = point - corners(:, 1)
-      weight(2) = (p(1)*b(2) - p(2)*b(1))/(a(1)*b(2) - a(2)*b(1))
-      weight(3) = (a(1)*p(2) - a(2)*p(1))/(a(1)*b(2) - a(2)*b(1))
-      weight(1) = 1.0_rk - weight(2) - weight(3)
-   end function barycentric
 
 end module twolevel_window
