@@ -10,7 +10,7 @@ from small_case import CHECKS, SmallCase, small_case
 from wingcrack_verify.case import Case, read_case
 from wingcrack_verify.judge import ERROR, FAILED, PASSED
 
-# The runs of the small case, as a sweep.
+# The first two runs of the small case, as a sweep; the third stays.
 SWEEP = """\
 [[sweep]]
 over.run = { run = ["coarse", "middle"], size = [0.2, 0.1] }
@@ -18,14 +18,6 @@ name = "{run}"
 method = "plain"
 scene = "scene.nml"
 set = { "scene.name" = "{run}" }
-
-[[run]]
-name = "fine"
-method = "plain"
-size = 0.05
-default = true
-scene = "scene.nml"
-set = { "scene.name" = "fine" }
 
 """
 
@@ -48,10 +40,12 @@ HEAD = CHECKS["absolute"]
 
 
 def swept_case(root: Path, *checks: str) -> SmallCase:
-    """Small case whose runs are a sweep."""
+    """Small case with a sweep among its runs."""
     case = small_case(root, "absolute")
-    start, end = case.toml.index("[[run]]"), case.toml.index("[[check]]")
-    case.toml = case.toml[:start] + SWEEP + ("\n".join(checks) or case.toml[end:])
+    start, fine = case.toml.index("[[run]]"), case.toml.index('[[run]]\nname = "fine"')
+    first_check = case.toml.index("[[check]]")
+    own = "\n".join(checks) or case.toml[first_check:]
+    case.toml = case.toml[:start] + SWEEP + case.toml[fine:first_check] + own
     return case
 
 

@@ -222,12 +222,11 @@ class _Filler:
         try:
             for used in names_in(expression) - FUNCTIONS.keys() - {"pi"}:
                 self.used.add(used)
+                if used not in self.point:
+                    there = f"there are: {', '.join(self.point) or 'none'}"
+                    raise CaseError(f"'{used}' in '{{{expression}}}' is no name here ({there})")
                 if used not in self.numbers:
-                    there = ", ".join(self.point) or "none"
-                    kind = (
-                        "no number" if used in self.point else f"no name here (there are: {there})"
-                    )
-                    raise CaseError(f"'{used}' in '{{{expression}}}' is {kind}")
+                    raise CaseError(f"'{used}' in '{{{expression}}}' is no number")
             value = float(evaluate(expression, self.numbers))
         except CaseError as reason:
             raise CaseError(f"{self.place}: {reason}") from None
