@@ -10,7 +10,8 @@ program coarse_mandel
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_regions, only: regions_t, traction_position
+   use coarse_geometry, only: face_length
+   use coarse_regions, only: regions_t
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
@@ -107,12 +108,11 @@ contains
 
       plate_force = 0.0_rk
       do r = 1, regions%n_regions
-         do j = regions%face_first(r), regions%face_first(r + 1) - 1
-            f = regions%faces(j)
+         do j = 1, regions%faces%length(r)
+            f = regions%faces%at(r, j)
             if (mesh%face_side(f) /= 4) cycle
-            plate_force = plate_force + 0.5_rk*norm2(mesh%xy(:, mesh%face_nodes(2, f)) &
-                                                     - mesh%xy(:, mesh%face_nodes(1, f))) &
-              *of_state%tractions(traction_position(regions, r) + 2*(j - regions%face_first(r)) + 1)
+            plate_force = plate_force + 0.5_rk*face_length(mesh, f) &
+                          *of_state%tractions(regions%at_traction(r, f) + 1)
          end do
       end do
    end function plate_force

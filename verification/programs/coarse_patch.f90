@@ -7,6 +7,7 @@ program coarse_patch
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
+   use coarse_geometry, only: face_length
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t
@@ -157,25 +158,19 @@ contains
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(in) :: state
       real(rk), intent(out) :: inflow
-      real(rk) :: flux
-      integer(ik) :: b, f, j, n, nb, r
+      real(rk), allocatable :: flux(:)
+      integer(ik) :: f, j, r
 
       inflow = 0.0_rk
       associate (regions => model%regions)
          do r = 1, regions%n_regions
-            n = regions%flow_first(r + 1) - regions%flow_first(r)
-            nb = regions%block_first(r + 1) - regions%block_first(r)
-            do j = 1, n
-               f = regions%flow_faces(regions%flow_first(r) + j - 1)
-               if (mesh%face_side(f) /= 1) cycle
-               flux = regions%flux(regions%flux_first(r) + nb*n + j - 1)
-               do b = 1, nb
-                  flux = flux + regions%flux(regions%flux_first(r) + (b - 1)*n + j - 1) &
-                         *state%unknowns(3, regions%blocks(regions%block_first(r) + b - 1))
-               end do
-               inflow = inflow - 0.5_rk*flux*norm2(mesh%xy(:, mesh%face_nodes(2, f)) &
-                                                   - mesh%xy(:, mesh%face_nodes(1, f)))
+            allocate (flux(regions%flow_faces%length(r)))
+            call regions%flux(r)%apply(state%unknowns(3, regions%blocks%of(r)), flux)
+            do j = 1, size(flux)
+               f = regions%flow_faces%at(r, j)
+               if (mesh%face_side(f) == 1) inflow = inflow - 0.5_rk*flux(j)*face_length(mesh, f)
             end do
+            deallocate (flux)
          end do
       end associate
    end subroutine inflow_of
