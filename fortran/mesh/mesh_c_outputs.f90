@@ -147,14 +147,14 @@ contains
    end subroutine raise_library_error
 
    !> A text of C, which a null character ends.
-   function text_of(pointer) result(text)
-      type(c_ptr), intent(in) :: pointer
+   function text_of(start) result(text)
+      type(c_ptr), intent(in) :: start
       character(len=:), allocatable :: text
       character(kind=c_char), pointer :: characters(:)
       integer :: i, n
 
-      n = int(c_string_length(pointer))
-      call c_f_pointer(pointer, characters, [n])
+      n = int(c_string_length(start))
+      call c_f_pointer(start, characters, [n])
       allocate (character(len=n) :: text)
       do i = 1, n
          text(i:i) = characters(i)
