@@ -2,8 +2,9 @@
 !! library judges; here its verdict becomes a sentence about the scene file.
 module app_geometry
    use base_errors, only: error_t
-   use base_kinds, only: ik
-   use base_number, only: integer_text
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text, rounded
+   use growth_network, only: network_of_scene
    use mechanics_body, only: body_spec
    use mechanics_outline, only: scene_corner, scene_edge
    use mesh_builder, only: mesh_spec_t
@@ -12,8 +13,7 @@ module app_geometry
    use mesh_types, only: network_t
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t
-   use scene_words, only: rounded_text
-   use growth_network, only: network_of_scene
+   use scene_words, only: real_text
    use twolevel_state, only: coarse_spec
    implicit none(type, external)
    private
@@ -61,12 +61,18 @@ contains
          fault%culprits%number = joint%fractures
          fault%reason = "{1} and {2} meet"
          if (joint%fractures(1) == joint%fractures(2)) fault%reason = "{1} meets itself"
-         fault%reason = fault%reason//" at ("//rounded_text(joint%xy(1))//", "// &
-                        rounded_text(joint%xy(2))//"), but fractures must not touch in a scene "// &
-                        "with &fluid"
+         fault%reason = fault%reason//" at "//place_text(joint%xy)// &
+                        ", but fractures must not touch in a scene with &fluid"
       end associate
       call blame(sheet, scene, fault, error)
    end subroutine refuse_joints_with_fluid
+
+   pure function place_text(xy) result(text)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      character(len=:), allocatable :: text
+
+      text = "("//real_text(rounded(xy(1), 9))//", "//real_text(rounded(xy(2), 9))//")"
+   end function place_text
 
    !> Put a fault into words, at the line of the first culprit.
    subroutine blame(sheet, scene, fault, error)
@@ -83,7 +89,7 @@ contains
          call identify(sheet, scene, fault%culprits(i), record, name)
          if (i == 1) then
             first_record = record
-         else if (record /= first_record .and. sheet%records(record)%line > 0) then
+         else if (all(record /= [first_record, sheet%find("domain")])) then
             name = name//" (line "//integer_text(sheet%records(record)%line)//")"
          end if
          reason = with_name(reason, "{"//integer_text(int(i, ik))//"}", name)

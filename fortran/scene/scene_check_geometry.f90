@@ -1,5 +1,6 @@
 !> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates;
-!! and where wells and probes are. Whether body and fractures can be meshed, the mesh library judges.
+!! and where wells and probes are. Whether body and fractures can be meshed is for the mesh library
+!! to judge.
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -205,8 +206,8 @@ contains
       contains_point = x >= domain%x_min .and. x <= domain%x_max .and. &
                        y >= domain%y_min .and. y <= domain%y_max
       if (domain%shape == "disc") then
-         contains_point = hypot(x - domain%x_centre, y - domain%y_centre) <= &
-                          domain%radius*(1.0_rk + round_off)
+         contains_point = hypot(x - domain%x_centre, &
+                                y - domain%y_centre) <= domain%radius*(1.0_rk + round_off)
       end if
    end function contains_point
 

@@ -1,4 +1,5 @@
-!> Defaults that follow from other values: resolved here and nowhere else. scene.nml shows the numbers.
+!> Defaults that follow from other values: resolved here and nowhere else, so that scene.nml shows
+!! the numbers used.
 module scene_defaults
    use base_kinds, only: rk
    use scene_types, only: scene_t

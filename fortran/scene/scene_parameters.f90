@@ -139,7 +139,8 @@ module scene_parameters
       group_t("output", implied=.true., meaning="What is written, and how often.")]
 
    type(parameter_t), parameter :: body_parameters(*) = [ &
-      parameter_t("scene", "name", kind_name, absent="the file's name without .nml", derived=.true., &
+      parameter_t("scene", "name", kind_name, &
+                  absent="the file's name without .nml", derived=.true., &
                   meaning="Short name; results go to `out/<name>` unless told otherwise"), &
       parameter_t("scene", "title", kind_text, default="''", &
                   meaning="What the scene shows, in a line"), &
@@ -367,8 +368,8 @@ module scene_parameters
                   meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
-                  meaning="Largest advance l_max of a tip at a time. By default, or with 0, the "// &
-                  "fine mesh size, and without a fluid size_fracture of &fe"), &
+                  meaning="Largest advance l_max of a tip at a time; 0: the default, which is "// &
+                  "the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
                   meaning="Exponent m of advance = l_max (G/G_max)^m"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
