@@ -5,7 +5,7 @@ program test_app_geometry
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_sheet, only: sheet_t
-   use scene_test_files, only: delete_file, put_lines
+   use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_app_geometry.nml"
@@ -179,14 +179,10 @@ contains
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2
       type(error_t), allocatable, intent(out) :: error
-      character(len=100) :: lines(size(good))
       type(scene_t) :: scene
       type(sheet_t) :: sheet
 
-      lines = good
-      lines(line_1) = text_1
-      lines(line_2) = text_2
-      call put_lines(path, lines)
+      call put_changed(path, good, line_1, text_1, line_2, text_2)
       call read_scene(path, scene, error, sheet)
       call checks%no_error(error, "read: "//trim(text_1))
       if (.not. allocated(error)) call check_geometry(sheet, scene, error)

@@ -5,7 +5,7 @@ program test_scene_bodies
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_polygon, only: holds_point, signed_area
-   use scene_test_files, only: delete_file, put_lines
+   use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_bodies.nml"
@@ -188,13 +188,9 @@ contains
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2
       type(error_t), allocatable, intent(out) :: error
-      character(len=100) :: lines(size(good))
       type(scene_t) :: scene
 
-      lines = good
-      lines(line_1) = text_1
-      lines(line_2) = text_2
-      call put_lines(path, lines)
+      call put_changed(path, good, line_1, text_1, line_2, text_2)
       call read_scene(path, scene, error)
    end subroutine read_changed
 

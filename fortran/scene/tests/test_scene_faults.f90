@@ -5,7 +5,7 @@ program test_scene_faults
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
-   use scene_test_files, only: delete_file, put_lines
+   use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: scene_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_faults.nml"
@@ -235,12 +235,8 @@ contains
    subroutine refuse_two(number_1, line_1, number_2, line_2, message)
       integer, intent(in) :: number_1, number_2
       character(len=*), intent(in) :: line_1, line_2, message
-      character(len=100) :: lines(size(good))
 
-      lines = good
-      lines(number_1) = line_1
-      lines(number_2) = line_2
-      call put_lines(path, lines)
+      call put_changed(path, good, number_1, line_1, number_2, line_2)
       call read_scene(path, scene, error)
       if (allocated(error)) then
          call checks%is_true(error%message == path//message, "got:  "//error%message// &
