@@ -121,7 +121,7 @@ LAW = "friction = 0.5, aperture = 1.0e-3 /"
 NETWORK_FAULTS = {
     "cross": (
         "x = 0.9, 1.1, y = 1.1, 0.9",
-        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at (1.0, 1.0), but "
+        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at (1, 1), but "
         "fractures must not touch in a scene with &fluid",
     ),
     "V at 1.6 degrees": (

@@ -3,7 +3,7 @@
 module app_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_number, only: integer_text, rounded
+   use base_number, only: brief_text, integer_text
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_spec
    use mechanics_outline, only: scene_corner, scene_edge
@@ -13,7 +13,6 @@ module app_geometry
    use mesh_types, only: network_t
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t
-   use scene_words, only: real_text
    use twolevel_state, only: coarse_spec
    implicit none(type, external)
    private
@@ -71,7 +70,7 @@ contains
       real(rk), intent(in) :: xy(2)  !< [m]
       character(len=:), allocatable :: text
 
-      text = "("//real_text(rounded(xy(1), 9))//", "//real_text(rounded(xy(2), 9))//")"
+      text = "("//brief_text(xy(1), 9)//", "//brief_text(xy(2), 9)//")"
    end function place_text
 
    !> Put a fault into words, at the line of the first culprit.

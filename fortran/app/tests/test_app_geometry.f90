@@ -90,7 +90,7 @@ contains
       call refuse(5, wet_fracture("x=2*1.03125 y=0.4, 0.6"), ":4: &fracture: fracture 'f1' and "// &
                   "fracture 'f2' (line 5) meet at (1.03125, 0.5), but fractures must not touch "// &
                   "in a scene with &fluid"//doc)
-      call refuse(5, wet_fracture("x=2*1.0 y=0.5, 0.6"), "meet at (1.0, 0.5)")
+      call refuse(5, wet_fracture("x=2*1.0 y=0.5, 0.6"), "meet at (1, 0.5)")
       call refuse(5, wet_fracture("x=1.1, 1.2 y=0.5, 0.6"), "meet at (1.1, 0.5)")
       call refuse(5, wet_fracture("x=0.2, 0.6, 0.6, 0.4 y=0.5, 0.5, 0.6, 0.4"), &
                   ":5: &fracture: fracture 'f2' meets itself at (0.5, 0.5), but")
