@@ -40,7 +40,7 @@ FAULTS = {
         "&side",
         "x_displacement",
     ),
-    "fracture outside": ("y = 0.96", "y = -0.96", "&fracture", "outside of the domain"),
+    "fracture outside": ("y = 0.96", "y = -0.96", "&fracture", "leaves the domain at (0.964645, -"),
     "unequal lists": ("y = 0.9646446609406726,", "y =", "&fracture", "must have as many as x, 2"),
     "well in no fracture": ("fracture = 'f1'", "fracture = 'f2'", "&injection", "nearest is 'f1'"),
     "well that ends first": ("end = 14400.0", "end = 60.0", "&injection", "end is 60.0"),
@@ -86,10 +86,10 @@ POLYGON_FAULTS = {
     "corner twice": (
         "y = 0.0, 0.0, 1.0",
         "y = 0.0, 0.0, 0.0",
-        "faulty.nml:2: &domain",
-        "the corners 2 and 3 at the same place",
+        "faulty.nml:1: &domain",
+        "corner 2 and corner 3 lie at one place",
     ),
-    "edges cross": ("y = 0.0, 0.0, 1.0", "y = 0.0, 3.0, 1.0", "faulty.nml:2: &domain", "meet"),
+    "edges cross": ("y = 0.0, 0.0, 1.0", "y = 0.0, 3.0, 1.0", "faulty.nml:1: &domain", "meet"),
     "too few": ("y = 0.0, 0.0", "y = 0.0", "faulty.nml:3: &domain", "as many as x, 6"),
     "no such edge": ("edges = 2", "edges = 7", "faulty.nml:9: &side", "must be at most 6"),
     "edge twice": ("edges = 2", "edges = 2, 1", "faulty.nml:9: &side", "must not overlap"),
@@ -97,7 +97,7 @@ POLYGON_FAULTS = {
         "x = 0.4, 0.6, y = 0.5, 0.5",
         "x = 0.9, 1.9, y = 1.9, 0.9",
         "faulty.nml:7: &fracture",
-        "leave the domain on the way to (1.9, 0.9)",
+        "leaves the domain on the way to its vertex at (1.9, 0.9)",
     ),
     "no density": (", density = 2500.0", "", "faulty.nml:6: &gravity", "has no density"),
     "no number": ("y = -9.81", "y = -inf", "faulty.nml:6: &gravity", "y is -inf"),
@@ -113,6 +113,48 @@ def test_a_faulty_polygon_is_refused(fault: str, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (2, "")
     assert place in done.stderr
     assert words in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
+
+
+# A second fracture of the scene, and what the refusal of the two must hold; f1 is on line 8.
+LAW = "friction = 0.5, aperture = 1.0e-3 /"
+NETWORK_FAULTS = {
+    "cross": (
+        "x = 0.9, 1.1, y = 1.1, 0.9",
+        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at (1, 1), but "
+        "fractures must not touch in a scene with &fluid",
+    ),
+    "V at 1.6 degrees": (
+        "x = 1.0353553390593274, 0.9, y = 1.0353553390593274, 0.896",
+        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at too small an angle at "
+        "(1.03536, 1.03536)",
+    ),
+    "leaves the body": (
+        "x = 1.5, 2.5, y = 1.5, 1.5",
+        "14: &fracture: fracture 'f2' leaves the domain at (2.5, 1.5); shorten it or enlarge",
+    ),
+    "the same again": (
+        "x = 0.9646446609406726, 1.0353553390593274, y = 0.9646446609406726, 1.0353553390593274",
+        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) overlap at (0.964645, 0.964645)",
+    ),
+    "nearly touch": (
+        "x = 1.0, 1.2, y = 1.00001, 1.3",
+        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) come within 7.07107e-06 m",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", NETWORK_FAULTS)
+def test_check_and_run_judge_a_network_alike(fault: str, tmp_path: Path) -> None:
+    vertices, words = NETWORK_FAULTS[fault]
+    fracture = f"&fracture name = 'f2', {vertices}\n  {LAW}\n"
+    first_side = "&side name = 'left'"
+    (tmp_path / "faulty.nml").write_text(varied((first_side, fracture + first_side)))
+    checked = call(tmp_path, "check", "faulty.nml")
+    ran = call(tmp_path, "run", "faulty.nml", "--out", "out")
+    assert checked.stderr == ran.stderr
+    assert checked.stderr.startswith(f"wingcrack: faulty.nml:{words}")
+    assert (checked.returncode, ran.returncode, checked.stdout, ran.stdout) == (2, 2, "", "")
     assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
 
 

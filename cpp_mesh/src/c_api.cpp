@@ -2,6 +2,7 @@
 #include "cpp_mesh/c_api.h"
 
 #include "errors.hpp"
+#include "judge.hpp"
 #include "locate.hpp"
 #include "mesh.hpp"
 
@@ -36,20 +37,37 @@ std::string& last_error() {
     return text;
 }
 
+std::optional<Fault>& last_fault() {
+    thread_local std::optional<Fault> fault;
+    return fault;
+}
+
+int fail(const std::string& message, const Fault& fault) {
+    last_error() = message;
+    last_fault() = fault;
+    return failure;
+}
+
+int fail(const std::string& message) {
+    return fail(message, Fault{FaultKind::other, {}, {}, message});
+}
+
 // Run an action at the border.
 template <typename Action> int guarded(Action&& action) {
     try {
         last_error().clear();
+        last_fault().reset();
         action();
         return success;
     } catch (const std::bad_alloc&) {
-        last_error() = "there is not enough memory for the mesh";
+        return fail("there is not enough memory for the mesh");
+    } catch (const MeshError& error) {
+        return fail(error.what(), error.fault());
     } catch (const std::exception& error) {
-        last_error() = error.what();
+        return fail(error.what());
     } catch (...) {
-        last_error() = "an unknown error happened in the mesh library";
+        return fail("an unknown error happened in the mesh library");
     }
-    return failure;
 }
 
 void require(bool condition, const char* message) {
@@ -174,6 +192,41 @@ void copy_fractures(const SplitMesh& mesh, const cm_arrays& to) {
 
 const char* cm_last_error(void) {
     return last_error().c_str();
+}
+
+void cm_last_fault(cm_fault* fault) {
+    if (fault == nullptr)
+        return;
+    *fault = cm_fault{};
+    if (!last_fault())
+        return;
+    const Fault& last = *last_fault();
+    fault->kind = static_cast<int32_t>(last.kind);
+    for (const Culprit& culprit : last.culprits) {
+        fault->culprit_kind[fault->n_culprits] = static_cast<int32_t>(culprit.kind);
+        fault->culprit[fault->n_culprits++] = culprit.number;
+    }
+    if (last.place) {
+        fault->has_place = 1;
+        fault->x = last.place->x;
+        fault->y = last.place->y;
+    }
+    fault->reason = last.reason.c_str();
+}
+
+int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity, cm_joint* joints,
+             int32_t* n_joints) {
+    return guarded([&] {
+        require(n_joints != nullptr, "no place was given for the number of joints");
+        *n_joints = 0;
+        const Network fractures = network_from(network);
+        const std::vector<Joint> found =
+            joints_of(judged_graph(specification_from(spec, fractures.size()), fractures));
+        *n_joints = static_cast<int32_t>(found.size());
+        for (int32_t k = 0; k < std::min(capacity, *n_joints); ++k)
+            joints[k] = {
+                {found[k].fracture[0], found[k].fracture[1]}, found[k].xy.x, found[k].xy.y};
+    });
 }
 
 int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh) {

@@ -3,6 +3,7 @@
 #include "check_mesh.hpp"
 #include "errors.hpp"
 #include "gmsh_session.hpp"
+#include "judge.hpp"
 #include "mesh.hpp"
 #include "narrow_places.hpp"
 #include "rosette.hpp"
@@ -12,33 +13,6 @@
 namespace cpp_mesh {
 
 namespace {
-
-void check_specification(const Specification& spec) {
-    if (spec.is_window && !spec.domain.is_rectangle())
-        throw MeshError("a window must be a rectangle");
-    for (std::size_t k = 0; k < spec.fixed_points.size(); ++k)
-        if (!std::isfinite(spec.fixed_points[k].x) || !std::isfinite(spec.fixed_points[k].y))
-            throw MeshError("fixed point " + std::to_string(k + 1) + " is not a number");
-    if (!(spec.size_fracture > 0.0 && spec.size_boundary > 0.0 &&
-          std::isfinite(spec.size_boundary) && std::isfinite(spec.size_fracture)))
-        throw MeshError("cell sizes must be positive");
-    if (spec.size_boundary < spec.size_fracture)
-        throw MeshError("cells at the boundary (" + number_text(spec.size_boundary) +
-                        " m) must not be smaller than at the fractures (" +
-                        number_text(spec.size_fracture) + " m)");
-    if (spec.rosette_sectors != 0 && spec.rosette_sectors < 6)
-        throw MeshError("a rosette needs at least 6 sectors, not " +
-                        std::to_string(spec.rosette_sectors));
-    if (spec.rosette_sectors != 0 && !(spec.rosette_radii.usual > 0.0))
-        throw MeshError("the rosette radius must be positive");
-}
-
-void check_network(const Network& network) {
-    for (int f = 0; f < network.size(); ++f)
-        for (int v = network.first[f]; v < network.first[f + 1]; ++v)
-            if (!std::isfinite(network.xy[v].x) || !std::isfinite(network.xy[v].y))
-                throw MeshError(fracture_name(f) + " has a vertex that is not a number");
-}
 
 // Meshes with a singular tip, a polygon or fixed points are those of finite elements on whole
 // bodies.
@@ -56,8 +30,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     const Domain& domain = specification.domain;
     const Tolerances tolerances = tolerances_for(domain.box(), specification.size_fracture);
 
-    const Graph graph = build_graph(segments_of(network), specification.fixed_points, domain,
-                                    specification.is_window, tolerances);
+    const Graph graph = judged_graph(specification, network);
     if (wanted != nullptr) {
         mesh.size = SizeField(std::move(wanted));
     } else {
@@ -111,15 +84,11 @@ Mesh make_mesh(const Specification& specification, const Network& network,
 } // namespace
 
 Mesh create_mesh(const Specification& specification, const Network& network) {
-    check_specification(specification);
-    check_network(network);
     return make_mesh(specification, network, nullptr);
 }
 
 Mesh create_mesh_sized(const Specification& specification, const Network& network,
                        const Mesh& old_mesh, const std::vector<double>& cell_size) {
-    check_specification(specification);
-    check_network(network);
     const Domain& domain = specification.domain;
     const Domain& old_domain = old_mesh.specification.domain;
     if (domain.is_rectangle() != old_domain.is_rectangle() ||

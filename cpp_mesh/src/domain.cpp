@@ -17,12 +17,15 @@ constexpr double sharpest_corner = 3.0 * pi / 180.0;
 // Relative to the largest coordinate; points put on an oblique edge miss it by rounding errors.
 constexpr double relative_rounding = 1e-13;
 
-std::string corner_name(int corner) {
-    return "corner " + std::to_string(corner + 1) + " of the boundary";
+// Relative to the box: corners and edges that are nearer than this are meant to be at one place.
+constexpr double least_gap = 1e-9;
+
+Culprit corner_culprit(int corner) {
+    return {CulpritKind::corner, corner};
 }
 
-std::string edge_name(int edge) {
-    return "edge " + std::to_string(edge + 1) + " of the boundary";
+Culprit edge_culprit(int edge) {
+    return {CulpritKind::edge, edge};
 }
 
 } // namespace
@@ -33,17 +36,20 @@ Domain::Domain(const Rectangle& rectangle)
         corners_.push_back(corner);
     if (!(rectangle.width() > 0.0 && rectangle.height() > 0.0 &&
           std::isfinite(rectangle.diagonal())))
-        throw MeshError("the rectangle to be meshed has no area");
+        throw MeshError({FaultKind::body, {}, {}, "the rectangle to be meshed has no area"});
 }
 
 Domain::Domain(std::vector<Vec2> corners, std::vector<int> edge_sides)
     : is_rectangle_(false), corners_(std::move(corners)), edge_sides_(std::move(edge_sides)) {
     if (edge_count() < 3)
-        throw MeshError("the boundary needs at least 3 corners, not " +
-                        std::to_string(edge_count()));
+        throw MeshError(
+            {FaultKind::body,
+             {},
+             {},
+             "the boundary needs at least 3 corners, not " + std::to_string(edge_count())});
     for (int k = 0; k < edge_count(); ++k)
         if (!std::isfinite(corners_[k].x) || !std::isfinite(corners_[k].y))
-            throw MeshError(corner_name(k) + " is not a number");
+            throw MeshError({FaultKind::number, {corner_culprit(k)}, {}, "{1} is not a number"});
     const Vec2 first = corners_[0];
     Vec2 low = first, high = first;
     for (int k = 0; k < edge_count(); ++k) {
@@ -66,27 +72,45 @@ void Domain::find_core() {
 
 // Edges meet only in the corners that they share, and run counter-clockwise.
 void Domain::check() const {
+    const double gap = std::max(rounding_, least_gap * box_.diagonal());
     for (int k = 0; k < edge_count(); ++k) {
         if (edge_sides_[k] < 1)
-            throw MeshError(edge_name(k) + " has the side number " +
-                            std::to_string(edge_sides_[k]) + "; it must be positive");
-        if (!(distance(start(k), stop(k)) > rounding_))
-            throw MeshError(edge_name(k) + " has no length");
+            throw MeshError({FaultKind::number,
+                             {edge_culprit(k)},
+                             {},
+                             "{1} has the side number " + std::to_string(edge_sides_[k]) +
+                                 "; it must be positive"});
+        if (!(distance(start(k), stop(k)) > gap))
+            throw MeshError({FaultKind::body,
+                             {corner_culprit(k), corner_culprit((k + 1) % edge_count())},
+                             start(k),
+                             "{1} and {2} lie at one place {at}; give every corner once"});
     }
-    if (!(area_ > 0.0))
-        throw MeshError("the corners of the boundary must be given counter-clockwise");
     for (int k = 0; k < edge_count(); ++k) {
         const int next = (k + 1) % edge_count();
         if (angle_between(start(k) - stop(k), stop(next) - start(next)) < sharpest_corner)
-            throw MeshError(corner_name(next) + " is too sharp to be meshed");
+            throw MeshError({FaultKind::angle,
+                             {corner_culprit(next)},
+                             start(next),
+                             "{1} {at} is too sharp to be meshed: less than " +
+                                 number_text(sharpest_corner * 180.0 / pi) +
+                                 " degrees lie between its edges"});
         for (int l = k + 2; l < edge_count(); ++l) {
             if (k == 0 && l + 1 == edge_count())
                 continue; // neighbours
-            if (!(segment_distance(start(k), stop(k), start(l), stop(l)) > rounding_))
-                throw MeshError("edges " + std::to_string(k + 1) + " and " + std::to_string(l + 1) +
-                                " of the boundary meet");
+            if (!(segment_distance(start(k), stop(k), start(l), stop(l)) > gap))
+                throw MeshError({FaultKind::body,
+                                 {edge_culprit(k), edge_culprit(l)},
+                                 {},
+                                 "{1} and {2} meet, but edges may meet only at a corner that they "
+                                 "share (edge k runs from corner k to the next one)"});
         }
     }
+    if (!(area_ > 0.0))
+        throw MeshError({FaultKind::body,
+                         {},
+                         {},
+                         "the corners of the boundary must be given counter-clockwise"});
 }
 
 // A ray to the right meets the outline an odd number of times (Shimrat 1962).

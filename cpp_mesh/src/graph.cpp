@@ -24,6 +24,7 @@ public:
     Graph build() {
         for (int i = 0; i < count(); ++i)
             place(i);
+        check_inner_vertices();
         for (std::size_t k = 0; k < fixed_points_.size(); ++k)
             place_fixed(static_cast<int>(k));
         for (int j = 0; j < count(); ++j)
@@ -47,16 +48,24 @@ private:
     Vec2 start(int i) const { return at(cuts_[i][0].point); }
     Vec2 stop(int i) const { return at(cuts_[i][1].point); }
 
-    std::string pair_name(int i, int j) const {
-        const int a = segments_[i].fracture, b = segments_[j].fracture;
-        if (a == b)
-            return fracture_name(a) + " (with itself)";
-        return "fractures " + std::to_string(std::min(a, b) + 1) + " and " +
-               std::to_string(std::max(a, b) + 1);
+    [[noreturn]] static void refuse(FaultKind kind, const std::vector<Culprit>& culprits, Vec2 at,
+                                    const std::string& reason) {
+        throw MeshError({kind, culprits, at, reason});
     }
 
-    static std::string place_text(Vec2 p) {
-        return " at (" + number_text(p.x) + ", " + number_text(p.y) + ")";
+    Culprit owner(int segment) const { return fracture_culprit(segments_[segment].fracture); }
+
+    // The fractures of two segments.
+    std::vector<Culprit> owners(int i, int j) const {
+        const int a = segments_[i].fracture, b = segments_[j].fracture;
+        if (a == b)
+            return {fracture_culprit(a)};
+        return {fracture_culprit(std::min(a, b)), fracture_culprit(std::max(a, b))};
+    }
+
+    // What a sentence calls them.
+    std::string pair_name(int i, int j) const {
+        return segments_[i].fracture == segments_[j].fracture ? "parts of {1}" : "{1} and {2}";
     }
 
     // The graph point at p, which is made if there is none within the tolerance.
@@ -75,24 +84,27 @@ private:
         const Segment& segment = segments_[i];
         const Vec2 a = segment.end[0], b = segment.end[1];
         if (!(distance(a, b) > tolerances_.near_miss) && segment.old_cell < 0)
-            throw MeshError(fracture_name(segment.fracture) + " has a segment of length " +
-                            number_text(distance(a, b)) + " m" + place_text(a) +
-                            ", which is too short to be meshed; remove a vertex");
+            refuse(FaultKind::too_short, {owner(i)}, a,
+                   "{1} has a segment of length " + number_text(distance(a, b)) +
+                       " m {at}, which is too short to be meshed; remove a vertex");
         Vec2 p = snapped(a), q = snapped(b);
         if (clip_) {
             if (!clip(p, q))
                 return;
         } else if (domain_.is_left_by(p, q)) {
             const Vec2 outside = domain_.depth(p) < domain_.depth(q) ? a : b;
-            throw MeshError(fracture_name(segment.fracture) + " leaves the domain" +
-                            place_text(outside) + "; shorten it or enlarge the domain");
+            if (domain_.depth(p) < 0.0 || domain_.depth(q) < 0.0)
+                refuse(FaultKind::outside, {owner(i)}, outside,
+                       "{1} leaves the domain {at}; shorten it or enlarge the domain");
+            refuse(FaultKind::outside, {owner(i)}, b,
+                   "{1} leaves the domain on the way to its vertex {at}; let it stay within");
         }
         const int k = point_at(p), l = point_at(q);
-        check_depth(segment, k);
-        check_depth(segment, l);
+        check_depth(i, k);
+        check_depth(i, l);
         if (k == l)
             return;
-        check_path(segment, at(k), at(l));
+        check_path(i, at(k), at(l));
         cuts_[i] = {{0.0, k}, {distance(at(k), at(l)), l}};
     }
 
@@ -125,10 +137,10 @@ private:
     // A point within the tolerance of the boundary lies on it.
     Vec2 snapped(Vec2 p) const { return domain_.snapped(p, tolerances_.same); }
 
-    void check_path(const Segment& segment, Vec2 a, Vec2 b) const {
+    void check_path(int i, Vec2 a, Vec2 b) const {
         if (domain_.common_side(a, b) != 0)
-            throw MeshError(fracture_name(segment.fracture) + " runs along the boundary" +
-                            place_text(a) + "; a fracture may only end there");
+            refuse(FaultKind::boundary, {owner(i)}, a,
+                   "{1} runs along the boundary {at}; a fracture may only end there");
         if (domain_.is_rectangle())
             return;
         const int corner = domain_.corner_beside(a, b);
@@ -137,28 +149,44 @@ private:
         const Vec2 p = domain_.corners()[corner];
         const double gap = distance_to_segment(p, a, b);
         if (gap < tolerances_.near_miss)
-            throw MeshError(fracture_name(segment.fracture) + " passes within " + number_text(gap) +
-                            " m of a corner of the boundary" + place_text(p) +
-                            "; let it end there or move it away");
+            refuse(FaultKind::too_near, {owner(i), {CulpritKind::corner, corner}}, p,
+                   "{1} passes within " + number_text(gap) +
+                       " m of {2} {at}; let it end there or move it away");
+    }
+
+    // A fracture meets the boundary with its ends only.
+    void check_inner_vertices() const {
+        for (int i = 0; !clip_ && i + 1 < count(); ++i) {
+            if (segments_[i].fracture != segments_[i + 1].fracture || !is_placed(i) ||
+                !is_placed(i + 1))
+                continue;
+            const int vertex = cuts_[i][1].point;
+            if (vertex == cuts_[i + 1][0].point && graph_.points[vertex].on_boundary)
+                refuse(FaultKind::boundary, {owner(i)}, at(vertex),
+                       "{1} has an inner vertex on the boundary {at}; a fracture may only end "
+                       "there");
+        }
     }
 
     // A point that is to become a node: of its own, or on the segments that it lies on.
     void place_fixed(int number) {
-        const std::string name = fixed_point_name(number);
+        const Culprit self = {CulpritKind::fixed_point, number};
         const Vec2 wanted = fixed_points_[number];
         const double depth = domain_.depth(snapped(wanted));
         if (!(depth >= 0.0))
-            throw MeshError(name + " lies outside the body" + place_text(wanted));
+            refuse(FaultKind::outside, {self}, wanted,
+                   "{1} lies outside the body {at}; put it inside or on the boundary");
         if (depth > 0.0 && depth < tolerances_.near_miss)
-            throw MeshError(name + " lies within " + number_text(depth) + " m of the boundary" +
-                            place_text(wanted) + "; put it on the boundary or farther away");
+            refuse(FaultKind::too_near, {self}, wanted,
+                   "{1} lies within " + number_text(depth) +
+                       " m of the boundary {at}; put it on the boundary or farther away");
         const int point = point_at(wanted);
         graph_.fixed_points.push_back(point);
         for (int other = 0; other < point; ++other)
             if (distance(at(other), at(point)) < tolerances_.near_miss)
-                throw MeshError(name + " lies only " + number_text(distance(at(other), at(point))) +
-                                " m from " + point_name(other) + place_text(wanted) +
-                                "; put them at one place or farther apart");
+                refuse(FaultKind::too_near, {self, holder(other)}, wanted,
+                       "{1} lies only " + number_text(distance(at(other), at(point))) +
+                           " m from {2} {at}; put them at one place or farther apart");
         for (int i = 0; i < count(); ++i) {
             if (!is_placed(i) || start_or_stop(i, point))
                 continue;
@@ -166,9 +194,9 @@ private:
             if (gap <= tolerances_.same)
                 add_cut(i, point);
             else if (gap < tolerances_.near_miss)
-                throw MeshError(name + " lies within " + number_text(gap) + " m of " +
-                                fracture_name(segments_[i].fracture) + place_text(wanted) +
-                                "; put it on the fracture or farther away");
+                refuse(FaultKind::too_near, {self, owner(i)}, wanted,
+                       "{1} lies within " + number_text(gap) +
+                           " m of {2} {at}; put it on the fracture or farther away");
         }
     }
 
@@ -176,30 +204,25 @@ private:
         return cuts_[i][0].point == point || cuts_[i][1].point == point;
     }
 
-    static std::string fixed_point_name(int number) {
-        return "fixed point " + std::to_string(number + 1);
-    }
-
-    // What a point belongs to: a fracture or a fixed point.
-    std::string point_name(int point) const {
+    // Whose point it is: a fracture's, or else a fixed one.
+    Culprit holder(int point) const {
         for (int i = 0; i < count(); ++i)
             for (const Cut& cut : cuts_[i])
                 if (cut.point == point)
-                    return fracture_name(segments_[i].fracture);
-        for (std::size_t k = 0; k < graph_.fixed_points.size(); ++k)
-            if (graph_.fixed_points[k] == point)
-                return fixed_point_name(static_cast<int>(k));
-        return "a point";
+                    return owner(i);
+        const auto& fixed = graph_.fixed_points;
+        const auto found = std::find(fixed.begin(), fixed.end(), point);
+        return {CulpritKind::fixed_point, static_cast<int>(found - fixed.begin())};
     }
 
-    void check_depth(const Segment& segment, int point) const {
-        if (segment.old_cell < 0 && !graph_.points[point].on_boundary &&
+    void check_depth(int i, int point) const {
+        if (segments_[i].old_cell < 0 && !graph_.points[point].on_boundary &&
             !domain_.is_deeper(at(point), tolerances_.near_miss) &&
             domain_.depth(at(point)) < tolerances_.near_miss)
-            throw MeshError(fracture_name(segment.fracture) + " comes within " +
-                            number_text(domain_.depth(at(point))) + " m of the boundary" +
-                            place_text(at(point)) +
-                            "; let it end on the boundary or farther away from it");
+            refuse(FaultKind::too_near, {owner(i)}, at(point),
+                   "{1} comes within " + number_text(domain_.depth(at(point))) +
+                       " m of the boundary {at}; let it end on the boundary or farther away from "
+                       "it");
     }
 
     bool boxes_apart(int i, int j) const {
@@ -226,8 +249,8 @@ private:
             touches += touch(j, q[k], i);
         }
         if (touches > 1)
-            throw MeshError(pair_name(i, j) + " overlap" + place_text(at(p[0])) +
-                            "; leave one of them out or move it");
+            refuse(FaultKind::overlap, owners(i, j), at(p[0]),
+                   pair_name(i, j) + " overlap {at}; leave one of them out or move it");
         if (touches == 1 || !segments_cross(start(i), stop(i), start(j), stop(j)))
             return;
         const Vec2 di = stop(i) - start(i), dj = stop(j) - start(j);
@@ -245,9 +268,9 @@ private:
             return 1;
         }
         if (gap < tolerances_.near_miss)
-            throw MeshError(pair_name(i, j) + " come within " + number_text(gap) + " m" +
-                            place_text(at(point)) +
-                            " without meeting; let them meet or move them apart");
+            refuse(FaultKind::too_near, owners(i, j), at(point),
+                   pair_name(i, j) + " come within " + number_text(gap) +
+                       " m {at} without meeting; let them meet or move them apart");
         return 0;
     }
 
@@ -274,9 +297,9 @@ private:
         for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
             const int p = cuts[k].point, q = cuts[k + 1].point;
             if (cuts.size() > 2 && distance(at(p), at(q)) < tolerances_.near_miss)
-                throw MeshError(fracture_name(segment.fracture) + " meets others at points only " +
-                                number_text(distance(at(p), at(q))) + " m apart" +
-                                place_text(at(p)) + "; move one of them");
+                refuse(FaultKind::too_near, {owner(i)}, at(p),
+                       "{1} meets others at points only " + number_text(distance(at(p), at(q))) +
+                           " m apart {at}; move one of them");
             GraphEdge edge;
             edge.fracture = segment.fracture;
             edge.point = {p, q};
@@ -311,23 +334,23 @@ private:
                         continue;
                     const double angle = angle_between(direction(e, p), direction(f, p));
                     if (angle < tolerances_.angle)
-                        throw MeshError(meeting_name(graph_.edges[f], graph_.edges[e], angle) +
-                                        place_text(at(p)) + "; at least " +
-                                        number_text(degrees(tolerances_.angle)) +
-                                        " degrees are needed");
+                        refuse_angle(graph_.edges[f], graph_.edges[e], at(p), angle);
                 }
             }
         }
     }
 
-    // How two cells of fractures meet whose angle is too small.
-    std::string meeting_name(const GraphEdge& a, const GraphEdge& b, double angle) const {
-        const bool is_overlap = angle < 1e-6;
-        if (a.fracture == b.fracture)
-            return fracture_name(a.fracture) +
-                   (is_overlap ? " overlaps itself" : " turns back at too small an angle");
-        return pair_name(a.segment, b.segment) +
-               (is_overlap ? " overlap" : " meet at too small an angle");
+    // Two edges at a point have too small an angle, or none, between them.
+    [[noreturn]] void refuse_angle(const GraphEdge& a, const GraphEdge& b, Vec2 place,
+                                   double angle) const {
+        const std::vector<Culprit> who = owners(a.segment, b.segment);
+        const std::string names = pair_name(a.segment, b.segment);
+        if (angle < 1e-6)
+            refuse(FaultKind::overlap, who, place,
+                   names + " overlap {at}; leave one of them out or move it");
+        refuse(FaultKind::angle, who, place,
+               names + " meet at too small an angle {at}: " + number_text(degrees(angle)) +
+                   " degrees; at least " + number_text(degrees(tolerances_.angle)) + " are needed");
     }
 
     static double degrees(double angle) { return angle * 180.0 / 3.14159265358979323846; }
@@ -337,27 +360,31 @@ private:
         if (!graph_.points[p].on_boundary || edge.old_cell >= 0)
             return;
         if (domain_.angle_with_boundary(at(p), direction) < tolerances_.angle)
-            throw MeshError(fracture_name(edge.fracture) +
-                            " meets the boundary at too small an angle" + place_text(at(p)) +
-                            "; at least " + number_text(degrees(tolerances_.angle)) +
-                            " degrees are needed");
+            refuse(FaultKind::angle, {fracture_culprit(edge.fracture)}, at(p),
+                   "{1} meets the boundary at too small an angle {at}; at least " +
+                       number_text(degrees(tolerances_.angle)) + " degrees are needed");
     }
 
     // Points on the boundary must be apart from each other and from the corners.
     void check_boundary() const {
-        std::vector<Vec2> on_boundary = domain_.corners();
+        std::vector<int> on_boundary;
         for (int p = 0; p < static_cast<int>(graph_.points.size()); ++p) {
             if (!graph_.points[p].on_boundary)
                 continue;
-            for (const Vec2& other : on_boundary) {
-                const double gap = distance(other, at(p));
-                if (gap > 0.0 && gap < tolerances_.near_miss)
-                    throw MeshError(point_name(p) + " meets the boundary only " + number_text(gap) +
-                                    " m from a corner or another fracture" + place_text(at(p)) +
-                                    "; move its end");
-            }
-            on_boundary.push_back(at(p));
+            for (int k = 0; k < domain_.edge_count(); ++k)
+                check_gap(p, domain_.corners()[k], {CulpritKind::corner, k});
+            for (int other : on_boundary)
+                check_gap(p, at(other), holder(other));
+            on_boundary.push_back(p);
         }
+    }
+
+    void check_gap(int point, Vec2 other, Culprit whose) const {
+        const double gap = distance(other, at(point));
+        if (gap > 0.0 && gap < tolerances_.near_miss)
+            refuse(FaultKind::too_near, {holder(point), whose}, at(point),
+                   "{1} meets the boundary {at} only " + number_text(gap) +
+                       " m from {2}; put them at one place or farther apart");
     }
 
     const std::vector<Segment>& segments_;

@@ -40,7 +40,8 @@ std::vector<Segment> segments_of(const Network& network) {
     std::vector<Segment> segments;
     for (int f = 0; f < network.size(); ++f) {
         if (network.first[f + 1] - network.first[f] < 2)
-            throw MeshError(fracture_name(f) + " has fewer than two vertices");
+            throw MeshError(
+                {FaultKind::number, {fracture_culprit(f)}, {}, "{1} has fewer than two vertices"});
         double s = network.s_start[f];
         for (int v = network.first[f]; v + 1 < network.first[f + 1]; ++v) {
             Segment segment;

@@ -281,10 +281,12 @@ void refusals(Checks& checks) {
     const TestPolygon body = angle_shape();
     const cm_spec spec = body.spec(0.05, 0.2);
     refuse(checks, spec, {{{0.5, 1.49998}, {1.5, 0.5}}}, "fracture 1",
-           "of a corner of the boundary");
+           "of corner 4 of the boundary");
     refuse(checks, spec, {{{0.5, 1.6}, {1.6, 0.5}}}, "fracture 1", "leaves the domain");
     refuse(checks, spec, {{{1.0, 1.8}, {1.8, 1.0}}}, "fracture 1", "leaves the domain");
     refuse(checks, spec, {{{0.5, 0.5}, {1.5, 1.5}}}, "fracture 1", "leaves the domain");
+    refuse(checks, spec, {{{0.9, 1.9}, {1.9, 0.9}}}, "fracture 1", "on the way to its vertex");
+    refuse(checks, spec, {{{0.5, 0.5}, {1.0, 1.0}, {1.2, 0.5}}}, "fracture 1", "inner vertex");
     refuse(checks, spec, {{{1.2, 1.0}, {1.7, 1.0}}}, "fracture 1", "along the boundary");
     refuse(checks, spec, {{{1.2, 1.0}, {1.7, 0.99}}}, "fracture 1", "too small an angle");
     refuse(checks, spec, {{{0.3, 0.3}, {0.5, 0.3}}, {{1.2, 0.99998}, {1.7, 0.5}}}, "fracture 2",
@@ -299,7 +301,7 @@ void refusals(Checks& checks) {
     refuse_fixed({0.5, 0.50001}, "fixed point 2", "of fracture 1");
     refuse_fixed({0.30001, 0.5}, "fixed point 2", "from fracture 1");
     refuse_fixed({0.20001, 0.2}, "fixed point 2", "from fixed point 1");
-    refuse_fixed({0.00001, 0.0}, "fixed point 2", "from a corner");
+    refuse_fixed({0.00001, 0.0}, "fixed point 2", "from corner 1 of the boundary");
 
     const auto refuse_polygon = [&](const std::vector<Point>& corners, std::vector<int32_t> sides,
                                     const std::string& who, const std::string& why) {
@@ -308,10 +310,13 @@ void refusals(Checks& checks) {
     };
     refuse_polygon({{0.0, 0.0}, {1.0, 0.0}}, {1, 1}, "the boundary", "at least 3 corners");
     refuse_polygon({{0.0, 0.0}, {0.0, 1.0}, {1.0, 0.0}}, {1, 1, 1}, "corners", "counter-clockwise");
-    refuse_polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {1, 1, 1, 1}, "edge 2",
-                   "no length");
+    refuse_polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {1, 1, 1, 1},
+                   "corners 2 and 3", "at one place");
     refuse_polygon({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {1, 0, 1}, "edge 2", "must be positive");
     refuse_polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.3, -0.5}}, {1, 1, 1, 1}, "edges 1 and 3",
+                   "meet");
+    // A bow tie encloses nothing, but that is not what is wrong with it.
+    refuse_polygon({{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}}, {1, 1, 1, 1}, "edges 1 and 3",
                    "meet");
     refuse_polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.01}}, {1, 1, 1}, "corner 1", "too sharp");
 

@@ -85,11 +85,6 @@ const std::vector<Case>& all_cases() {
          2,
          {{{0.5, 0.0}, boundary, 3}}},
         {"into a corner", {{{0.0, 0.0}, {0.4, 0.3}}}, 1, 1, {{{0.0, 0.0}, boundary, 2}}},
-        {"kink on the boundary",
-         {{{0.3, 0.4}, {0.5, 0.0}, {0.7, 0.4}}},
-         1,
-         2,
-         {{{0.5, 0.0}, boundary, 3}}},
         {"closed triangle of X joints",
          {{{0.2, 0.3}, {0.8, 0.3}}, {{0.25, 0.2}, {0.6, 0.8}}, {{0.75, 0.2}, {0.4, 0.8}}},
          1, // the triangle inside is a disc, the outside has one hole

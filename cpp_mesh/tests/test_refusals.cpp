@@ -33,6 +33,7 @@ int main() {
     refuse(checks, {{{0.5, 0.5}}}, "fracture 1", "fewer than two vertices");
     refuse(checks, {{{0.5, 0.5}, {nan, 0.5}}}, "fracture 1", "not a number");
     refuse(checks, {level, {{0.5, 0.8}, {0.5, 1.2}}}, "fracture 2", "leaves the domain");
+    refuse(checks, {{{0.3, 0.5}, {0.5, 0.0}, {0.7, 0.5}}}, "fracture 1", "inner vertex");
     refuse(checks, {level, level}, "fractures 1 and 2", "overlap");
     refuse(checks, {level, {{0.7, 0.5}, {0.3, 0.5}}}, "fractures 1 and 2", "overlap");
     refuse(checks, {level, {{0.4, 0.5}, {0.6, 0.5}}}, "fractures 1 and 2", "overlap");
@@ -49,7 +50,7 @@ int main() {
     refuse(checks, {{{0.3, 0.0}, {0.7, 0.002}}}, "fracture 1", "too small an angle");
     refuse(checks, {{{0.5, 0.0}, {0.5, 0.5}}, {{0.50002, 0.0}, {0.7, 0.3}}}, "fractures 1 and 2",
            "without meeting");
-    refuse(checks, {{{0.00002, 0.0}, {0.5, 0.5}}}, "fracture 1", "m from a corner");
+    refuse(checks, {{{0.00002, 0.0}, {0.5, 0.5}}}, "fracture 1", "m from corner 1");
 
     refuse_spec(checks, rectangle_spec(0.0, 1.0, 0.05, 0.2), "no area");
     refuse_spec(checks, rectangle_spec(1.0, 1.0, 0.0, 0.2), "must be positive");

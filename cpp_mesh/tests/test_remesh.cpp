@@ -285,7 +285,7 @@ void refused(Checks& checks) {
     refuse(changed, 0.02, "fractures 1 and 2 come within");
     changed = network;
     grow_end(changed, 0, {0.4, 0.5});
-    refuse(changed, 0.02, "fracture 1 (with itself) overlap");
+    refuse(changed, 0.02, "parts of fracture 1 overlap");
     changed = network;
     grow_end(changed, 0, {1.1, 0.5});
     refuse(changed, 0.02, "fracture 1 leaves the domain");

@@ -24,7 +24,7 @@ module mechanics_body
    implicit none(type, external)
    private
 
-   public :: body_t
+   public :: body_spec, body_t
 
    !> What is kept of the mesh before an increment of growth.
    type :: before_t
@@ -276,7 +276,6 @@ contains
       if (.not. spec%size_fracture > 0.0_rk) spec%size_fracture = spec%size_boundary
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
-      if (.not. spec%rosette_radius > 0.0_rk) spec%rosette_radius = spec%size_fracture
       spec%end_radius = end_radii(scene, network)
    end function body_spec
 
@@ -287,7 +286,6 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       real(rk) :: radii(2, size(network%first) - 1)
-      real(rk) :: largest
       integer :: f
 
       do f = 1, size(network%first) - 1
@@ -296,10 +294,7 @@ contains
             radii(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
          end associate
       end do
-      largest = scene%discretization%rosette_radius
-      if (.not. largest > 0.0_rk) largest = scene%discretization%size_fracture
-      if (.not. largest > 0.0_rk) largest = scene%discretization%size_boundary
-      radii = min(largest, 0.5_rk*radii)
+      radii = min(scene%discretization%rosette_radius, 0.5_rk*radii)
    end function end_radii
 
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.

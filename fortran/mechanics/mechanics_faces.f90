@@ -134,13 +134,11 @@ contains
       real(rk), intent(in) :: length  !< [m]
       logical, intent(in) :: is_free(2)  !< start, end
       real(rk), intent(in) :: s  !< [m]
-      real(rk) :: taper, inwards(2)
+      real(rk) :: inwards(2)
       integer :: i
 
       slip = fracture%slip
-      taper = fracture%slip_taper
-      if (.not. taper > 0.0_rk) taper = 0.5_rk*length
-      inwards = max(0.0_rk, [s, length - s])/taper
+      inwards = max(0.0_rk, [s, length - s])/fracture%slip_taper
       do i = 1, 2
          if (.not. is_free(i) .or. inwards(i) >= 1.0_rk) cycle
          slip = slip*sqrt(inwards(i)*(2.0_rk - inwards(i)))

@@ -2,11 +2,11 @@
 module mechanics_outline
    use base_kinds, only: ik, rk
    use base_plane, only: polygon_area
-   use scene_types, only: boundary_part_t, boundary_side_t, scene_t
+   use scene_types, only: boundary_part_t, boundary_side_t, domain_t, scene_t
    implicit none(type, external)
    private
 
-   public :: outline_of_scene, outline_t, sides_of_scene
+   public :: outline_of_scene, outline_t, scene_corner, scene_edge, sides_of_scene
 
    real(rk), parameter :: pi = acos(-1.0_rk)
 
@@ -36,9 +36,9 @@ contains
             outline%corners = circle(scene, outline%fixed_points)
             outline%edge_side = rim_sides(scene, outline%corners)
          case ("polygon")
-            outline%corners = transpose(reshape([d%x, d%y], [size(d%x), 2]))
+            outline%corners = corners_of(d)
             outline%edge_side = polygon_sides(scene)
-            if (polygon_area(outline%corners) < 0.0_rk) then  ! edge k ends where k + 1 began
+            if (runs_clockwise(d)) then  ! edge k ends where k + 1 began
                outline%corners = outline%corners(:, size(d%x):1:-1)
                outline%edge_side = cshift(outline%edge_side(size(d%x):1:-1), 1)
             end if
@@ -49,6 +49,43 @@ contains
          end select
       end associate
    end function outline_of_scene
+
+   !> The outline of this body has its corners in the reverse order.
+   pure logical function runs_clockwise(domain)
+      type(domain_t), intent(in) :: domain
+
+      runs_clockwise = domain%shape == "polygon"
+      if (runs_clockwise) runs_clockwise = polygon_area(corners_of(domain)) < 0.0_rk
+   end function runs_clockwise
+
+   !> Corners of a polygon, as the scene gives them (2, n) [m].
+   pure function corners_of(domain) result(corners)
+      type(domain_t), intent(in) :: domain
+      real(rk) :: corners(2, size(domain%x))
+
+      corners(1, :) = domain%x
+      corners(2, :) = domain%y
+   end function corners_of
+
+   !> What number the scene gives to a corner of its polygon's outline.
+   pure integer(ik) function scene_corner(domain, corner)
+      type(domain_t), intent(in) :: domain
+      integer(ik), intent(in) :: corner
+
+      scene_corner = corner
+      if (runs_clockwise(domain)) scene_corner = size(domain%x, kind=ik) + 1_ik - corner
+   end function scene_corner
+
+   !> What number the scene gives to an edge of its polygon's outline.
+   pure integer(ik) function scene_edge(domain, edge)
+      type(domain_t), intent(in) :: domain
+      integer(ik), intent(in) :: edge
+      integer(ik) :: n
+
+      scene_edge = edge
+      n = size(domain%x, kind=ik)
+      if (runs_clockwise(domain)) scene_edge = modulo(n - edge - 1_ik, n) + 1_ik
+   end function scene_edge
 
    !> What is prescribed on each side of the body, by its number; the last one of a polygon or disc
    !! is all that the scene does not speak of, free of traction.

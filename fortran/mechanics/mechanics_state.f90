@@ -63,10 +63,6 @@ contains
                                   exponent=scene%growth%exponent, together=together, &
                                   reach=scene%discretization%rosette_radius, joins=.true., &
                                   outline=outline%corners)
-      if (.not. self%rules%increment > 0.0_rk) then
-         self%rules%increment = scene%discretization%size_fracture
-      end if
-      if (.not. self%rules%reach > 0.0_rk) self%rules%reach = scene%discretization%size_fracture
       self%meshed_vertices = size(self%network%xy, 2)
       call self%body%build(scene, self%start, self%network, timers, error)
       if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)

@@ -5,7 +5,8 @@ module mesh_c_binding
    implicit none(type, external)
    private
 
-   public :: cm_arrays_t, cm_counts_t, cm_network_t, cm_spec_t
+   public :: cm_arrays_t, cm_counts_t, cm_fault_t, cm_joint_t, cm_network_t, cm_spec_t
+   public :: cm_check, cm_last_fault
    public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
    public :: cm_map_copy, cm_map_sizes, cm_quality, cm_remesh, cm_sizes
    public :: c_string_length
@@ -64,7 +65,42 @@ module mesh_c_binding
       type(c_ptr) :: tip_radius = c_null_ptr
    end type cm_arrays_t
 
+   !> Who is to blame for what the last call has refused.
+   type, bind(C) :: cm_fault_t
+      integer(c_int32_t) :: kind
+      integer(c_int32_t) :: n_culprits
+      integer(c_int32_t) :: culprit_kind(2)
+      integer(c_int32_t) :: culprit(2)
+      integer(c_int32_t) :: has_place
+      real(c_double) :: x, y
+      type(c_ptr) :: reason = c_null_ptr
+   end type cm_fault_t
+
+   !> Where fractures meet.
+   type, bind(C) :: cm_joint_t
+      integer(c_int32_t) :: fracture(2)
+      real(c_double) :: x, y
+   end type cm_joint_t
+
    interface
+      subroutine cm_last_fault(fault) bind(C, name="cm_last_fault")
+         import :: cm_fault_t
+         implicit none(type, external)
+         type(cm_fault_t), intent(out) :: fault
+      end subroutine cm_last_fault
+
+      function cm_check(spec, network, capacity, joints, n_joints) result(status) &
+         bind(C, name="cm_check")
+         import :: c_int, c_int32_t, cm_joint_t, cm_network_t, cm_spec_t
+         implicit none(type, external)
+         type(cm_spec_t), intent(in) :: spec
+         type(cm_network_t), intent(in) :: network
+         integer(c_int32_t), value :: capacity
+         type(cm_joint_t), intent(out) :: joints(capacity)
+         integer(c_int32_t), intent(out) :: n_joints
+         integer(c_int) :: status
+      end function cm_check
+
       !> Why the last call of this thread failed, ended by a null character.
       function cm_last_error() result(text) bind(C, name="cm_last_error")
          import :: c_ptr

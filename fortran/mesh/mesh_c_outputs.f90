@@ -9,7 +9,7 @@ module mesh_c_outputs
    implicit none(type, external)
    private
 
-   public :: copy_map, copy_mesh, raise_library_error
+   public :: copy_map, copy_mesh, raise_library_error, text_of
 
 contains
 
@@ -142,19 +142,23 @@ contains
    subroutine raise_library_error(error, origin)
       type(error_t), allocatable, intent(out) :: error
       character(len=*), intent(in) :: origin
-      type(c_ptr) :: text
+
+      call raise_error(error, origin, text_of(cm_last_error()))
+   end subroutine raise_library_error
+
+   !> A text of C, which a null character ends.
+   function text_of(start) result(text)
+      type(c_ptr), intent(in) :: start
+      character(len=:), allocatable :: text
       character(kind=c_char), pointer :: characters(:)
-      character(len=:), allocatable :: message
       integer :: i, n
 
-      text = cm_last_error()
-      n = int(c_string_length(text))
-      call c_f_pointer(text, characters, [n])
-      allocate (character(len=n) :: message)
+      n = int(c_string_length(start))
+      call c_f_pointer(start, characters, [n])
+      allocate (character(len=n) :: text)
       do i = 1, n
-         message(i:i) = characters(i)
+         text(i:i) = characters(i)
       end do
-      call raise_error(error, origin, message)
-   end subroutine raise_library_error
+   end function text_of
 
 end module mesh_c_outputs

@@ -79,7 +79,6 @@ contains
       self%directory = trim(directory)
       self%writes_vtu = scene%output%vtu
       self%interval = scene%output%interval
-      if (.not. self%interval > 0.0_rk) self%interval = scene%time%step
       call system_clock(self%clock_begin)
 
       call make_directory(self%directory, error)

@@ -5,7 +5,7 @@ module scene_check
    use base_kinds, only: rk
    use base_number, only: integer_text
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
-   use scene_check_mechanics, only: check_laws, check_load, check_points, check_support, &
+   use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_sides, only: check_parts, check_sides
    use scene_parameters, only: groups
@@ -46,7 +46,7 @@ contains
       else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)
-         if (.not. allocated(error)) call check_points(sheet, scene, error)
+         if (.not. allocated(error)) call check_restraints(sheet, scene, error)
       end if
       if (.not. allocated(error)) call check_laws(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)

@@ -1,16 +1,18 @@
-!> Checks where things are: domain, fractures, wells, probes, cell sizes.
+!> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates;
+!! and where wells and probes are. Whether body and fractures can be meshed is for the mesh library
+!! to judge.
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use scene_polygon, only: holds_point, leaves, lies_on, polygon_fault
+   use scene_polygon, only: holds_point
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
-   public :: check_domain, check_fractures, check_probes, check_wells, contains_point, point_text
+   public :: check_domain, check_fractures, check_probes, check_wells
 
    real(rk), parameter :: round_off = 1.0e-9_rk  !< in points given on a circle, over its radius
 
@@ -79,13 +81,12 @@ contains
       if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
    end subroutine check_shape
 
-   !> The corners of a polygon bound a body.
+   !> A polygon has corners.
    pure subroutine check_corners(sheet, domain, error)
       type(sheet_t), intent(in) :: sheet
       type(domain_t), intent(in) :: domain
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: most_corners = 2000  ! every pair of edges is compared
-      character(len=:), allocatable :: reason
       integer(ik) :: n
       integer :: record
 
@@ -101,9 +102,6 @@ contains
       else if (n > most_corners) then
          call refuse(error, sheet, record, "x", "has "//integer_text(n)//" values but must "// &
                      "have at most 2000")
-      else
-         reason = polygon_fault(domain%x, domain%y)
-         if (reason /= "") call refuse(error, sheet, record, "x", "and y "//reason)
       end if
    end subroutine check_corners
 
@@ -114,7 +112,7 @@ contains
       mesh_record = sheet%find("coarse") + sheet%find("fe")  ! a scene has one of them
    end function mesh_record
 
-   !> Fractures are polylines inside the domain.
+   !> Fractures are polylines, longer than their cells.
    pure subroutine check_fractures(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -122,27 +120,26 @@ contains
       integer :: i
 
       do i = 1, size(scene%fractures)
-         call check_vertices(sheet, i, scene%fractures(i), scene%domain, error)
+         call check_vertices(sheet, i, scene%fractures(i), error)
          if (allocated(error)) return
-         if (scene%discretization%size_fracture > total_length(scene%fractures(i))) then
+         if (scene%discretization%size_fracture > scene%fractures(i)%length()) then
             call refuse(error, sheet, mesh_record(sheet), "size_fracture", "is "// &
                         real_text(scene%discretization%size_fracture)// &
                         " but must be at most the length of fracture '"// &
                         trim(scene%fractures(i)%name)//"', "// &
-                        rounded_text(total_length(scene%fractures(i))))
+                        rounded_text(scene%fractures(i)%length()))
             return
          end if
       end do
    end subroutine check_fractures
 
-   pure subroutine check_vertices(sheet, i, fracture, domain, error)
+   pure subroutine check_vertices(sheet, i, fracture, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< index of the fracture
       type(fracture_t), intent(in) :: fracture
-      type(domain_t), intent(in) :: domain
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: whose
-      integer :: record, k, n
+      integer :: record, n
 
       record = sheet%find("fracture", i)
       whose = "of fracture '"//trim(fracture%name)//"' "
@@ -151,44 +148,10 @@ contains
          call refuse(error, sheet, record, "y", whose//"has "//integer_text(size(fracture%y, &
                                                                                  kind=ik))// &
                      " values but must have as many as x, "//integer_text(int(n, ik)))
-         return
       else if (n < 2) then
          call refuse(error, sheet, record, "x", whose//"has one value but must have at least "// &
                      "two, the ends of the fracture")
-         return
       end if
-      do k = 1, n
-         if (.not. contains_point(domain, fracture%x(k), fracture%y(k))) then
-            call refuse(error, sheet, record, "x", "and y "//whose//"give the vertex "// &
-                        point_text(fracture%x(k), fracture%y(k))//" outside of the domain but "// &
-                        "must lie within it")
-            return
-         end if
-      end do
-      do k = 2, n
-         if (.not. hypot(fracture%x(k) - fracture%x(k - 1), &
-                         fracture%y(k) - fracture%y(k - 1)) > 0.0_rk) then
-            call refuse(error, sheet, record, "x", "and y "//whose//"give the vertex "// &
-                        point_text(fracture%x(k), fracture%y(k))//" twice in a row but must "// &
-                        "give it once")
-            return
-         else if (along_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
-            call refuse(error, sheet, record, "x", "and y "//whose//"run along the boundary to "// &
-                        point_text(fracture%x(k), fracture%y(k))//" but must touch it with "// &
-                        "the ends only")
-            return
-         else if (crosses_boundary(domain, fracture%x(k - 1:k), fracture%y(k - 1:k))) then
-            call refuse(error, sheet, record, "x", "and y "//whose//"leave the domain on the "// &
-                        "way to "//point_text(fracture%x(k), fracture%y(k))//" but must stay "// &
-                        "within it")
-            return
-         else if (k < n .and. on_boundary(domain, fracture%x(k), fracture%y(k))) then
-            call refuse(error, sheet, record, "x", "and y "//whose//"give the inner vertex "// &
-                        point_text(fracture%x(k), fracture%y(k))//" on the boundary but must "// &
-                        "touch it with the ends only")
-            return
-         end if
-      end do
    end subroutine check_vertices
 
    !> A point of injection lies on its fracture, within a cell.
@@ -243,74 +206,10 @@ contains
       contains_point = x >= domain%x_min .and. x <= domain%x_max .and. &
                        y >= domain%y_min .and. y <= domain%y_max
       if (domain%shape == "disc") then
-         contains_point = from_centre(domain, x, y) <= domain%radius*(1.0_rk + round_off)
+         contains_point = hypot(x - domain%x_centre, &
+                                y - domain%y_centre) <= domain%radius*(1.0_rk + round_off)
       end if
    end function contains_point
-
-   !> A point of the domain lies on its boundary.
-   pure logical function on_boundary(domain, x, y)
-      type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: x, y
-
-      integer(ik) :: edge
-
-      if (domain%shape == "disc") then
-         on_boundary = from_centre(domain, x, y) >= domain%radius*(1.0_rk - round_off)
-         return
-      else if (domain%shape == "polygon") then
-         on_boundary = any([(lies_on(domain%x, domain%y, edge, [x, y]), &
-                             edge=1, size(domain%x, kind=ik))])
-         return
-      end if
-      on_boundary = x <= domain%x_min .or. x >= domain%x_max .or. y <= domain%y_min .or. &
-                    y >= domain%y_max
-   end function on_boundary
-
-   !> Distance from the centre of a disc [m].
-   pure real(rk) function from_centre(domain, x, y)
-      type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: x, y
-
-      from_centre = hypot(x - domain%x_centre, y - domain%y_centre)
-   end function from_centre
-
-   !> Both ends of a segment of the domain lie on the same side; never so in a disc.
-   pure logical function along_boundary(domain, x, y)
-      type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: x(2), y(2)
-      integer(ik) :: edge
-
-      along_boundary = .false.
-      if (domain%shape == "disc") return
-      if (domain%shape == "polygon") then
-         do edge = 1, size(domain%x, kind=ik)
-            if (lies_on(domain%x, domain%y, edge, [x(1), y(1)]) .and. &
-                lies_on(domain%x, domain%y, edge, [x(2), y(2)])) along_boundary = .true.
-         end do
-         return
-      end if
-      along_boundary = all(x <= domain%x_min) .or. all(x >= domain%x_max) .or. &
-                       all(y <= domain%y_min) .or. all(y >= domain%y_max)
-   end function along_boundary
-
-   !> A segment between two points of the domain leaves it in between: of a polygon only.
-   pure logical function crosses_boundary(domain, x, y)
-      type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: x(2), y(2)
-
-      crosses_boundary = .false.
-      if (domain%shape == "polygon") then
-         crosses_boundary = leaves(domain%x, domain%y, [x(1), y(1)], [x(2), y(2)])
-      end if
-   end function crosses_boundary
-
-   pure real(rk) function total_length(fracture) result(length)
-      type(fracture_t), intent(in) :: fracture
-      integer :: n
-
-      n = size(fracture%x)
-      length = sum(hypot(fracture%x(2:) - fracture%x(:n - 1), fracture%y(2:) - fracture%y(:n - 1)))
-   end function total_length
 
    !> Distance of a point from the nearest point of a polyline [m].
    pure real(rk) function distance_to(fracture, x, y) result(distance)

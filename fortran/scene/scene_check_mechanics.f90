@@ -2,14 +2,13 @@
 module scene_check_mechanics
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
-   use scene_check_geometry, only: contains_point, point_text
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: boundary_part_t, scene_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
-   public :: check_laws, check_load, check_points, check_support, check_weight
+   public :: check_laws, check_load, check_restraints, check_support, check_weight
 
 contains
 
@@ -158,35 +157,20 @@ contains
       end associate
    end subroutine check_weight
 
-   !> Restraints and point loads are points of the body, and do something.
-   pure subroutine check_points(sheet, scene, error)
+   !> Restraints hold something.
+   pure subroutine check_restraints(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
       do i = 1, size(scene%restraints)
-         associate (point => scene%restraints(i), record => sheet%find("restraint", i))
-            if (.not. contains_point(scene%domain, point%x, point%y)) then
-               call refuse(error, sheet, record, "x", "and y are "//point_text(point%x, point%y)// &
-                           " but must lie within the domain")
-               return
-            else if (.not. any(point%displacement_given)) then
-               call refuse(error, sheet, record, "", "holds nothing, but x_displacement or "// &
-                           "y_displacement must be given")
-               return
-            end if
-         end associate
-      end do
-      do i = 1, size(scene%point_loads)
-         associate (point => scene%point_loads(i))
-            if (contains_point(scene%domain, point%x, point%y)) cycle
-            call refuse(error, sheet, sheet%find("point_load", i), "x", "and y are "// &
-                        point_text(point%x, point%y)//" but must lie within the domain")
-         end associate
+         if (any(scene%restraints(i)%displacement_given)) cycle
+         call refuse(error, sheet, sheet%find("restraint", i), "", "holds nothing, but "// &
+                     "x_displacement or y_displacement must be given")
          return
       end do
-   end subroutine check_points
+   end subroutine check_restraints
 
    !> Which face laws go with which scenes.
    pure subroutine check_laws(sheet, scene, error)

@@ -149,7 +149,8 @@ contains
       case (need_friction)
          words = "required with the law 'friction'"
       case default
-         words = "none: "//trim(parameter%absent)
+         words = trim(parameter%absent)
+         if (.not. parameter%derived) words = "none: "//words
       end select
    end function default_words
 

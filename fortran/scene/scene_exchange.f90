@@ -89,10 +89,6 @@ contains
          end do
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
-      if (.not. sheet%has("fluid")) then  ! the programme takes one unit of time
-         scene%time%end = 1.0_rk
-         scene%time%step = 1.0_rk/real(scene%load%steps, rk)
-      end if
    end subroutine sheet_to_scene
 
    !> A sheet that says all there is in a scene.
@@ -228,7 +224,7 @@ contains
          call exchange_growth(record, scene%growth, reading)
       case ("output")
          call exchange(record, "vtu", scene%output%vtu, reading)
-         call exchange(record, "interval", scene%output%interval, reading)
+         call exchange(record, "interval", scene%output%interval, reading, nothing=0.0_rk)
       case default  ! the repeated groups
          return
       end select
@@ -366,7 +362,7 @@ contains
 
       call exchange(record, "enabled", growth%enabled, reading)
       call exchange(record, "intensities", growth%intensities, reading)
-      call exchange(record, "increment", growth%increment, reading)
+      call exchange(record, "increment", growth%increment, reading, nothing=0.0_rk)
       call exchange(record, "exponent", growth%exponent, reading)
       call exchange(record, "threshold", growth%threshold, reading)
       call exchange(record, "new_aperture", growth%new_aperture, reading)

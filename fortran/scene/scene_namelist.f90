@@ -2,6 +2,7 @@
 module scene_namelist
    use base_errors, only: error_t
    use scene_check, only: check_scene, check_sheet
+   use scene_defaults, only: resolve_defaults
    use scene_exchange, only: sheet_to_scene
    use scene_parse, only: parse_scene
    use scene_sheet, only: sheet_t
@@ -14,10 +15,12 @@ module scene_namelist
 contains
 
    !> Read a scene, fill in its defaults and check it. On an error the scene is not to be used.
-   subroutine read_scene(path, scene, error)
+   !! Whether its geometry can be meshed is not for this room to judge.
+   subroutine read_scene(path, scene, error, source)
       character(len=*), intent(in) :: path
       type(scene_t), intent(out) :: scene
       type(error_t), allocatable, intent(out) :: error
+      type(sheet_t), intent(out), optional :: source  !< the file, for messages about its lines
       type(sheet_t) :: sheet
 
       call parse_scene(path, sheet, error)
@@ -25,7 +28,9 @@ contains
       call check_sheet(sheet, error)
       if (allocated(error)) return
       call sheet_to_scene(sheet, scene)
+      call resolve_defaults(scene)
       call check_scene(sheet, scene, error)
+      if (present(source)) source = sheet
    end subroutine read_scene
 
 end module scene_namelist

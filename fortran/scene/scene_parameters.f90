@@ -67,6 +67,7 @@ module scene_parameters
       integer :: need = need_never
       character(len=16) :: default = ""  !< as a file would give it; empty: none
       character(len=40) :: absent = ""  !< what it means if neither given nor defaulted
+      logical :: derived = .false.  !< then `absent` names the default, which follows from others
       type(interval_t) :: range = interval_t()
       integer :: scenes = in_all  !< which may give it
       character(len=32) :: choices = ""  !< separated by `|`
@@ -138,7 +139,8 @@ module scene_parameters
       group_t("output", implied=.true., meaning="What is written, and how often.")]
 
    type(parameter_t), parameter :: body_parameters(*) = [ &
-      parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
+      parameter_t("scene", "name", kind_name, &
+                  absent="the file's name without .nml", derived=.true., &
                   meaning="Short name; results go to `out/<name>` unless told otherwise"), &
       parameter_t("scene", "title", kind_text, default="''", &
                   meaning="What the scene shows, in a line"), &
@@ -213,7 +215,7 @@ module scene_parameters
                   meaning="Given slip, left against right side in the fracture's direction, "// &
                   "times the load factor"), &
       parameter_t("fracture", "slip_taper", unit="m", range=positive, scenes=in_mechanics, &
-                  absent="half the length", &
+                  absent="half the fracture's length", derived=.true., &
                   meaning="The given slip rises from a free end as a quarter of an ellipse of "// &
                   "this length"), &
       parameter_t("fracture", "friction", need=need_friction, range=at_least_zero, &
@@ -325,6 +327,7 @@ module scene_parameters
                   meaning="Element size far from the fractures, at most the shorter edge of "// &
                   "the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
+                  derived=.true., &
                   meaning="Size of the elements around a tip, less where something is near"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
                   meaning="Quarter-point elements around a tip"), &
@@ -363,9 +366,10 @@ module scene_parameters
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
-      parameter_t("growth", "increment", unit="m", default="0.0", range=at_least_zero, &
-                  meaning="Largest advance l_max of a tip at a time; 0: the fine mesh size, or "// &
-                  "size_fracture in a mechanics-only scene"), &
+      parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
+                  absent="the fine mesh size, or size_fracture", &
+                  meaning="Largest advance l_max of a tip at a time; 0: the default, which is "// &
+                  "the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
                   meaning="Exponent m of advance = l_max (G/G_max)^m"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
@@ -385,9 +389,9 @@ module scene_parameters
       parameter_t("probe", "x", unit="m", need=need_always, meaning="x, within the domain"), &
       parameter_t("probe", "y", unit="m", need=need_always, meaning="y, within the domain"), &
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
-      parameter_t("output", "interval", unit="s", default="0.0", range=at_least_zero, &
-                  scenes=in_fluid, &
-                  meaning="Time between written fields; 0: every regular step")]
+      parameter_t("output", "interval", unit="s", range=at_least_zero, scenes=in_fluid, &
+                  absent="the regular step", derived=.true., &
+                  meaning="Time between written fields; 0: the regular step")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]

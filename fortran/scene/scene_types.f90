@@ -49,13 +49,14 @@ module scene_types
       real(rk), allocatable :: x(:), y(:)  !< vertices [m]
       character(len=name_length) :: law = "friction"  !< or "frictionless", "slip", "open"
       real(rk) :: slip = 0.0_rk  !< of the law "slip", at load factor 1 [m]
-      !> Over which the slip rises from a free end; 0: half the fracture's length [m]
-      real(rk) :: slip_taper = 0.0_rk
+      real(rk) :: slip_taper = 0.0_rk  !< over which the slip rises from a free end [m]
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
       logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
       real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
+   contains
+      procedure :: length => fracture_length
    end type fracture_t
 
    !> One side of the body. Per component either displacement or total traction is prescribed.
@@ -142,7 +143,7 @@ module scene_types
       real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window [m]
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
       integer(ik) :: rosette_sectors = 12  !< elements around a tip
-      real(rk) :: rosette_radius = 0.0_rk  !< 0: size_fracture; mechanics only [m]
+      real(rk) :: rosette_radius = 0.0_rk  !< mechanics only [m]
       character(len=name_length) :: element = "quarter_point"  !< at tips; or "collapsed", "plain"
       character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
@@ -153,7 +154,7 @@ module scene_types
    type :: growth_t
       logical :: enabled = .false.
       logical :: intensities = .false.  !< compute stress intensity factors (always with growth)
-      real(rk) :: increment = 0.0_rk  !< l_max [m]; 0: the fine mesh size
+      real(rk) :: increment = 0.0_rk  !< l_max [m]
       real(rk) :: exponent = 0.35_rk  !< of the Paris-type law [-]
       real(rk) :: threshold = 0.5_rk  !< eps_p: growth is handed over at eps_p*dH [-]
       real(rk) :: new_aperture = 1.0e-5_rk  !< residual aperture of new fracture cells [m]
@@ -170,7 +171,7 @@ module scene_types
    !> What is written, and how often.
    type :: output_t
       logical :: vtu = .true.
-      real(rk) :: interval = 0.0_rk  !< between written fields [s]; 0: every regular step
+      real(rk) :: interval = 0.0_rk  !< between written fields [s]
    end type output_t
 
    !> The whole problem.
@@ -208,5 +209,16 @@ contains
 
       has_fluid = self%fluid%viscosity > 0.0_rk
    end function has_fluid
+
+   !> Along the polyline, as far as it has both coordinates [m].
+   pure real(rk) function fracture_length(self) result(length)
+      class(fracture_t), intent(in) :: self
+      integer :: k
+
+      length = 0.0_rk
+      do k = 1, min(size(self%x), size(self%y)) - 1
+         length = length + norm2([self%x(k + 1) - self%x(k), self%y(k + 1) - self%y(k)])
+      end do
+   end function fracture_length
 
 end module scene_types

@@ -22,7 +22,7 @@ module twolevel_state
    implicit none(type, external)
    private
 
-   public :: two_levels_t
+   public :: coarse_spec, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -95,9 +95,6 @@ contains
                              increment=scene%growth%increment, exponent=scene%growth%exponent, &
                              together=together, reach=scene%discretization%size_fracture, &
                              joins=.false., outline=corners(scene%domain))
-      if (.not. rules%increment > 0.0_rk) then
-         rules%increment = scene%discretization%fine_ratio*scene%discretization%size_fracture
-      end if
    end function rules_of_scene
 
    !> Of the rectangle, counter-clockwise [m].

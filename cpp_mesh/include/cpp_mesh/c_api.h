@@ -82,6 +82,51 @@ typedef struct {
 
 const char* cm_last_error(void);
 
+/* Why the last call of this thread failed. */
+typedef enum {
+    cm_fault_none = 0,
+    cm_fault_other = 1,     /* not the geometry: sizes, memory, gmsh, a wrong call */
+    cm_fault_number = 2,    /* a coordinate is no number, or there are too few of them */
+    cm_fault_body = 3,      /* the boundary encloses no body or meets itself */
+    cm_fault_outside = 4,   /* lies outside the body or leaves it */
+    cm_fault_boundary = 5,  /* a fracture meets the boundary otherwise than with an end */
+    cm_fault_too_short = 6, /* a segment of a fracture */
+    cm_fault_too_near = 7,  /* things nearly meet, but do not */
+    cm_fault_angle = 8,     /* too small for cells of fair shape */
+    cm_fault_overlap = 9    /* fractures lie on each other */
+} cm_fault_kind;
+
+typedef enum {
+    cm_culprit_fracture = 1,
+    cm_culprit_corner = 2, /* of the boundary; those of a rectangle from the lower left */
+    cm_culprit_edge = 3,   /* from the corner of the same number */
+    cm_culprit_fixed = 4   /* a fixed point of the specification */
+} cm_culprit_kind;
+
+typedef struct {
+    int32_t kind;            /* cm_fault_kind */
+    int32_t n_culprits;      /* 0 to 2 */
+    int32_t culprit_kind[2]; /* cm_culprit_kind */
+    int32_t culprit[2];      /* which one, in the order of the input */
+    int32_t has_place;
+    double x, y;        /* where [m] */
+    const char* reason; /* a sentence in which {1} and {2} stand for the culprits; stays until the
+                           next call of this thread */
+} cm_fault;
+
+void cm_last_fault(cm_fault* fault);
+
+/* A place inside the body where two fractures meet, or parts of one (then twice the same). */
+typedef struct {
+    int32_t fracture[2];
+    double x, y;
+} cm_joint;
+
+/* Judge what cm_create would mesh, by the same code, but mesh nothing; fails where the body or the
+   network is at fault. Up to `capacity` joints are told of all that there are. */
+int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity,
+             cm_joint* joints /* [capacity] */, int32_t* n_joints);
+
 int cm_create(const cm_spec* spec, const cm_network* network, cm_mesh** mesh);
 
 /* A new mesh of the same body whose cells have about the sizes (lengths of edges) that are wanted

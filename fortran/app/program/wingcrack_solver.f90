@@ -1,6 +1,7 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
    use app_check, only: describe_scene
+   use app_geometry, only: check_geometry
    use app_process, only: catch_interrupts, keep_heap, use_one_blas_thread
    use app_run, only: run_scene
    use app_version, only: version
@@ -8,6 +9,7 @@ program wingcrack_solver
    use output_describe, only: describe_output
    use scene_describe, only: describe_input
    use scene_namelist, only: read_scene
+   use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    implicit none(type, external)
@@ -61,8 +63,7 @@ contains
          end select
          i = i + 1
       end do
-      call read_scene(argument(2), scene, error)
-      if (allocated(error)) call leave(error%message, exit_usage)
+      call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
 
       call keep_heap()
@@ -80,14 +81,23 @@ contains
 
    subroutine check()
       type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, &
                                                    exit_usage)
-      call read_scene(argument(2), scene, error)
-      if (allocated(error)) call leave(error%message, exit_usage)
+      call read_judged(scene)
       call describe_scene(scene, output_unit)
    end subroutine check
+
+   !> Read a scene that can be run; a faulty one ends the program.
+   subroutine read_judged(scene)
+      type(scene_t), intent(out) :: scene
+      type(sheet_t) :: sheet
+      type(error_t), allocatable :: error
+
+      call read_scene(argument(2), scene, error, sheet)
+      if (.not. allocated(error)) call check_geometry(sheet, scene, error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+   end subroutine read_judged
 
    !> The scene's name, of which the default directory is made.
    subroutine print_name()

@@ -5,6 +5,7 @@ program test_app_mechanics
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
+   use scene_defaults, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
 
@@ -40,6 +41,7 @@ contains
       scene%growth%increment = 0.2_rk
       scene%load%to = 10.0_rk
       scene%output%vtu = .false.
+      call resolve_defaults(scene)
    end function strip
 
    !> Once the crack has cut the strip nothing is in equilibrium: the fields on disk are those

@@ -7,6 +7,7 @@ program test_app_run
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use sample_scenes, only: add_fracture, squeezed_body
+   use scene_defaults, only: resolve_defaults
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
 
@@ -30,6 +31,7 @@ contains
       scene%time%end = 240.0_rk
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 1.0_rk, 0.0_rk)
       scene%injections = [injection_t(fracture=1, rate=1.0e-9_rk, start=90.0_rk, end=170.0_rk)]
+      call resolve_defaults(scene)
    end function well_scene
 
    subroutine run(scene, error)

@@ -8,6 +8,7 @@ program test_mechanics_bodies
    use mechanics_fields, only: cell_stress
    use mechanics_outline, only: outline_of_scene, outline_t
    use mechanics_simulation, only: mechanics_simulation_t
+   use scene_defaults, only: resolve_defaults
    use scene_types, only: boundary_part_t, fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: young = 2.0e9_rk, poisson = 0.3_rk
@@ -69,11 +70,14 @@ contains
       type(scene_t), intent(in) :: scene
       type(mechanics_simulation_t), intent(out) :: simulation
       character(len=*), intent(in) :: name
+      type(scene_t) :: whole
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
       call timers%begin()
-      call simulation%begin(scene, timers, error)
+      whole = scene
+      call resolve_defaults(whole)
+      call simulation%begin(whole, timers, error)
       if (.not. allocated(error)) call simulation%respond(1.0_rk, timers, error)
       call checks%no_error(error, name)
    end subroutine solve

@@ -7,6 +7,7 @@ program test_mechanics_faces
    use base_timers, only: timers_t
    use mechanics_rise, only: rise
    use mechanics_simulation, only: mechanics_simulation_t
+   use scene_defaults, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-9_rk
@@ -48,6 +49,7 @@ contains
       scene%discretization%size_fracture = 0.03_rk
       scene%discretization%size_boundary = 0.3_rk
       scene%growth%intensities = .true.
+      call resolve_defaults(scene)
    end function plate
 
    !> The scene at a load factor.

@@ -6,6 +6,7 @@ program test_mechanics_simulation
    use base_timers, only: timers_t
    use mechanics_rise, only: rise
    use mechanics_simulation, only: mechanics_simulation_t
+   use scene_defaults, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-8_rk  !< of a factor found from linear responses
@@ -46,6 +47,7 @@ contains
       scene%growth%enabled = .true.
       scene%growth%intensities = .true.
       scene%load%to = 100.0_rk
+      call resolve_defaults(scene)
    end function plate
 
    !> K_eq is proportional to the factor: its onset follows from any other factor.

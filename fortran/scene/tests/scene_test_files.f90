@@ -5,7 +5,7 @@ module scene_test_files
    implicit none(type, external)
    private
 
-   public :: delete_file, put_bytes, put_lines, same_scene, source_path
+   public :: delete_file, put_bytes, put_changed, put_lines, same_scene, source_path
 
    interface same
       module procedure same_real
@@ -35,6 +35,19 @@ contains
       end do
       close (unit)
    end subroutine put_lines
+
+   !> The lines of a good scene, of which one or two are other ones.
+   subroutine put_changed(path, good, line_1, text_1, line_2, text_2)
+      character(len=*), intent(in) :: path, good(:)
+      integer, intent(in) :: line_1, line_2
+      character(len=*), intent(in) :: text_1, text_2
+      character(len=len(good)) :: lines(size(good))
+
+      lines = good
+      lines(line_1) = text_1
+      lines(line_2) = text_2
+      call put_lines(path, lines)
+   end subroutine put_changed
 
    subroutine put_bytes(path, bytes)
       character(len=*), intent(in) :: path

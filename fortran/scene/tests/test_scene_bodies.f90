@@ -4,8 +4,8 @@ program test_scene_bodies
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
-   use scene_polygon, only: holds_point, leaves, signed_area
-   use scene_test_files, only: delete_file, put_lines
+   use scene_polygon, only: holds_point
+   use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_bodies.nml"
@@ -40,7 +40,7 @@ program test_scene_bodies
    call accept(8, trim(good(8)), "the polygon without a fault")
    call check_corners()
    call check_polygon_sides()
-   call check_fractures()
+   call check_probes()
    call check_weight()
    good = disc
    call accept(8, "", "the disc without a fault")
@@ -56,20 +56,6 @@ contains
                   "as x, 6"//doc)
      call refuse_two(1, "&domain shape='polygon' x=0, 1", 2, "y=0, 1 /", ":1: &domain: x has 2 "// &
                       "values but must have at least 3, the corners of the polygon"//doc)
-      call refuse_two(1, "&domain shape='polygon' x=0, 0, 1, 1, 2, 2, 0", 2, &
-                      "  y=0, 2, 2, 1, 1, 0, 0 /", ":1: &domain: x and y give the corners 1 "// &
-                      "and 7 at the same place but must give every corner once"//doc)
-      call refuse_two(1, "&domain shape='polygon' x=0, 2, 0, 2", 2, "  y=0, 2, 2, 0 /", &
-                      ":1: &domain: x and y give the edges 1 and 3, which meet, but edges may "// &
-                      "meet only at a corner that they share (edge k runs from corner k to the "// &
-                      "next one)"//doc)
-      call refuse_two(1, "&domain shape='polygon' x=0, 2, 2, 1, 0", 2, "  y=0, 0, 2, 0, 2 /", &
-                      "edges 1 and 3, which meet")
-      call refuse_two(1, "&domain shape='polygon' x=0, 1, 2", 2, "  y=0, 1, 2 /", &
-                      ":1: &domain: x and y turn back at corner 3, with less than 3 degrees "// &
-                      "between its edges, but the edges must enclose an area"//doc)
-      call refuse_two(1, "&domain shape='polygon' x=0, 2, 2, 3, 2, 0", 2, &
-                      "  y=0, 0, 1, 1.02, 1.04, 2 /", "turn back at corner 4")
       call refuse(1, "&domain shape='polygon' x_min=0 x=0, 0, 1, 1, 2, 2", ":1: &domain: x_min "// &
                   "is given for a polygon, which has corners x and y instead"//doc)
       call refuse(2, "/", ":1: &domain: y [m], which a polygon needs, is missing"//doc)
@@ -105,19 +91,9 @@ contains
       call accept(6, "", "an unloaded polygon")
    end subroutine check_polygon_sides
 
-   subroutine check_fractures()
-    call refuse(4, "&fracture name='f' x=0.5, 1.5 y=2*1.5 law='open' /", ":4: &fracture: x and "// &
-                  "y of fracture 'f' give the vertex (1.5, 1.5) outside of the domain but must "// &
-                  "lie within it"//doc)
-     call refuse(4, "&fracture name='f' x=0.9, 1.9 y=1.9, 0.9 law='open' /", ":4: &fracture: x "// &
-                  "and y of fracture 'f' leave the domain on the way to (1.9, 0.9) but must "// &
-                  "stay within it"//doc)
-      call refuse(4, "&fracture name='f' x=1.2, 1.8 y=2*1 law='open' /", "run along the boundary")
-      call refuse(4, "&fracture name='f' x=0.5, 1, 1.5 y=0.5, 1, 0.5 law='open' /", &
-                  "give the inner vertex (1.0, 1.0) on the boundary")
-      call accept(4, "&fracture name='f' x=1, 0.5 y=1, 0.5 law='open' /", "from the notch's corner")
+   subroutine check_probes()
       call refuse(4, "&probe name='p' x=1.1 y=1.1 /", "(1.1, 1.1) but must lie within the domain")
-   end subroutine check_fractures
+   end subroutine check_probes
 
    subroutine check_weight()
       call refuse(3, "&material young=1e9 poisson=0.2 /", ":7: &gravity: is given, but the "// &
@@ -154,23 +130,16 @@ contains
                   "a radius instead")
    end subroutine check_arcs
 
-   !> Areas and places that are known; a segment past and through a notch.
+   !> Places that are known, beside and in a notch.
    subroutine check_geometry()
       real(rk), parameter :: x(7) = [0.0_rk, 4.0_rk, 4.0_rk, 2.5_rk, 2.0_rk, 1.5_rk, 0.0_rk]
       real(rk), parameter :: y(7) = [0.0_rk, 0.0_rk, 2.0_rk, 2.0_rk, 1.0_rk, 2.0_rk, 2.0_rk]
 
-      call checks%is_close(signed_area(x, y), 7.5_rk, 1.0e-14_rk, "area, counter-clockwise")
-      call checks%is_close(signed_area(x(7:1:-1), y(7:1:-1)), -7.5_rk, 1.0e-14_rk, "clockwise")
       call checks%is_true(holds_point(x, y, [2.0_rk, 0.99_rk]), "below the notch")
       call checks%is_true(holds_point(x, y, [2.0_rk, 1.0_rk]), "in the notch's corner")
       call checks%is_true(holds_point(x, y, [2.25_rk, 1.5_rk]), "on its side")
       call checks%is_true(.not. holds_point(x, y, [2.0_rk, 1.01_rk]), "in the notch")
       call checks%is_true(.not. holds_point(x, y, [-1.0_rk, 2.0_rk]), "beside the body")
-      call checks%is_true(leaves(x, y, [1.0_rk, 1.5_rk], [3.0_rk, 1.5_rk]), "through the notch")
-      call checks%is_true(.not. leaves(x, y, [1.0_rk, 0.9_rk], [3.0_rk, 0.9_rk]), "below it")
-      call checks%is_true(.not. leaves(x, y, [1.0_rk, 1.0_rk], [3.0_rk, 1.0_rk]), "touching it")
-      call checks%is_true(.not. leaves(x, y, [0.0_rk, 1.0_rk], [4.0_rk, 0.5_rk]), "edge to edge")
-      call checks%is_true(leaves(x, y, [1.5_rk, 2.0_rk], [2.5_rk, 2.0_rk]), "across its mouth")
    end subroutine check_geometry
 
    subroutine accept(line, text, name, and_7, and_8)
@@ -217,13 +186,9 @@ contains
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2
       type(error_t), allocatable, intent(out) :: error
-      character(len=100) :: lines(size(good))
       type(scene_t) :: scene
 
-      lines = good
-      lines(line_1) = text_1
-      lines(line_2) = text_2
-      call put_lines(path, lines)
+      call put_changed(path, good, line_1, text_1, line_2, text_2)
       call read_scene(path, scene, error)
    end subroutine read_changed
 

@@ -141,18 +141,16 @@ contains
                           "default Newton iterations")
       call checks%is_true(scene%discretization%face_condition == discretization%face_condition, &
                           "default face condition")
-      call exactly([scene%growth%increment, scene%growth%exponent, scene%growth%threshold, &
-                    scene%growth%new_aperture, scene%growth%stop_gain], &
-                   [growth%increment, growth%exponent, growth%threshold, growth%new_aperture, &
-                    growth%stop_gain], "default growth")
+      call exactly([scene%growth%exponent, scene%growth%threshold, scene%growth%new_aperture, &
+                    scene%growth%stop_gain], &
+                   [growth%exponent, growth%threshold, growth%new_aperture, growth%stop_gain], &
+                   "default growth")
       call checks%is_true(.not. scene%growth%enabled .and. .not. scene%growth%intensities, &
                           "growth is off")
       call checks%is_true(scene%growth%new_volume == growth%new_volume, "default new volume")
       call checks%is_true(scene%initial%fracture_pressure == initial%fracture_pressure, &
                           "default initial")
-      call exactly([scene%initial%pressure, scene%output%interval], [initial%pressure, &
-                                                                     output%interval], &
-                   "default pressure and interval")
+      call exactly([scene%initial%pressure], [initial%pressure], "default pressure")
       call checks%is_true(scene%output%vtu .eqv. output%vtu, "default output")
       call checks%is_true(scene%material%storage == "thesis" .and. &
                           .not. scene%material%plane_stress, "default material")

@@ -1,0 +1,26 @@
+// Whether a body and its fractures can be meshed, without meshing them.
+#ifndef CPP_MESH_JUDGE_HPP
+#define CPP_MESH_JUDGE_HPP
+
+#include "mesh.hpp"
+
+#include <array>
+#include <vector>
+
+namespace cpp_mesh {
+
+// The graph of the fractures in the body. Throws MeshError with the culprits if the specification,
+// the body or the network is at fault.
+Graph judged_graph(const Specification& specification, const Network& network);
+
+// A point inside the body where fractures meet: two of them, or parts of one (then twice the same).
+struct Joint {
+    std::array<int, 2> fracture = {-1, -1};
+    Vec2 xy;
+};
+
+std::vector<Joint> joints_of(const Graph& graph);
+
+} // namespace cpp_mesh
+
+#endif

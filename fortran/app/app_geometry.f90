@@ -1,0 +1,148 @@
+!> Whether the geometry of a scene can be simulated, before anything is meshed or written. The mesh
+!! library judges; here its verdict becomes a sentence about the scene file.
+module app_geometry
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text, integer_text
+   use growth_network, only: network_of_scene
+   use mechanics_body, only: body_spec
+   use mechanics_outline, only: scene_corner, scene_edge
+   use mesh_builder, only: mesh_spec_t
+   use mesh_check, only: check_mesh_input, culprit_corner, culprit_edge, culprit_fixed_point, &
+                         culprit_fracture, culprit_t, fault_t, joint_t
+   use mesh_types, only: network_t
+   use scene_sheet, only: refuse, sheet_t
+   use scene_types, only: scene_t
+   use twolevel_state, only: coarse_spec
+   implicit none(type, external)
+   private
+
+   public :: check_geometry
+
+contains
+
+   !> Refuse a scene whose body or fractures cannot be meshed, or cannot be simulated as they meet.
+   subroutine check_geometry(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet  !< where the scene comes from
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      type(network_t) :: network
+      type(mesh_spec_t) :: spec
+      type(joint_t), allocatable :: joints(:)
+      type(fault_t), allocatable :: fault
+
+      network = network_of_scene(scene)
+      if (scene%has_fluid()) then
+         spec = coarse_spec(scene)
+      else
+         spec = body_spec(scene, network)
+      end if
+      call check_mesh_input(spec, network, joints, fault)
+      if (allocated(fault)) then
+         call blame(sheet, scene, fault, error)
+      else
+         call refuse_joints_with_fluid(sheet, scene, joints, error)
+      end if
+   end subroutine check_geometry
+
+   !> There is no law yet for fluid at joints of fractures.
+   subroutine refuse_joints_with_fluid(sheet, scene, joints, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(joint_t), intent(in) :: joints(:)
+      type(error_t), allocatable, intent(out) :: error
+      type(fault_t) :: fault
+
+      if (size(joints) == 0 .or. .not. scene%has_fluid()) return
+      associate (joint => joints(1))
+         allocate (fault%culprits(2))
+         fault%culprits%kind = culprit_fracture
+         fault%culprits%number = joint%fractures
+         fault%reason = "{1} and {2} meet"
+         if (joint%fractures(1) == joint%fractures(2)) fault%reason = "{1} meets itself"
+         fault%reason = fault%reason//" at "//place_text(joint%xy)// &
+                        ", but fractures must not touch in a scene with &fluid"
+      end associate
+      call blame(sheet, scene, fault, error)
+   end subroutine refuse_joints_with_fluid
+
+   pure function place_text(xy) result(text)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      character(len=:), allocatable :: text
+
+      text = "("//brief_text(xy(1), 9)//", "//brief_text(xy(2), 9)//")"
+   end function place_text
+
+   !> Put a fault into words, at the line of the first culprit.
+   subroutine blame(sheet, scene, fault, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(fault_t), intent(in) :: fault
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason, name
+      integer :: record, first_record, i
+
+      reason = fault%reason
+      first_record = sheet%find("domain")
+      do i = 1, size(fault%culprits)
+         call identify(sheet, scene, fault%culprits(i), record, name)
+         if (i == 1) then
+            first_record = record
+         else if (all(record /= [first_record, sheet%find("domain")])) then
+            name = name//" (line "//integer_text(sheet%records(record)%line)//")"
+         end if
+         reason = with_name(reason, "{"//integer_text(int(i, ik))//"}", name)
+      end do
+      call refuse(error, sheet, first_record, "", reason)
+   end subroutine blame
+
+   !> Which group of the file a culprit comes from, and what a sentence calls it.
+   subroutine identify(sheet, scene, culprit, record, name)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(culprit_t), intent(in) :: culprit
+      integer, intent(out) :: record
+      character(len=:), allocatable, intent(out) :: name
+
+      record = sheet%find("domain")
+      select case (culprit%kind)
+      case (culprit_fracture)
+         record = sheet%find("fracture", int(culprit%number))
+         name = "fracture '"//trim(scene%fractures(culprit%number)%name)//"'"
+      case (culprit_corner)
+         name = "a corner of the domain"
+         if (scene%domain%shape == "polygon") then
+            name = "corner "//integer_text(scene_corner(scene%domain, culprit%number))
+         end if
+      case (culprit_edge)
+         name = "a side of the domain"
+         if (scene%domain%shape == "polygon") then
+            name = "edge "//integer_text(scene_edge(scene%domain, culprit%number))
+         end if
+      case (culprit_fixed_point)
+         associate (n => size(scene%restraints))
+            if (culprit%number <= n) then
+               record = sheet%find("restraint", int(culprit%number))
+               name = "the restraint"
+            else
+               record = sheet%find("point_load", int(culprit%number) - n)
+               name = "the point load"
+            end if
+         end associate
+      case default
+         name = "something"
+      end select
+   end subroutine identify
+
+   !> A text with a mark replaced, where it stands.
+   pure function with_name(text, mark, name) result(whole)
+      character(len=*), intent(in) :: text, mark, name
+      character(len=:), allocatable :: whole
+      integer :: at
+
+      whole = text
+      at = index(text, mark)
+      if (at > 0) whole = text(:at - 1)//name//text(at + len(mark):)
+   end function with_name
+
+end module app_geometry

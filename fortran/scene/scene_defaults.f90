@@ -1,0 +1,45 @@
+!> Defaults that follow from other values: resolved here and nowhere else, so that scene.nml shows
+!! the numbers used.
+module scene_defaults
+   use base_kinds, only: rk
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: resolve_defaults
+
+contains
+
+   !> Give every value that is still 0, for it was not given, what it stands for.
+   pure subroutine resolve_defaults(scene)
+      type(scene_t), intent(inout) :: scene
+      integer :: i
+
+      if (.not. scene%has_fluid()) then  ! the programme takes one unit of time
+         scene%time%end = 1.0_rk
+         scene%time%step = 1.0_rk/real(scene%load%steps, rk)
+      end if
+      call default(scene%output%interval, scene%time%step)
+      associate (d => scene%discretization)
+         if (scene%has_fluid()) then
+            call default(scene%growth%increment, d%fine_ratio*d%size_fracture)
+         else
+            call default(scene%growth%increment, d%size_fracture)
+            call default(d%rosette_radius, d%size_fracture)
+            call default(d%rosette_radius, d%size_boundary)  ! without fractures
+         end if
+      end associate
+      do i = 1, size(scene%fractures)
+         if (scene%fractures(i)%law /= "slip") cycle
+         call default(scene%fractures(i)%slip_taper, 0.5_rk*scene%fractures(i)%length())
+      end do
+   end subroutine resolve_defaults
+
+   pure subroutine default(value, otherwise)
+      real(rk), intent(inout) :: value
+      real(rk), intent(in) :: otherwise
+
+      if (.not. value > 0.0_rk) value = otherwise
+   end subroutine default
+
+end module scene_defaults
