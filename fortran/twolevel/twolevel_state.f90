@@ -1,7 +1,7 @@
 !> Both levels of a scene with a fluid at one time: network, coarse mesh, model and state, windows
 !! around the tips, and the bookkeeping of fluid.
 module twolevel_state
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use contact_law, only: contact_law_t
@@ -11,7 +11,7 @@ module twolevel_state
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
-   use mesh_types, only: mesh_map_t, mesh_t, network_t, point_boundary, point_interior, point_tip
+   use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
@@ -73,8 +73,6 @@ contains
       call build_mesh(coarse_spec(scene), self%coarse_network, self%mesher, self%mesh, error)
       call timers%stop(phase_mesh)
       if (allocated(error)) return
-      call refuse_joints(self%mesh, error)
-      if (allocated(error)) return
       call first_cells(self)
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, scene, timers, error)
@@ -116,23 +114,6 @@ contains
                          size_boundary=scene%discretization%size_boundary)
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
    end function coarse_spec
-
-   !> There is no law yet for fluid at joints of fractures.
-   subroutine refuse_joints(mesh, error)
-      type(mesh_t), intent(in) :: mesh
-      type(error_t), allocatable, intent(out) :: error
-      character(len=96) :: text
-      integer(ik) :: i
-
-      do i = 1, mesh%fracture%n_points
-         if (any(mesh%fracture%point_kind(i) == [point_interior, point_tip, point_boundary])) cycle
-         write (text, "(a,es12.5,a,es12.5,a)") "fractures meet at (", &
-            mesh%fracture%point_xy(1, i), ",", mesh%fracture%point_xy(2, i), "); this version"
-         call raise_error(error, "", trim(text)//" simulates only fractures that do not touch "// &
-                          "each other")
-         return
-      end do
-   end subroutine refuse_joints
 
    !> Law and residual aperture of the scene's fracture cells.
    pure subroutine first_cells(self)
