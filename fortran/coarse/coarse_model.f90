@@ -9,6 +9,7 @@ module coarse_model
    use base_kinds, only: ik, rk
    use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
                           phase_solve, timers_t
+   use base_tolerances, only: same_time
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
    use coarse_diffusion, only: cell_outflow
@@ -140,7 +141,7 @@ contains
       integer(ik) :: n
 
       n = mesh%fracture%n_cells
-      if (.not. abs(self%condensed%dt - dt) <= 1.0e-12_rk*dt) then
+      if (.not. abs(self%condensed%dt - dt) <= same_time*dt) then
          call timers%start(phase_factorize)
          call self%condensed%factorize(mesh, self%matrix, dt, error)
          call timers%stop(phase_factorize)

@@ -7,6 +7,7 @@ module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use base_tolerances, only: same_value
    use growth_increment, only: plan_increment, tips_at_onset
    use growth_law, only: new_tip
    use growth_network, only: extend, move_end
@@ -98,7 +99,6 @@ contains
    subroutine advance_tips(self, any_grew)
       class(front_t), intent(inout) :: self
       logical, intent(out) :: any_grew
-      real(rk), parameter :: nothing = 1.0e-9_rk  ! of an advance
       real(rk) :: advance(size(self%tip)), kink, to(2)
       integer(ik) :: i
 
@@ -115,7 +115,7 @@ contains
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
             call meet_target(self%rules, self%network, tip, (tip%xy), to)
             if (tip%arrested .and. .not. tip%joined) cycle
-            if (.not. norm2(to - tip%xy) > nothing*advance(i)) cycle  ! something has come to it
+            if (.not. norm2(to - tip%xy) > same_value*advance(i)) cycle  ! something has come to it
             call extend(self%network, tip%fracture, tip%end, to)
             call tip%move(to, kink)
             any_grew = .true.

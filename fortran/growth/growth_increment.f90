@@ -2,15 +2,13 @@
 !! and how far each.
 module growth_increment
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
    use growth_law, only: advances, carry_over
    use growth_tip, only: tip_t
    implicit none(type, external)
    private
 
    public :: plan_increment, tips_at_onset
-
-   !> Share of the toughness within which a tip is at its onset.
-   real(rk), parameter :: at_onset = 1.0e-9_rk
 
 contains
 
@@ -23,7 +21,7 @@ contains
       real(rk), intent(in) :: together  !< share of the toughness that a tip may lack [-]
       logical :: grows(size(tips))
 
-      grows = tips%drive%intensity >= (1.0_rk - at_onset)*toughness .and. .not. tips%arrested
+      grows = tips%drive%intensity >= (1.0_rk - same_value)*toughness .and. .not. tips%arrested
       if (.not. any(grows)) return
       grows = tips%drive%intensity >= (1.0_rk - together)*toughness .and. .not. tips%arrested
    end function tips_at_onset

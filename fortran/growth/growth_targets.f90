@@ -2,6 +2,7 @@
 module growth_targets
    use base_kinds, only: ik, rk
    use base_plane, only: crosses, meeting, nearest_place
+   use base_tolerances, only: same_place
    use mesh_types, only: network_t
    implicit none(type, external)
    private
@@ -54,12 +55,11 @@ contains
    pure logical function is_behind(from, to, ends)
       real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
       real(rk), intent(in) :: ends(2, 2)  !< of the old one [m]
-      real(rk), parameter :: same = 1.0e-9_rk  ! of the new segment's length
       real(rk) :: before, after
 
       before = norm2(nearest_place(from, ends) - from)
       after = norm2(nearest_place(to, ends) - to)
-      is_behind = before <= same*norm2(to - from) .or. &
+      is_behind = before <= same_place*norm2(to - from) .or. &
                   (after >= before .and. .not. crosses(reshape([from, to], [2, 2]), ends))
    end function is_behind
 

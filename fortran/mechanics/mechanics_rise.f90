@@ -3,6 +3,7 @@ module mechanics_rise
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
    use base_timers, only: timers_t
+   use base_tolerances, only: same_value
    use mechanics_onset, only: foreseen_onset, reading_t
    use mechanics_state, only: loaded_body_t
    use scene_types, only: scene_t
@@ -11,8 +12,6 @@ module mechanics_rise
 
    public :: rise
 
-   !> Share of the toughness within which the first tip is at its onset.
-   real(rk), parameter :: at_onset = 1.0e-9_rk
    !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
    real(rk), parameter :: at_jump = 1.0e-13_rk
 
@@ -47,7 +46,7 @@ contains
          call self%correct_intensities(timers, error)
          return
       end if
-      has_onset = self%largest_excess() >= -at_onset
+      has_onset = self%largest_excess() >= -same_value
       if (has_onset) return
       low = self%reading()
       ! Where all loads rise in proportion, the intensities do so until contact changes.
@@ -57,14 +56,14 @@ contains
       if (onset < target) then
          call self%respond(onset, timers, error)
          if (allocated(error)) return
-         has_onset = abs(self%largest_excess()) <= at_onset
+         has_onset = abs(self%largest_excess()) <= same_value
          if (has_onset) return
          if (self%largest_excess() < 0.0_rk) low = self%reading()
       end if
       if (.not. self%largest_excess() >= 0.0_rk) then
          call self%respond(target, timers, error)
          if (allocated(error)) return
-         if (self%largest_excess() < -at_onset) return
+         if (self%largest_excess() < -same_value) return
       end if
       has_onset = .true.
       high = self%reading()
@@ -86,7 +85,7 @@ contains
       next = high
       width = huge(1.0_rk)
       do k = 1, iterations
-         if (abs(self%largest_excess()) <= at_onset) return
+         if (abs(self%largest_excess()) <= same_value) return
          width(k) = high%factor - low%factor
          if (k > 3 .and. width(k) > 0.5_rk*width(max(k - 3, 0))) then
             next%factor = 0.5_rk*(low%factor + high%factor)  ! the lines lead nowhere

@@ -8,6 +8,7 @@ module output_network
    use output_files, only: write_text_file
    use output_json, only: json_t
    use base_texts, only: text_t
+   use base_tolerances, only: same_place
    use output_text, only: newline, text_buffer_t
    implicit none(type, external)
    private
@@ -157,7 +158,7 @@ contains
       integer :: i, n
       real(rk) :: same  ! points closer than this are one [m]
 
-      same = 1.0e-9_rk*max(maxval(abs(self%network%xy)), tiny(1.0_rk))
+      same = same_place*max(maxval(abs(self%network%xy)), tiny(1.0_rk))
       allocate (now(count(self%mesh%point_kind >= point_boundary)))
       n = 0
       do point = 1, self%mesh%n_points

@@ -5,6 +5,7 @@ module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use base_tolerances, only: same_place
    use scene_polygon, only: holds_point
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
@@ -13,8 +14,6 @@ module scene_check_geometry
    private
 
    public :: check_domain, check_fractures, check_probes, check_wells
-
-   real(rk), parameter :: round_off = 1.0e-9_rk  !< in points given on a circle, over its radius
 
 contains
 
@@ -207,7 +206,7 @@ contains
                        y >= domain%y_min .and. y <= domain%y_max
       if (domain%shape == "disc") then
          contains_point = hypot(x - domain%x_centre, &
-                                y - domain%y_centre) <= domain%radius*(1.0_rk + round_off)
+                                y - domain%y_centre) <= domain%radius*(1.0_rk + same_place)
       end if
    end function contains_point
 

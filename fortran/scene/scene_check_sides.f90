@@ -3,6 +3,7 @@ module scene_check_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use base_tolerances, only: same_direction
    use scene_parameters, only: groups, side_names
    use scene_sheet, only: record_t, refuse, sheet_t
    use scene_types, only: boundary_part_t, scene_t
@@ -14,7 +15,6 @@ module scene_check_sides
    public :: check_parts, check_sides
 
    real(rk), parameter :: turn = 2.0_rk*acos(-1.0_rk)  !< [rad]
-   real(rk), parameter :: round_off = 1.0e-9_rk  !< in angles of arcs that follow each other [rad]
 
 contains
 
@@ -154,9 +154,9 @@ contains
       else if (a%whole_rim .or. b%whole_rim) then
          overlap = .true.
       else  ! one of them begins within the other
-         overlap = modulo(b%arc(1) - a%arc(1) + round_off, turn) < &
+         overlap = modulo(b%arc(1) - a%arc(1) + same_direction, turn) < &
                    a%arc(2) - a%arc(1) .or. &
-                   modulo(a%arc(1) - b%arc(1) + round_off, turn) < b%arc(2) - b%arc(1)
+                   modulo(a%arc(1) - b%arc(1) + same_direction, turn) < b%arc(2) - b%arc(1)
       end if
    end function overlap
 

@@ -2,12 +2,11 @@
 module scene_polygon
    use base_kinds, only: ik, rk
    use base_plane, only: point_distance, triangle_area
+   use base_tolerances, only: same_place
    implicit none(type, external)
    private
 
    public :: holds_point
-
-   real(rk), parameter :: round_off = 1.0e-9_rk  !< in points given on an edge, over the extent
 
 contains
 
@@ -26,7 +25,7 @@ contains
       do k = 1, n
          next = mod(k, n) + 1_ik
          edge = reshape([x(k), y(k), x(next), y(next)], [2, 2])
-         if (point_distance(point, edge) <= round_off*extent) return
+         if (point_distance(point, edge) <= same_place*extent) return
          ! A ray to the right meets the outline an odd number of times (Shimrat 1962).
          if ((edge(2, 1) > point(2)) .eqv. (edge(2, 2) > point(2))) cycle
          if ((triangle_area(reshape([edge(:, 1), edge(:, 2), point], [2, 3])) > 0.0_rk) .eqv. &

@@ -2,6 +2,7 @@
 !! the coarse mesh can hold.
 module twolevel_handover
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
    use growth_network, only: end_direction, end_gain, end_vertices, extend, straighten_end
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
@@ -31,7 +32,7 @@ contains
          pending(i) = end_gain(network, coarse, tips(i)%fracture, tips(i)%end)
       end do
       allocate (centres(2, 0))
-      if (.not. any(pending >= threshold*(1.0_rk - 1.0e-9_rk))) return
+      if (.not. any(pending >= threshold*(1.0_rk - same_value))) return
       do i = 1, size(tips, kind=ik)
          associate (tip => tips(i))
             if (pending(i) < 0.5_rk*threshold) cycle

@@ -1,6 +1,7 @@
 !> The jumps that a window has found, kept for its next mesh and for the time when its faces stick.
 module twolevel_jumps
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
@@ -52,7 +53,7 @@ contains
       found = .false.
       jump = 0.0_rk
       if (.not. allocated(last%s)) return
-      slack = 1.0e-9_rk*(maxval(last%s) - minval(last%s))
+      slack = same_place*(maxval(last%s) - minval(last%s))
       below = maxloc(last%s, mask=last%fracture == fracture .and. last%s <= s + slack, dim=1)
       above = minloc(last%s, mask=last%fracture == fracture .and. last%s >= s - slack, dim=1)
       found = below > 0 .and. above > 0

@@ -4,6 +4,7 @@ module twolevel_simulation
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
+   use base_tolerances, only: same_time
    use coarse_state, only: step_report_t
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_step_cut
@@ -184,7 +185,7 @@ contains
          end if
          call count_unknowns(self, self%summary)
       end if
-      if (self%state%time >= self%scene%time%end*(1.0_rk - 1.0e-12_rk)) then
+      if (self%state%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.
       end if

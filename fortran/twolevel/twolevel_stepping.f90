@@ -2,6 +2,7 @@
 !! pressure at the new tips has settled, and back by doubling.
 module twolevel_stepping
    use base_kinds, only: rk
+   use base_tolerances, only: same_value
    use scene_types, only: time_t
    implicit none(type, external)
    private
@@ -32,7 +33,7 @@ contains
 
       step_to = min(self%next, left)
       ! No tiny step before a switch, and no more step sizes, thus factorizations, than needed.
-      if (left < step_to*(1.0_rk + 1.0e-9_rk)) step_to = left
+      if (left < step_to*(1.0_rk + same_value)) step_to = left
    end function step_to
 
    !> A step has not converged: try half of it, unless that is too short.

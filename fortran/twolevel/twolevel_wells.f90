@@ -1,6 +1,7 @@
 !> Wells: which fracture cells they feed, at which rate, and when they start and end.
 module twolevel_wells
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_time
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
@@ -70,7 +71,7 @@ contains
       integer(ik) :: w
 
       time = scene%time%end
-      later = now*(1.0_rk + 1.0e-12_rk)
+      later = now*(1.0_rk + same_time)
       do w = 1, size(scene%injections, kind=ik)
          associate (well => scene%injections(w))
             if (well%start > later) time = min(time, well%start)
