@@ -17,6 +17,7 @@ from wingcrack_bench.measure import (
 from wingcrack_bench.table import as_json, as_table
 from wingcrack_verify.environment import machine, revision
 
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     given = parse(arguments)

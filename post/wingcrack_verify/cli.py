@@ -14,6 +14,7 @@ from wingcrack_verify.judge import RED
 from wingcrack_verify.report import Report, make_report
 from wingcrack_verify.suite import Suite, judge_suite, read_suite
 
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     given = parse(arguments)
