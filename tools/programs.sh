@@ -39,7 +39,7 @@ understand() {
 # Run a command beside this shell so that a signal sent to the launcher alone reaches it too, and
 # return its exit status. The subshell undoes bash's habit of shielding such a command from ctrl-C.
 supervise() {
-    local status=0 waited signalled
+    local status='' waited signalled
     (
         trap - INT QUIT
         exec "$@"
@@ -51,8 +51,8 @@ supervise() {
         signalled=
         wait "$child"
         waited=$?
-        # 127: the child's status was already collected in the round before
-        if ((waited != 127)); then status=$waited; fi
+        # 127 in a later round: the child's status was already collected in the one before
+        if [[ -z $status ]] || ((waited != 127)); then status=$waited; fi
         if [[ -z $signalled ]]; then break; fi
     done
     trap - INT TERM
