@@ -41,19 +41,26 @@ function(room_modules name folder)
   target_include_directories(${name} PUBLIC ${mod_dir})
 endfunction()
 
+# gfortran 12 takes the descriptors of allocatable arrays (their `offset` and `dim` before the first
+# allocation) for uninitialized: -Wmaybe-uninitialized in either build, -Wuninitialized where it
+# optimizes. In the debug build the latter is right, and stays.
 function(room_compile_options name)
   target_compile_options(
     ${name}
     PRIVATE
-      $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wall
       -Wextra
+      $<$<BOOL:${WINGCRACK_WARNINGS_ARE_ERRORS}>:-Werror>
+      $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wimplicit-interface
       -fimplicit-none
       $<$<CONFIG:Release>:-O3
-      -march=native>
+      -march=native
+      -Wno-uninitialized
+      -Wno-maybe-uninitialized>
       $<$<CONFIG:Debug>:-fcheck=all
       -fbacktrace
-      -finit-real=snan>>
+      -finit-real=snan
+      -Wno-maybe-uninitialized>>
   )
 endfunction()

@@ -48,6 +48,14 @@ _POST = """\
 import os
 import sys
 
+module = os.environ.get("POST_IMPORTS")
+if module:
+    __import__(module)
+if os.environ.get("POST_WAITS_FOR"):
+    import pathlib, time
+    pathlib.Path("post started").touch()
+    while not os.path.exists(os.environ["POST_WAITS_FOR"]):
+        time.sleep(0.02)
 print("post", *sys.argv[1:])
 sys.exit(int(os.environ.get("POST_STATUS", "0")))
 """
@@ -101,17 +109,21 @@ class Tree:
 def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     """Make a tree in a new folder, with its own lists of system and Python packages."""
     root = folder / "tree"
-    for name in ("fortran", "cpp_mesh", "cmake", "post/wingcrack_post"):
+    for name in ("fortran", "cpp_mesh", "cmake", "verification"):
         (root / name).mkdir(parents=True)
     shutil.copy(TOP / "wingcrack", root)
     shutil.copy(TOP / "CMakePresets.json", root)
     shutil.copytree(TOP / "tools", root / "tools")
     (root / "tools" / "system_packages.txt").write_text(packages)
     (root / "requirements.txt").write_text(requirements)
+    (root / "requirements_developer.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
-    (root / "post" / "wingcrack_post" / "__main__.py").write_text(_POST)
+    # The real packages understand their arguments; what they do with them is replaced.
+    for package in ("wingcrack_post", "wingcrack_verify", "wingcrack_bench"):
+        shutil.copytree(TOP / "post" / package, root / "post" / package)
+        (root / "post" / package / "__main__.py").write_text(_POST)
     place = folder / "place"
     place.mkdir()
     return Tree(root, place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import tomllib
 from pathlib import Path
@@ -10,6 +11,8 @@ import pytest
 from launcher_tree import TOP
 
 LAUNCHER = TOP / "wingcrack"
+SCENE = TOP / "inputs" / "paper_c" / "onset.nml"
+COMMANDS = ("run", "check", "plot", "verify", "bench", "test", "build", "format", "lint")
 
 
 def call(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -30,7 +33,7 @@ def test_version_is_that_of_the_python_package(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, f"wingcrack {expected}\n", "")
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "verify", "bench", "test"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str) -> None:
     done = call(tmp_path, command, "--help")
     assert done.returncode == 0
@@ -42,7 +45,7 @@ def test_every_subcommand_has_help_with_an_example(tmp_path: Path, command: str)
 def test_help_names_every_subcommand(tmp_path: Path) -> None:
     done = call(tmp_path, "--help")
     assert done.returncode == 0
-    for command in ("run", "check", "plot", "verify", "bench", "test", "--version"):
+    for command in (*COMMANDS, "--version"):
         assert command in done.stdout
 
 
@@ -55,12 +58,17 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["run"], "run needs a scene file"),
         (["run", "--quiet"], "run needs a scene file"),
         (["run", "nowhere.nml"], "there is no scene file nowhere.nml"),
-        (["run", "."], "there is no scene file ."),
+        (["run", "."], ". is a folder, not a scene file"),
+        (["check", "/dev/null"], "/dev/null is a pipe or a device, not a scene file"),
+        (["run", str(SCENE), "--out", str(SCENE)], "onset.nml is a file"),
+        (["run", str(SCENE), "--out", f"{SCENE}/deeper/down"], "onset.nml is a file"),
         (["run", "nowhere.nml", "other.nml"], "run takes one scene file, and other.nml"),
         (["run", "nowhere.nml", "--fast"], "unknown option --fast"),
-        (["verify", "--fast"], "unknown option --fast"),
-        (["verify", "no_such_case"], "there is no case no_such_case"),
-        (["verify", "--jobs"], "--jobs needs a value"),
+        (["verify", "--fast"], "unrecognized arguments: --fast"),
+        (["verify", "no_such_case"], "there is no case 'no_such_case'"),
+        (["verify", "--jobs"], "--jobs: expected one argument"),
+        (["verify", "--jobs", "x"], "'x' is no whole number from 1 to 64"),
+        (["verify", "--report", str(SCENE)], "onset.nml, which is a file"),
         (["run", "nowhere.nml", "--out"], "--out needs a value"),
         (["run", "nowhere.nml", "--out", ""], "--out needs a value"),
         (["run", "nowhere.nml", "--out="], "unknown option --out="),
@@ -73,10 +81,18 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["check", "nowhere.nml", "other.nml"], "check takes one scene file"),
         (["plot"], "plot needs the directory of a run"),
         (["plot", "nowhere"], "there is no directory nowhere"),
-        (["bench", "--fast"], "unknown option --fast"),
-        (["bench", "no_such_scene"], "there is no measurement no_such_scene"),
-        (["bench", "--repeat"], "--repeat needs a value"),
-        (["test", "everything"], "test takes no arguments"),
+        (["plot", ".", "--only", "map"], "'map' is none of network, maps"),
+        (["bench", "--fast"], "unrecognized arguments: --fast"),
+        (["bench", "no_such_scene"], "there is no measurement 'no_such_scene'"),
+        (["bench", "--repeat"], "--repeat: expected one argument"),
+        (["bench", "--repeat", "0"], "'0' is no whole number from 1"),
+        (["bench", "--out", str(SCENE)], "onset.nml, which is a file"),
+        (["test", "--fast"], "unknown option --fast"),
+        (["test", "a|b"], "'a|b' is no part of a test's name"),
+        (["build", "--fast"], "build does not understand --fast"),
+        (["build", "--debug", "more"], "build does not understand more"),
+        (["format", "here"], "format does not understand here"),
+        (["lint", "here"], "lint does not understand here"),
     ],
 )
 def test_wrong_usage_gives_one_sentence_and_writes_nothing(
@@ -88,6 +104,13 @@ def test_wrong_usage_gives_one_sentence_and_writes_nothing(
     assert reason in done.stderr
     assert done.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_pipe_is_no_scene(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.nml")
+    done = call(tmp_path, "run", "pipe.nml")
+    assert done.returncode == 2
+    assert done.stderr == "wingcrack: pipe.nml is a pipe or a device, not a scene file\n"
 
 
 @pytest.mark.parametrize("arguments", [["run", "--help"], ["run", "a.nml", "-h"], ["-h"]])

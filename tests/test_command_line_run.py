@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 import time
 
 import pytest
@@ -112,3 +113,54 @@ def test_plot_hands_over_to_the_figures(ready_tree: Tree, status: int) -> None:
     done = ready_tree.call("plot", "some where", "--only", "maps", POST_STATUS=str(status))
     assert done.returncode == status
     assert done.stdout == "post plot some where --only maps\n"
+
+
+def test_modules_of_the_working_directory_are_not_executed(ready_tree: Tree) -> None:
+    for name in ("argparse", "numpy", "pathlib", "wingcrack_post"):
+        (ready_tree.place / f"{name}.py").write_text("raise SystemExit('not this one')\n")
+    paths = {"PYTHONPATH": str(ready_tree.place), "POST_IMPORTS": "argparse"}
+    done = ready_tree.call("plot", ".", **paths)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "post plot .\n", "")
+    done = ready_tree.call("run", ready_tree.scene(), "--out", "here", **paths)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "post plot here" in done.stdout
+
+
+@pytest.mark.parametrize("command", [["plot", "."], ["bench"]])
+def test_a_python_package_that_is_gone_is_named(ready_tree: Tree, command: list[str]) -> None:
+    done = ready_tree.call(*command, POST_IMPORTS="such_a_package")
+    assert done.returncode == 3
+    assert done.stderr.count("\n") == 1
+    assert "No module named 'such_a_package'" in done.stderr
+    assert f"remove the folder {ready_tree.root / '.venv'}" in done.stderr
+
+
+def test_a_library_that_is_gone_is_named(own_tree: Tree) -> None:
+    # A program in place of the solver, and then without a library that it was linked with.
+    library = own_tree.place / "libgone.so"
+    source = own_tree.place / "gone.c"
+    source.write_text("int gone(void) { return 0; }\n")
+    subprocess.run(["gcc", "-shared", "-o", library, source], check=True)
+    source.write_text("int gone(void); int main(void) { return gone(); }\n")
+    solver = own_tree.root / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
+    subprocess.run(["gcc", "-o", solver, source, library], check=True)
+    scene = own_tree.scene()
+    assert own_tree.call("check", scene).returncode == 0
+    library.unlink()
+    for command in ("check", "run"):
+        done = own_tree.call(command, scene)
+        assert done.returncode == 3
+        reason = done.stderr.splitlines()[-1]
+        assert "libgone.so" in reason
+        assert f"remove the folders {own_tree.root / '.venv'}" in reason
+
+
+def test_fonts_are_listed_beside_the_environment(ready_tree: Tree) -> None:
+    package = ready_tree.root / "post" / "wingcrack_post" / "__main__.py"
+    stand_in = package.read_text()
+    package.write_text("import os\nprint(os.environ['MPLCONFIGDIR'])\n")
+    try:
+        done = ready_tree.call("plot", ".", MPLCONFIGDIR="/somewhere/stale")
+    finally:
+        package.write_text(stand_in)
+    assert done.stdout == f"{ready_tree.root / '.venv' / 'matplotlib'}\n"

@@ -218,6 +218,55 @@ def test_two_first_calls_share_one_set_up(bare_tree: Tree) -> None:
     assert bare_tree.log.count("cmake --build") == 1
 
 
+def test_what_is_in_use_is_not_changed(own_tree: Tree) -> None:
+    variables = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": ""}
+    with own_tree.start("plot", ".", POST_WAITS_FOR="go on", POST_IMPORTS="pip") as drawing:
+        deadline = time.monotonic() + 60
+        while not (own_tree.place / "post started").exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        with (own_tree.root / "requirements.txt").open("a") as file:
+            file.write("no-such-thing==2.0\n")
+        before = own_tree.log
+        with own_tree.start("check", own_tree.scene(), **variables) as other:
+            assert other.stderr is not None
+            said = other.stderr.readline()
+            assert "waiting for other calls that use .venv to finish" in said
+            assert own_tree.log == before
+            (own_tree.place / "go on").touch()
+            assert drawing.wait(60) == 0
+            other.communicate(timeout=300)
+    assert "pip install" in own_tree.log.removeprefix(before)
+
+
+def test_the_tools_of_a_developer_are_not_for_everyone(own_tree: Tree) -> None:
+    (own_tree.root / "requirements_developer.txt").write_text("no-such-thing==2.0\n")
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    for command in ("test", "lint", "format"):
+        done = own_tree.call(command, WINGCRACK_NO_INSTALL="1")
+        assert done.returncode == 3
+        assert "no-such-thing==2.0" in done.stderr
+    assert own_tree.call("build", WINGCRACK_NO_INSTALL="1").returncode == 0
+
+
+def test_a_wrong_call_is_refused_before_anything_is_set_up(bare_tree: Tree) -> None:
+    for call in (["verify", "--jobs", "x"], ["bench", "x"], ["plot", ".", "--only", "x"]):
+        done = bare_tree.call(*call)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "'x'" in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert not (bare_tree.root / ".venv").exists()
+    assert not (bare_tree.root / "build").exists()
+
+
+@pytest.mark.parametrize("command", ["verify", "bench", "plot"])
+def test_help_does_not_wait_for_an_installation(bare_tree: Tree, command: str) -> None:
+    done = bare_tree.call(command, "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"./wingcrack {command}" in done.stdout
+    assert not (bare_tree.root / ".venv").exists()
+
+
 def test_plot_does_not_wait_for_the_build(bare_tree: Tree) -> None:
     (bare_tree.root / "CMakeLists.txt").write_text("nonsense\n")
     done = bare_tree.call("plot", bare_tree.place)
@@ -231,5 +280,45 @@ def test_a_failed_check_does_not_stop_the_others(own_tree: Tree) -> None:
     assert done.returncode == 1
     assert done.stdout.rindex("== pytest") > done.stdout.index("== fprettify")
     reason = done.stderr.splitlines()[-1]
-    for step in ("fprettify", "ruff check", "mypy post", "CTest, debug build", "pytest"):
+    for step in ("shellcheck", "fprettify", "ruff check", "mypy", "CTest, debug build", "pytest"):
         assert step in reason
+
+
+def test_a_name_chooses_among_the_checks(own_tree: Tree) -> None:
+    done = own_tree.call("test", "fortitude")
+    assert done.returncode == 1
+    assert done.stdout.count("== ") == 1
+    assert done.stderr.splitlines()[-1] == "wingcrack: failed: fortitude"
+
+
+def test_a_name_that_no_test_has_is_told(own_tree: Tree) -> None:
+    done = own_tree.call("test", "no_such_thing", "nor_this")
+    assert done.returncode == 1
+    reason = "no test has a name with 'no_such_thing' or 'nor_this' in it"
+    assert done.stderr.splitlines()[-1] == f"wingcrack: {reason}"
+
+
+def test_a_build_in_sight_shows_what_the_compiler_says(own_tree: Tree) -> None:
+    script = own_tree.root / "cmake" / "assemble.sh"
+    script.write_text(f"echo 'warning: mind this' >&2\n{script.read_text()}")
+    (own_tree.root / "fortran" / "a_solver.sh").touch()
+    done = own_tree.call("build")
+    assert done.returncode == 0
+    assert "warning: mind this" in done.stdout
+    script.write_text("echo 'error: not this' >&2; exit 1\n")
+    (own_tree.root / "fortran" / "a_solver.sh").touch()
+    done = own_tree.call("build", "--debug")
+    assert done.returncode == 1
+    assert "error: not this" in done.stdout
+    assert done.stderr.splitlines()[-1] == "wingcrack: building, debug, failed"
+
+
+def test_warnings_are_errors_where_ci_says_so(own_tree: Tree) -> None:
+    def answer() -> str:
+        cache = (own_tree.root / "build" / "release" / "CMakeCache.txt").read_text()
+        return next(line for line in cache.splitlines() if "WARNINGS_ARE_ERRORS" in line)[-3:]
+
+    assert own_tree.call("check", own_tree.scene(), CI="").returncode == 0
+    assert answer() == "OFF"
+    assert own_tree.call("check", own_tree.scene(), CI="true").returncode == 0
+    assert answer() == "=ON"

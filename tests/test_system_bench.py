@@ -64,5 +64,5 @@ def test_instructions_are_counted_or_the_reason_is_told(tmp_path: Path) -> None:
 def test_a_wrong_number_of_runs_is_refused(tmp_path: Path) -> None:
     done = call(tmp_path, "bench", "b1", "--repeat", "0")
     assert done.returncode == 2
-    assert "--repeat needs a whole number" in done.stderr.splitlines()[-1]
+    assert "'0' is no whole number from 1" in done.stderr.splitlines()[-1]
     assert list(tmp_path.iterdir()) == []

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
-from system_scene import SCENE, call, varied
+from system_scene import SCENE, TOP, call, varied
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -186,10 +187,26 @@ def test_a_wrong_call_is_refused(arguments: list[str], words: str, tmp_path: Pat
     assert [path.name for path in tmp_path.iterdir()] == ["small.nml"]
 
 
-def test_a_directory_of_other_files_is_no_run(tmp_path: Path) -> None:
+def test_a_file_is_no_place_for_results(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("somebody's file\n")
     (tmp_path / "small.nml").write_text(SCENE)
     done = call(tmp_path, "run", "small.nml", "--out", "out")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "out" in done.stderr.splitlines()[-1]
     assert (tmp_path / "out").read_text() == "somebody's file\n"
+
+
+def test_a_description_that_cannot_be_written_is_a_failure(tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [TOP / "wingcrack", "check", "small.nml"],
+            cwd=tmp_path,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert "the disk may be full" in done.stderr

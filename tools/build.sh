@@ -1,13 +1,18 @@
 # Build: CMake presets (CMakePresets.json) under build/PRESET. Sourced by the launcher.
+# shellcheck shell=bash
 
 readonly solver_target=wingcrack-solver
 readonly verification_target=verification-programs
 readonly solver=$root/build/release/fortran/app/wingcrack-solver
 
+# Exit status of a build that fails. Who only wants to run lacks a program; to a developer it is
+# the result.
+build_failure=$exit_environment
+
 # build_is_current PRESET TARGET: nothing that the build reads is newer than its record, and the
 # tree has not moved since (library paths) nor the processor changed (-march=native).
 build_is_current() {
-    local record_file=$root/build/$1/built-$2 record='' place also=()
+    local record_file=$root/build/$1/built-$2 record='' place strictness also=()
     if [[ $2 != "$solver_target" ]]; then
         also=("$root/verification/CMakeLists.txt" "$root/verification/programs")
     fi
@@ -21,7 +26,7 @@ build_is_current() {
         -newer "$record_file" -print -quit) ]]
 }
 
-# Set place: where the tree lies and the processor's name, a line each.
+# Set place: where the tree lies, the processor's name and what becomes of warnings, a line each.
 find_place() {
     local line
     place=$root$'\n'
@@ -31,28 +36,53 @@ find_place() {
             break
         fi
     done </proc/cpuinfo
+    find_strictness
+    place+="warnings are errors: $strictness"$'\n'
+}
+
+# Set strictness: in CI, warnings of the compilers are errors.
+find_strictness() {
+    strictness=OFF
+    if [[ ${CI:-} == true ]]; then strictness=ON; fi
+}
+
+# configure PRESET: let CMake write the build files.
+configure() {
+    local directory=$root/build/$1 place strictness old_place=''
+    find_place
+    if [[ -r $directory/place ]]; then IFS= read -r -d '' old_place <"$directory/place"; fi
+    if [[ $old_place != "$place" ]]; then rm -rf "$directory"; fi
+    mkdir -p "$directory" && printf '%s' "$place" >"$directory/place" ||
+        fail "$exit_environment" "$directory cannot be written"
+    from_root logged cmake --preset "$1" "-DWINGCRACK_WARNINGS_ARE_ERRORS=$strictness" ||
+        fail_with_log "configuring the build, $1, failed" "$build_failure"
+}
+
+# compile PRESET TARGET...
+compile() {
+    say "building ${*:2}, $1 (log: $setup_log)"
+    from_root logged cmake --build --preset "$1" --target "${@:2}" ||
+        fail_with_log "building ${*:2} failed" "$build_failure"
 }
 
 # build PRESET TARGET, unless it is current.
 build() {
-    local preset=$1 target=$2
-    local directory=$root/build/$preset place old_place=''
-    if build_is_current "$preset" "$target"; then return; fi
-    say "building $target, $preset (log: $setup_log)"
-    find_place
-    if [[ -r $directory/place ]]; then IFS= read -r -d '' old_place <"$directory/place"; fi
-    if [[ $old_place != "$place" ]]; then rm -rf "$directory"; fi
+    local directory=$root/build/$1 record=$root/build/$1/built-$2
+    if build_is_current "$1" "$2"; then return; fi
     # The record is as old as the start of the build: what changes meanwhile is newer.
-    mkdir -p "$directory" && printf '%s' "$place" >"$directory/place" &&
-        cp "$directory/place" "$directory/building-$target" ||
-        fail "$exit_environment" "$directory cannot be written"
-    { from_root cmake --preset "$preset" &&
-        from_root cmake --build --preset "$preset" --target "$target"; } ||
-        fail_with_log "building $target failed"
-    mv "$directory/building-$target" "$directory/built-$target"
+    configure "$1"
+    cp "$directory/place" "$directory/building-$2"
+    compile "$1" "$2"
+    mv "$directory/building-$2" "$record"
+}
+
+# build_in_sight PRESET: everything, with the compilers' words on the terminal.
+build_in_sight() {
+    configure "$1"
+    from_root cmake --build --preset "$1" || fail 1 "building, $1, failed"
 }
 
 # CMake reads presets where it is called.
 from_root() (
-    cd "$root" && logged "$@"
+    cd "$root" && "$@"
 )

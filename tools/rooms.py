@@ -40,6 +40,7 @@ def used_rooms(room: str, rooms: list[str]) -> set[str]:
 
 
 def faults_of_rooms(rooms: list[str]) -> list[str]:
+    """What the list of rooms and their USES do not say, or say in vain."""
     faults = []
     for place, room in enumerate(rooms):
         listed = set(listed_rooms(room)) & set(rooms)
@@ -68,6 +69,7 @@ def faults_of_includes() -> list[str]:
 
 
 def main() -> int:
+    """Print the faults; 1 if there are any."""
     faults = faults_of_rooms(order_of_rooms()) + faults_of_includes()
     for fault in faults:
         print(fault, file=sys.stderr)

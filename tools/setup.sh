@@ -1,11 +1,15 @@
 # Set-up: the system packages and the Python environment. Sourced by the launcher.
+# shellcheck shell=bash
 # The checks use nothing but the shell's own tests, so that a call with everything in place costs
 # a few milliseconds; only when something is missing do programs start.
 
 readonly venv=$root/.venv
 readonly venv_python=$venv/bin/python
-readonly venv_record=$venv/wingcrack-setup
+readonly venv_record=$venv/wingcrack-requirements
 readonly setup_log=$root/build/setup.log
+
+# The lists of Python packages that the command takes.
+requirement_lists=("$root/requirements.txt")
 
 # prepare [TARGET]: see to the environment and, if a build target is named, to the release build.
 prepare() {
@@ -16,6 +20,12 @@ prepare() {
     fi
     with_lock set_up
     if [[ -n $target ]]; then with_lock build release "$target"; fi
+}
+
+# prepare_developer: see to the environment with the tools of a developer.
+prepare_developer() {
+    requirement_lists+=("$root/requirements_developer.txt")
+    prepare
 }
 
 # with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.
@@ -128,33 +138,47 @@ name_packages() {
 
 # Python environment -----------------------------------------------------------------------------
 
-# The record of a complete environment: where the tree lay, the interpreter behind it, what was
-# asked for. A tree that was moved, a system Python that was replaced or a changed list differ.
+# The record of a complete environment, one for each list: where the tree lay, the interpreter
+# behind it, what was asked for. A tree that was moved, a system Python that was replaced or a
+# changed list differ.
 python_is_ready() {
-    local record='' interpreter='' requirements=''
-    if [[ ! -x $venv_python || ! -r $venv_record ]]; then return 1; fi
-    IFS= read -r -d '' record <"$venv_record"
-    interpreter=${record#*$'\n'}
-    interpreter=${interpreter%%$'\n'*}
-    IFS= read -r -d '' requirements <"$root/requirements.txt"
-    [[ $venv_python -ef $interpreter && $record == "$root"$'\n'"$interpreter"$'\n'"$requirements" ]]
+    local list record interpreter requirements
+    if [[ ! -x $venv_python ]]; then return 1; fi
+    for list in "${requirement_lists[@]}"; do
+        find_record "$list"
+        if [[ ! -r $record_file ]]; then return 1; fi
+        IFS= read -r -d '' record <"$record_file"
+        interpreter=${record#*$'\n'}
+        interpreter=${interpreter%%$'\n'*}
+        IFS= read -r -d '' requirements <"$list"
+        [[ $venv_python -ef $interpreter &&
+            $record == "$root"$'\n'"$interpreter"$'\n'"$requirements" ]] || return 1
+    done
+}
+
+# Set record_file: the record of a list, $venv_record for requirements.txt.
+find_record() {
+    record_file=${1##*/}
+    record_file=$venv/wingcrack-${record_file%.txt}
 }
 
 record_python() {
-    local interpreter
-    interpreter=$(readlink -f -- "$venv_python") &&
-        {
-            printf '%s\n%s\n' "$root" "$interpreter" && cat "$root/requirements.txt"
-        } >"$venv_record"
+    local interpreter list
+    interpreter=$(readlink -f -- "$venv_python") || return
+    for list in "${requirement_lists[@]}"; do
+        find_record "$list"
+        { printf '%s\n%s\n' "$root" "$interpreter" && cat "$list"; } >"$record_file" || return
+    done
 }
 
 # The requirements that .venv does not hold, one per line; all of them if it cannot say.
 missing_requirements() {
-    "$venv_python" -I - "$root/requirements.txt" 2>/dev/null <<'PYTHON' ||
+    "$venv_python" -I - "${requirement_lists[@]}" 2>/dev/null <<'PYTHON' ||
+import fileinput
 import importlib.metadata
 import sys
 
-for line in open(sys.argv[1], encoding="utf-8"):
+for line in fileinput.input(sys.argv[1:], encoding="utf-8"):
     name, _, version = line.strip().partition("==")
     if not version:
         continue
@@ -165,7 +189,7 @@ for line in open(sys.argv[1], encoding="utf-8"):
     if found != version:
         print(line.strip())
 PYTHON
-        grep '==' "$root/requirements.txt"
+        grep --no-filename '==' "${requirement_lists[@]}"
 }
 
 # A .venv that was made by hand, or moved with the tree, is good if it is complete.
@@ -195,16 +219,41 @@ is_new_enough() { "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/
 install_python() {
     if [[ -z $system_python ]] && is_new_enough python3; then system_python=python3; fi
     if [[ -z $system_python ]]; then fail "$exit_environment" "$(python_too_old)"; fi
-    say "installing the Python packages of requirements.txt into .venv (log: $setup_log)"
-    rm -f "$venv_record"
+    claim_python
+    say "installing Python packages into .venv (log: $setup_log)"
+    local list wanted=()
+    for list in "${requirement_lists[@]}"; do
+        find_record "$list"
+        rm -f "$record_file"
+        wanted+=(--requirement "$list")
+    done
     if ! "$venv_python" -I -c 'import pip' 2>/dev/null; then
         logged "$system_python" -m venv --clear "$venv" ||
             fail_with_log 'making the Python environment .venv failed'
     fi
-    logged "$venv_python" -m pip install --no-input --disable-pip-version-check \
-        --requirement "$root/requirements.txt" ||
+    logged "$venv_python" -m pip install --no-input --disable-pip-version-check "${wanted[@]}" ||
         fail_with_log 'installing the Python packages failed'
     record_python || fail "$exit_environment" "$venv cannot be written"
+    exec {claim}>&-
+}
+
+# Whoever uses .venv shares a lock of its folder, which is there in a tree that cannot be written,
+# too, and stays the same when the environment in it is made anew.
+
+# From here to the end of this call no other one changes .venv.
+hold_python() {
+    exec {hold}<"$venv"
+    flock --shared "$hold" 2>/dev/null
+    python_is_ready || fail "$exit_environment" '.venv was changed by another call: try again'
+}
+
+# Wait until no other call uses .venv.
+claim_python() {
+    mkdir -p "$venv" && exec {claim}<"$venv" || fail "$exit_environment" "$venv cannot be written"
+    if ! flock --nonblock "$claim" 2>/dev/null; then
+        say 'waiting for other calls that use .venv to finish: it must change'
+        flock "$claim" 2>/dev/null
+    fi
 }
 
 python_too_old() { printf 'Python 3.11 or newer is needed, and here is %s' "$(python3 --version)"; }
@@ -234,7 +283,8 @@ logged() {
     "$@" >>"$setup_log" 2>&1 <&0
 }
 
+# fail_with_log MESSAGE [STATUS]
 fail_with_log() {
     tail -n 25 "$setup_log" >&2
-    fail "$exit_environment" "$1; $setup_log has it all"
+    fail "${2:-$exit_environment}" "$1; $setup_log has it all"
 }

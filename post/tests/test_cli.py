@@ -127,7 +127,9 @@ def test_bad_input_is_one_sentence_and_status_2(
 def test_missing_directory() -> None:
     done = _called("plot", "no/such/place")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "wingcrack plot: no/such/place: there is no such directory.\n"
+    assert done.stderr == (
+        "wingcrack plot: there is no directory no/such/place; ./wingcrack plot --help says more\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -158,7 +160,7 @@ def test_wrong_use_is_one_sentence_and_status_2(
 def test_help_has_an_example() -> None:
     done = _called("plot", "--help")
     assert done.returncode == 0
-    assert "example:\n  wingcrack plot out/wing_crack" in done.stdout
+    assert "example:\n  ./wingcrack plot out/wing_crack" in done.stdout
 
 
 def test_figure_libraries_are_loaded_only_when_needed() -> None:

@@ -9,7 +9,8 @@ import pytest
 
 from synthetic_run import GROWTH_STEP, HOUR, LAST_WING, STEPS, times, wing_length
 from wingcrack_post import read_run
-from wingcrack_post.times import growth_start, parse_times, select_times
+from wingcrack_post.durations import parse_times
+from wingcrack_post.times import growth_start, select_times
 from wingcrack_post.units import area_unit, displacement_unit, time_unit
 
 

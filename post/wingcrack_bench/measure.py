@@ -12,6 +12,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack_bench.arguments import Benchmark
+
 
 class RunFailedError(Exception):
     """A run did not end well; the message is its reason."""
@@ -19,15 +21,6 @@ class RunFailedError(Exception):
 
 class EnvironmentLacksError(Exception):
     """Something that was asked for takes a program that is not there."""
-
-
-@dataclass(frozen=True)
-class Benchmark:
-    """A scene that is measured."""
-
-    name: str
-    scene: Path
-    title: str
 
 
 @dataclass(frozen=True)
@@ -74,16 +67,6 @@ class Measurement:
     def remeshing_share(self) -> float:
         """Share of remeshing and transfer in the CPU time [-]."""
         return (self.phases_s["remesh"] + self.phases_s["transfer"]) / self.cpu_s
-
-
-def read_benchmarks(table: Path, top: Path) -> dict[str, Benchmark]:
-    """Read the list of the benchmarks."""
-    found = {}
-    for line in table.read_text(encoding="utf-8").splitlines():
-        if line and not line.startswith("#"):
-            name, scene, title = (part.strip() for part in line.split("|"))
-            found[name] = Benchmark(name, top / scene, title)
-    return found
 
 
 def measure(

@@ -67,7 +67,8 @@ def _call_child(directory: Path, aside: Path, moment: float) -> subprocess.Compl
         **os.environ,
         "PYTHONPATH": os.pathsep.join(paths),
     }
-    command = [sys.executable, "-m", "wingcrack_post.render"]
+    # -P: no module comes from the folder where the user happens to be
+    command = [sys.executable, "-P", "-m", "wingcrack_post.render"]
     return subprocess.run(
         [*command, str(directory), str(aside), repr(moment)],
         env=environment,

@@ -6,38 +6,18 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
-from pathlib import Path
-from typing import NoReturn
 
+from wingcrack_verify.arguments import parse
 from wingcrack_verify.errors import CaseError, EnvironmentLacksError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
 from wingcrack_verify.report import Report, make_report
 from wingcrack_verify.suite import Suite, judge_suite, read_suite
 
-TOP = Path(__file__).resolve().parents[2]
-
-_EPILOG = """\
-Runs the verification cases, measures their errors and writes verification/report/ with index.html,
-report.pdf and report.json. What has not changed since an earlier call is not run again.
-
-Exit status: 0 all passed or known gaps; 1 a case failed or is in error; 2 bad usage; 3 not built.
-
-example:
-  wingcrack verify --quick
-  wingcrack verify onset_c1 stability
-"""
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        """Say it in one sentence and exit with 2, without the usage lines."""
-        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help.\n")
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
-    given = _parser().parse_args(arguments)
+    given = parse(arguments)
     try:
         suite = read_suite(given.cases, given.names, given.quick)
     except CaseError as reason:
@@ -95,30 +75,3 @@ class _Progress:
             how = f"{outcome.status}: {outcome.reason}"
         place = f"[{self._done:{self._width}}/{self._total}]"
         print(f"{place} {job.case}: {job.run.name}: {how}", flush=True)
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="wingcrack verify",
-        description="Verification cases: errors, orders, run times, stability.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("names", nargs="*", metavar="CASE", help="folders of verification/")
-    parser.add_argument("--quick", action="store_true", help="only the quick cases")
-    parser.add_argument("--jobs", type=_count, default=2, metavar="N", help="runs at a time (2)")
-    for name, path, text in (
-        ("--cases", TOP / "verification", "where the cases are"),
-        ("--build", TOP / "build" / "release", "where the solver was built"),
-        ("--cache", TOP / "build" / "verification", "where the files of the runs are kept"),
-        ("--report", TOP / "verification" / "report", "where the report goes"),
-    ):
-        parser.add_argument(name, type=Path, default=path, metavar="DIR", help=text)
-    return parser
-
-
-def _count(text: str) -> int:
-    number = int(text)
-    if not 1 <= number <= 64:
-        raise argparse.ArgumentTypeError(f"{text} is not a number from 1 to 64")
-    return number

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack_verify.arguments import case_folders
 from wingcrack_verify.case import Case, Run, read_case
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome
@@ -65,22 +66,14 @@ class JudgedSuite:
 
 
 def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
-    """Read the named cases, or all of them.
+    """Read the named cases, all of which are there, or every one.
 
     Raises
     ------
     CaseError
-        If a name is no case; a broken case is part of the suite, and red.
+        If nothing is left to run; a broken case is part of the suite, and red.
     """
-    folders = {
-        path.parent.name: path.parent
-        for pattern in ("*/check.toml", "*/stability.toml")
-        for path in sorted(top.glob(pattern))
-    }
-    for name in names:
-        if name not in folders:
-            there = ", ".join(sorted(folders)) or "none"
-            raise CaseError(f"there is no case '{name}' (there are: {there})")
+    folders = case_folders(top)
     cases: list[Case | BrokenCase] = []
     stability: list[Stability | BrokenCase] = []
     for name in sorted(set(names) or folders):

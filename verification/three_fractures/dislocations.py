@@ -66,7 +66,7 @@ def opening_intensity(length: float, slip: float, pressure: float, lines: int) -
     density = np.linalg.solve(matrix / scale[:, None], right / scale)[:n]
     series = np.polynomial.chebyshev.chebfit(nodes, density, n - 1)
     end = float(np.polynomial.chebyshev.chebval(1.0, series))
-    return -MODULUS * np.sqrt(np.pi / 8.0) * end / np.sqrt(length)
+    return float(-MODULUS * np.sqrt(np.pi / 8.0) * end / np.sqrt(length))
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ program test_app_run
    use testing_files, only: file_exists, file_text
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_defaults, only: resolve_defaults
    use scene_types, only: injection_t, scene_t

@@ -11,7 +11,7 @@ program test_coarse_equations
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_states, only: state_open, state_stick
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells

@@ -1,0 +1,28 @@
+# Steps of a developer's commands, each of which is tried whatever became of those before it.
+# Sourced by the launcher.
+# shellcheck shell=bash
+
+begin_steps() {
+    failed_steps=()
+    steps_tried=0
+    cd "$root" || fail 1 "$root cannot be entered"
+    # As in a run; and the compiled tests take no more of a processor than they are given.
+    export OPENBLAS_NUM_THREADS=1
+}
+
+# step NAME COMMAND...: run it, go on in any case, remember a failure.
+step() {
+    local name=$1
+    shift
+    ((steps_tried += 1))
+    printf '\n== %s\n' "$name"
+    "$@" || failed_steps+=("$name")
+}
+
+# What failed is the last line on stderr.
+end_steps() {
+    if ((${#failed_steps[@]} == 0)); then return; fi
+    local list
+    printf -v list ', %s' "${failed_steps[@]}"
+    fail 1 "failed: ${list:2}"
+}
