@@ -8,7 +8,6 @@ that of the step before it: a walk never goes back up. A walk of a number is a h
 
 import re
 import sys
-from pathlib import Path
 
 from rooms import ROOT, order_of_rooms
 
@@ -26,6 +25,7 @@ def source_of(module: str) -> str | None:
 
 
 def has_word(word: str, text: str) -> bool:
+    """Whether a text holds a word."""
     return re.search(rf"\b{word}\b", text) is not None
 
 
@@ -37,6 +37,7 @@ def is_named(procedure: str, module: str, caller: str) -> bool:
 
 
 def defines(procedure: str, text: str) -> bool:
+    """Whether a procedure of this name stands in a module."""
     return re.search(rf"\b(?:subroutine|function)\s+{procedure}\b", text) is not None
 
 
@@ -56,6 +57,7 @@ class Walks:
         self.above: list[tuple[int, str]] = []  # indentation and module
 
     def step(self, indent: int, module: str, procedure: str | None, number: str | None) -> None:
+        """Judge a step by itself and against the one that it is indented under."""
         self.steps += 1
         text = source_of(module)
         if text is None:
@@ -79,6 +81,7 @@ class Walks:
 
 
 def main() -> int:
+    """Print the faults of all walks; 1 if there are any."""
     walks = Walks()
     number: str | None = None
     for line in (ROOT / "docs" / "architecture.md").read_text().splitlines():
