@@ -155,7 +155,9 @@ contains
          call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
          call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2))
       end associate
-      call summary%count_dofs("windows", simulation%windows%n_unknowns())
+      if (simulation%scene%growth%intensities) then
+         call summary%count_dofs("windows", simulation%windows%n_unknowns())
+      end if
    end subroutine count_unknowns
 
 end module twolevel_results

@@ -79,7 +79,7 @@ contains
       if (allocated(error)) return
       call new_state(self%mesh, self%model%cells, scene%initial%pressure, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
-      call self%windows%begin(self%tip)
+      if (scene%growth%intensities) call self%windows%begin(self%tip)
       allocate (self%grown(0))
    end subroutine mesh_levels
 
