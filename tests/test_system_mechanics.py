@@ -349,6 +349,16 @@ def test_fields_hold_the_elements(tmp_path: Path) -> None:
     assert displacement[corner : corner + 3] == pytest.approx(expected, rel=1e-12)
 
 
+def test_a_traction_of_minus_zero_reads_back(tmp_path: Path) -> None:
+    """The scene that a run writes can be checked and run again."""
+    text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
+    side = "&side name = 'left', normal_traction = -0.0, shear_traction = 0.0 /\n&fe"
+    assert "'left'" not in text
+    out = run(tmp_path, text.replace("&fe", side, 1))
+    done = call(tmp_path, "check", out / "scene.nml")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
