@@ -124,7 +124,6 @@ def header(path: Path) -> list[str]:
     return path.read_text().split("\n", 1)[0].split(",")
 
 
-@pytest.mark.parametrize("which", ["resting", "growing"])
 def test_a_run_ends_with_what_it_was(tmp_path: Path) -> None:
     """Without --quiet the end says why it came, how far the run got, and where the results are."""
     (tmp_path / "small.nml").write_text(SCENE)
@@ -143,6 +142,7 @@ def test_a_run_ends_with_what_it_was(tmp_path: Path) -> None:
     assert record["lowest_pressure_pa"] <= fracture
 
 
+@pytest.mark.parametrize("which", ["resting", "growing"])
 def test_tables_have_their_columns_and_finite_numbers(
     which: str, request: pytest.FixtureRequest
 ) -> None:

@@ -233,7 +233,7 @@ module output_columns
       column_t("steps[].tips", "-", always, "The free tips then, as above")]
 
    type(column_t), parameter :: matrix_fields(*) = [ &
-      column_t("nodal_displacement", "m", without_fluid, "Displacement at the nodes: X, Y, Z"), &
+      column_t("nodal_displacement", "m", always, "Displacement at the nodes: X, Y, Z"), &
       column_t("displacement", "m", always, "Displacement of the cells: X, Y, Z"), &
       column_t("pressure", "Pa", with_fluid, "Pore pressure"), &
       column_t("stress", "Pa", always, "Total stress: XX, YY, ZZ, XY, YZ, XZ"), &

@@ -96,10 +96,13 @@ contains
                     "for each item of a list.", network_keys)
       call describe_words(unit, "joints[].kind", joint_words)
       call describe(unit, "matrix.vtu", "Fields of the rock at the times of fractures.csv, "// &
-                    "unless the scene turns VTU files off: values of the triangles. Without a "// &
-                    "fluid these have six nodes, and those their own displacement. The field "// &
+                    "unless the scene turns VTU files off: values of the triangles, and the "// &
+                    "displacement of their nodes too. Without a fluid these are six to a "// &
+                    "triangle. Every array has its unit as VTK's key `UNITS_LABEL`. The field "// &
                     "data `TimeValue` of each file is its time_s or load_factor.", matrix_fields)
-      call describe(unit, "fractures.vtu", "Fields of the fracture cells.", fracture_fields)
+      call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
+                    "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
+                    "`state_names` the words of states 0, 1 and 2.", fracture_fields)
       call describe(unit, "intersections.vtu", "Fields of the points where fractures meet; "// &
                     "written only if there are any and a fluid.", intersection_fields)
    end subroutine describe_output
