@@ -14,6 +14,8 @@ pytestmark = pytest.mark.usefixtures("program")
 FAULTS = {
     "unknown group": ("&fluid", "&fluit", "&fluit", "the nearest is &fluid"),
     "unknown name": ("young =", "yuong =", "&material", "yuong, the nearest is young"),
+    "unknown group, nothing near": ("&fluid", "&rokc", "&rokc", "unknown group &rokc (see docs"),
+    "beginning of a name": ("dilation_deg", "dilation", "&fracture", "nearest is dilation_deg"),
     "group not ended": ("&fine window = 0.4 /", "&fine window = 0.4", "&fine", "not ended by '/'"),
     "group twice": (
         "&growth",
@@ -39,7 +41,7 @@ FAULTS = {
         "&side name = 'left', x_displacement = 0.0 /",
         "",
         "&side",
-        "x_displacement",
+        "nothing holds the body against moving in x; give a &side an x_displacement",
     ),
     "fracture outside": ("y = 0.96", "y = -0.96", "&fracture", "leaves the domain at (0.964645, -"),
     "unequal lists": ("y = 0.9646446609406726,", "y =", "&fracture", "must have as many as x, 2"),

@@ -161,7 +161,14 @@ def test_load_factor_scales_everything(tmp_path: Path) -> None:
     )
     factors = numbers(out / "history.csv", "load_factor")
     assert factors == [1.5, 2.0, 2.5, 3.0]
-    assert numbers(out / "history.csv", "time_s") == [0.25, 0.5, 0.75, 1.0]
+    assert numbers(out / "tips.csv", "load_factor") == factors
+    assert set(numbers(out / "fractures.csv", "load_factor")) == set(factors)
+    for table in sorted(out.glob("*.csv")):
+        assert "time_s" not in table.read_text().splitlines()[0], table.name
+    network = json.loads((out / "network.json").read_text())
+    assert [step["load_factor"] for step in network["steps"]] == [1.0]
+    times = re.findall(r'timestep="([^"]*)"', (out / "matrix.pvd").read_text())
+    assert [float(time) for time in times] == factors
     intensities = numbers(out / "tips.csv", "k1_pa_sqrtm")
     energies = numbers(out / "history.csv", "strain_energy_j")
     for factor, k1, energy in zip(factors, intensities, energies, strict=True):
@@ -347,6 +354,16 @@ def test_fields_hold_the_elements(tmp_path: Path) -> None:
     (probe,) = rows(out / "probes.csv")
     expected = [float(probe["corner_ux_m"]), float(probe["corner_uy_m"]), 0.0]
     assert displacement[corner : corner + 3] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_traction_of_minus_zero_reads_back(tmp_path: Path) -> None:
+    """The scene that a run writes can be checked and run again."""
+    text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
+    side = "&side name = 'left', normal_traction = -0.0, shear_traction = 0.0 /\n&fe"
+    assert "'left'" not in text
+    out = run_text(tmp_path, text.replace("&fe", side, 1))
+    done = call(tmp_path, "check", out / "scene.nml")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(

@@ -8,15 +8,19 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
+import pyvista
 from system_scene import GROWING, TOP, run
+from vtkmodules.vtkCommonCore import vtkDataArray
 
 pytestmark = pytest.mark.usefixtures("program")
 
 PROBES = ("inside", "corner")
-FLUID = {"always", "with a fluid", "with a fluid and fractures"}
+FLUID = {"always", "with a fluid", "with a fluid and fractures", "with tips and a toughness"}
 MECHANICS = {
     "always",
+    "with tips and a toughness",
     "without a fluid",
     "without a fluid, with growth",
     "without a fluid, with &adaptive",
@@ -164,6 +168,25 @@ def test_fields(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set
             fields = re.findall(r'Name="(\w+)"', head.decode())
             assert fields == names(described[f"{dimension}.vtu"], runs)
     assert not list((out / "vtu").glob("intersections_*"))  # no run has them yet
+
+
+def test_paraview_finds_units_and_names(out_and_runs: tuple[Path, set[str]]) -> None:
+    out, _ = out_and_runs
+    last = sorted((out / "vtu").glob("fractures_*.vtu"))[-1]
+    grid = pyvista.read(last)
+    scene = (out / "scene.nml").read_text()
+    assert [f"name = '{name}'" in scene for name in grid.field_data["fracture_names"]] == [True]
+    assert list(grid.field_data["state_names"]) == ["stick", "slip", "open"]
+    key = vtkDataArray.UNITS_LABEL()
+    units = {"traction": "Pa", "jump": "m", "fracture": None}
+    for name, unit in units.items():
+        information = grid.GetCellData().GetArray(name).GetInformation()
+        assert information.Get(key) == unit
+    rock = pyvista.read(out / "vtu" / last.name.replace("fractures", "matrix"))
+    moved = rock.point_data["nodal_displacement"]
+    means = np.array([moved[cell.point_ids[:3]].mean(axis=0) for cell in rock.cell])
+    error = np.abs(means - rock.cell_data["displacement"]).max()
+    assert error < 0.05 * np.abs(moved).max()
 
 
 def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str]]) -> None:

@@ -124,6 +124,24 @@ def header(path: Path) -> list[str]:
     return path.read_text().split("\n", 1)[0].split(",")
 
 
+def test_a_run_ends_with_what_it_was(tmp_path: Path) -> None:
+    """Without --quiet the end says why it came, how far the run got, and where the results are."""
+    (tmp_path / "small.nml").write_text(SCENE)
+    done = call(tmp_path, "run", "small.nml", "--out", "out", "--no-plot")
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert lines[0] == "finished: the scene's end time"
+    assert lines[1].startswith("reached 18000 s in 5 steps, ")
+    assert lines[2] == "fractures are 0.1 m long; nothing has grown"
+    assert lines[-1] == "results in out"
+    record = json.loads((tmp_path / "out" / "run.json").read_text())
+    keq = max(numbers(tmp_path / "out" / "tips.csv", "keq_pa_sqrtm"))
+    assert record["keq_over_kic"] == pytest.approx(keq / 0.3e6, rel=1e-12)
+    assert lines[3] == f"largest K_eq/K_IC {record['keq_over_kic']:.4g}"
+    fracture = min(numbers(tmp_path / "out" / "fractures.csv", "pressure_pa"))
+    assert record["lowest_pressure_pa"] <= fracture
+
+
 @pytest.mark.parametrize("which", ["resting", "growing"])
 def test_tables_have_their_columns_and_finite_numbers(
     which: str, request: pytest.FixtureRequest

@@ -8,8 +8,9 @@ module app_geometry
    use mechanics_body, only: body_spec
    use mechanics_outline, only: scene_corner, scene_edge
    use mesh_builder, only: mesh_spec_t
-   use mesh_check, only: check_mesh_input, culprit_corner, culprit_edge, culprit_fixed_point, &
-                         culprit_fracture, culprit_t, fault_t, joint_t
+   use mesh_check, only: check_mesh_input, joint_t
+   use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
+                          culprit_t, fault_t, with_name
    use mesh_types, only: network_t
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t
@@ -133,16 +134,5 @@ contains
          name = "something"
       end select
    end subroutine identify
-
-   !> A text with a mark replaced, where it stands.
-   pure function with_name(text, mark, name) result(whole)
-      character(len=*), intent(in) :: text, mark, name
-      character(len=:), allocatable :: whole
-      integer :: at
-
-      whole = text
-      at = index(text, mark)
-      if (at > 0) whole = text(:at - 1)//name//text(at + len(mark):)
-   end function with_name
 
 end module app_geometry

@@ -58,6 +58,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(history_row_t) :: row
       type(probe_row_t) :: probes
+      character(len=:), allocatable :: log_line
       logical :: has_fluid
 
       has_fluid = simulation%scene%has_fluid()
@@ -76,12 +77,15 @@ contains
       call self%files%history_row(row)
       call self%files%tick(error)
       call self%progress%show(progress_values_t( &
-                              time=row%time, time_end=simulation%end_time, &
-                              step=simulation%summary%steps, &
-                              newton_iterations=row%newton_iterations, n_stick=row%n_stick, &
+                              share=simulation%share_done(), time=row%time, &
+                              step=simulation%summary%steps, n_stick=row%n_stick, &
                               n_slip=row%n_slip, n_open=row%n_open, &
-                              fracture_length=row%fracture_length, is_load=.not. has_fluid, &
-                              load_factor=row%load_factor, n_tips=row%n_tips))
+                              fracture_length=row%fracture_length, &
+                              has_well=size(simulation%scene%injections) > 0, &
+                              well_pressure=row%well_pressure, &
+                              keq_over_kic=simulation%keq_over_kic(), is_load=.not. has_fluid), &
+                              log_line)
+      if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
 
    !> What has happened since the last time.

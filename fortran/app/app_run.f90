@@ -3,12 +3,17 @@ module app_run
    use app_journal, only: journal_t
    use app_process, only: interrupted
    use base_errors, only: error_t
+   use base_kinds, only: rk
+   use base_texts, only: text_t
    use base_timers, only: phase_output, timers_t
+   use growth_network, only: total_length
    use mechanics_simulation, only: mechanics_simulation_t
+   use output_closing, only: closing_lines
    use output_record, only: run_record_t, status_failed, status_finished, status_stopped
    use scene_types, only: scene_t
    use simulation_types, only: simulation_t
    use twolevel_simulation, only: twolevel_simulation_t
+   use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none(type, external)
    private
 
@@ -66,10 +71,39 @@ contains
          record%status = status_finished
          record%reason = simulation%ending
       end if
-      call journal%files%log(record%status//": "//record%reason)
+      call journal%files%log(record%status//": "//record%reason//origin_text(error))
       call journal%files%close(record, timers, trouble)
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      if (.not. quiet) call say_closing(simulation, record, timers%wall_seconds(), directory)
    end subroutine run_scene
+
+   !> Where an error comes from, for the log.
+   pure function origin_text(error) result(text)
+      type(error_t), allocatable, intent(in) :: error
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (.not. allocated(error)) return
+      if (len(error%origin) > 0) text = " (in "//error%origin//")"
+   end function origin_text
+
+   !> Say what the run was.
+   subroutine say_closing(simulation, record, seconds, directory)
+      class(simulation_t), intent(in) :: simulation
+      type(run_record_t), intent(in) :: record
+      real(rk), intent(in) :: seconds  !< wall time of the run [s]
+      character(len=*), intent(in) :: directory
+      type(text_t), allocatable :: lines(:)
+      real(rk) :: length
+      integer :: i
+
+      length = total_length(simulation%network)
+      lines = closing_lines(record, simulation%last_state(), length, &
+                            length - total_length(simulation%start), seconds, directory)
+      do i = 1, size(lines)
+         write (output_unit, "(a)") lines(i)%text
+      end do
+   end subroutine say_closing
 
    !> From state to state until the scene is over, something fails or the user interrupts.
    subroutine march(simulation, journal, timers, error)

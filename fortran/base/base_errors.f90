@@ -7,23 +7,21 @@ module base_errors
 
    !> A reason why the work could not be done; unallocated means success.
    type :: error_t
-      character(len=:), allocatable :: message
+      character(len=:), allocatable :: message  !< for users
+      character(len=:), allocatable :: origin  !< procedure that gave up; may be empty
    end type error_t
 
 contains
 
-   !> Raise an error: where it happened, then what the user can do about it.
+   !> Raise an error: what the user can do about it, and for the log where it happened.
    pure subroutine raise_error(error, origin, message)
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: origin  !< procedure that gives up; empty: written for users
+      character(len=*), intent(in) :: origin  !< procedure that gives up; may be empty
       character(len=*), intent(in) :: message  !< the offending value and the remedy
 
       allocate (error)
-      if (len(origin) > 0) then
-         error%message = origin//": "//message
-      else
-         error%message = message
-      end if
+      error%message = message
+      error%origin = origin
    end subroutine raise_error
 
 end module base_errors

@@ -6,12 +6,13 @@ module fine_boundary
    use base_errors, only: error_t, raise_error
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
+   use base_number, only: brief_text
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
 
    public :: add_point_force, add_side_pressure, add_side_stress, add_side_traction
-   public :: check_boundary, check_support
+   public :: check_boundary, check_support, find_loose
    public :: clamped_boundary, fine_boundary_t, free_boundary, hold_side, nearest_node
 
    !> What is given on the outer boundary, or anywhere else; the values belong to the loads.
@@ -163,19 +164,32 @@ contains
 
    !> Refuse a body, or a piece of it, that could move as a rigid one: what has no given
    !! displacements that exclude it has no unique solution.
-   !!
-   !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
    pure subroutine check_support(fine, boundary, bonds, error)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
       integer(ik), intent(in) :: bonds(:, :)  !< (2, n) pairs of nodes
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: place
+
+      call find_loose(fine, boundary, bonds, place)
+      if (.not. allocated(place)) return
+      call raise_error(error, "check_support", "the piece of the body at "//place// &
+                       " can move freely; give more displacements on its boundary")
+   end subroutine check_support
+
+   !> Find a piece of the body that the given displacements leave a rigid motion.
+   !!
+   !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
+   pure subroutine find_loose(fine, boundary, bonds, place)
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t), intent(in) :: boundary
+      integer(ik), intent(in) :: bonds(:, :)  !< (2, n) pairs of nodes
+      character(len=:), allocatable, intent(out) :: place  !< a point of it; unallocated: none
       type(groups_t) :: pieces
       integer(ik) :: piece(fine%n_nodes)
       real(rk), allocatable :: held(:, :, :)
       real(rk) :: centre(2), reach, row(3)
       integer(ik) :: cell, component, k, node
-      character(len=48) :: place
 
       pieces = single_groups(fine%n_nodes)
       do cell = 1, fine%n_cells
@@ -206,12 +220,10 @@ contains
       do k = 1, size(held, 3)
          if (is_definite(held(:, :, k))) cycle
          node = findloc(piece, k, dim=1)
-         write (place, "(2(a,es12.5),a)") "(", fine%xy(1, node), ", ", fine%xy(2, node), ")"
-         call raise_error(error, "check_support", "the piece of the body at "//trim(place)// &
-                          " can move freely; give more displacements on its boundary")
+         place = "("//brief_text(fine%xy(1, node), 6)//", "//brief_text(fine%xy(2, node), 6)//")"
          return
       end do
-   end subroutine check_support
+   end subroutine find_loose
 
    !> Whether a symmetric matrix is positive definite, by Cholesky's elimination.
    pure logical function is_definite(matrix)

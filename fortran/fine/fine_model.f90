@@ -3,7 +3,8 @@ module fine_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use algebra_mumps, only: mumps_definite, mumps_t
-   use fine_boundary, only: check_boundary, check_support, clamped_boundary, fine_boundary_t
+   use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
+                            fine_boundary_t
    use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
                            set_contact_problem, solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t
@@ -299,11 +300,22 @@ contains
       call close_joints(self%contact_problem, load)
       call solve_contact(self%contact_problem, load(1, :), given_jump, contact, jump, reason)
       if (allocated(reason)) then
-         call raise_error(error, "fine_model_t%solve", "contact: "//reason)
+         call raise_error(error, "fine_model_t%solve", "contact: "//reason//loose_place(self))
          return
       end if
       call self%solver%expand(jump, x(:, 1), error)
    end subroutine solve_unknowns
+
+   !> Where a piece is that nothing but contact holds, for messages; empty if there is none.
+   pure function loose_place(self) result(words)
+      class(fine_model_t), intent(in) :: self
+      character(len=:), allocatable :: words, place
+      integer(ik) :: no_bonds(2, 0)
+
+      words = ""
+      call find_loose(self%mesh, self%boundary, no_bonds, place)
+      if (allocated(place)) words = " (only contact holds the piece at "//place//")"
+   end function loose_place
 
    !> Nodal forces of all loads. Contact tractions that belong to the solution are not among them.
    pure function external_forces(self, loads) result(force)

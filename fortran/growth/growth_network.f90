@@ -20,10 +20,11 @@ contains
 
       n = 0
       if (allocated(scene%fractures)) n = size(scene%fractures)
-      allocate (network%first(n + 1), network%s_start(n))
+      allocate (network%first(n + 1), network%s_start(n), network%names(n))
       network%s_start = 0.0_rk
       network%first(1) = 1
       do f = 1, n
+         network%names(f)%text = trim(scene%fractures(f)%name)
          network%first(f + 1) = network%first(f) + size(scene%fractures(f)%x)
       end do
       allocate (network%xy(2, network%first(n + 1) - 1))

@@ -19,7 +19,7 @@ module mechanics_results
 
 contains
 
-   !> The row of history.csv; its dt is left to the caller.
+   !> The row of history.csv.
    function history_of_body(simulation) result(row)
       class(loaded_body_t), intent(in) :: simulation
       type(history_row_t) :: row
@@ -28,7 +28,6 @@ contains
 
       associate (body => simulation%body, fracture => simulation%body%mesh%fracture)
          row%time = simulation%time()
-         row%load_factor = simulation%factor
          row%strain_energy = body%model%strain_energy(body%displacement)
          row%fracture_length = total_length(simulation%network)
          row%seismic_moment = simulation%seismic_moment()

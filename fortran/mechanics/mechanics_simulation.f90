@@ -21,8 +21,7 @@ module mechanics_simulation
    type, extends(loaded_body_t) :: mechanics_simulation_t
       integer(ik) :: step = 1  !< of the programme, in which the load rises
       logical :: has_onset = .false.  !< growth has stopped the rise
-      real(rk) :: time_before = 0.0_rk  !< of the state before the present one [s]
-      real(rk) :: accepted_time = 0.0_rk  !< of the present or last accepted state [s]
+      real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
       type(snapshot_t), allocatable :: good  !< of the last accepted state
       logical :: is_good = .false.  !< the present state is in equilibrium, not one on the way
    contains
@@ -46,7 +45,9 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      self%end_time = 1.0_rk
+      self%start_time = scene%load%from
+      self%end_time = scene%load%to
+      self%accepted_factor = scene%load%from
       call self%mesh_body(scene, timers, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
@@ -100,8 +101,7 @@ contains
       if (allocated(error)) return
       self%is_good = .true.
       self%shows_state = .not. self%has_onset
-      self%time_before = self%accepted_time
-      self%accepted_time = self%time()
+      self%accepted_factor = self%factor
       call note_state(self)
    end subroutine next_state
 
@@ -182,7 +182,6 @@ contains
       type(history_row_t) :: row
 
       row = history_of_body(self)
-      row%dt = row%time - self%time_before
    end function history
 
    !> Displacement and stress at the probes.
@@ -207,13 +206,11 @@ contains
       end if
    end subroutine snapshot
 
-   !> The programme's parameter: 0 at the start, 1 at the end [s].
+   !> What stands for the time: the load factor [-].
    pure real(rk) function time(self)
       class(mechanics_simulation_t), intent(in) :: self
 
-      associate (load => self%scene%load)
-         time = (self%factor - load%from)/(load%to - load%from)
-      end associate
+      time = self%factor
    end function time
 
    !> The last accepted load factor.
@@ -221,9 +218,7 @@ contains
       class(mechanics_simulation_t), intent(in) :: self
       character(len=:), allocatable :: words
 
-      associate (load => self%scene%load)
-         words = "load factor "//brief_text(load%from + self%accepted_time*(load%to - load%from), 6)
-      end associate
+      words = "load factor "//brief_text(self%accepted_factor, 6)
    end function last_state
 
 end module mechanics_simulation

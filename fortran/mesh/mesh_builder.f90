@@ -5,7 +5,8 @@ module mesh_builder
    use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_grow, cm_locate, &
                              cm_network_t, cm_quality, cm_remesh, cm_spec_t
    use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
-   use mesh_c_outputs, only: copy_map, copy_mesh, raise_library_error
+   use mesh_c_outputs, only: copy_map, copy_mesh
+   use mesh_faults, only: raise_library_error
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    implicit none(type, external)
@@ -46,7 +47,7 @@ contains
       if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
       if (allocated(error)) return
       if (cm_create(c_spec, c_network, mesher%handle) /= 0) then
-         call raise_library_error(error, "build_mesh")
+         call raise_library_error(error, "build_mesh", network)
          return
       end if
       call copy_mesh(mesher%handle, mesh, error)
@@ -79,7 +80,7 @@ contains
       if (allocated(error)) return
       if (cm_create_sized(c_spec, c_network, mesher_old%handle, ubound(cell_size, 1), cell_size, &
                           mesher_new%handle) /= 0) then
-         call raise_library_error(error, "build_mesh_sized")
+         call raise_library_error(error, "build_mesh_sized", network)
          return
       end if
       call copy_mesh(mesher_new%handle, mesh, error)
@@ -111,7 +112,7 @@ contains
       status = cm_remesh(mesher_old%handle, c_network, int(ubound(centres, 2), ik), centres, &
                          radius, size, mesher_new%handle)
       if (status /= 0) then
-         call raise_library_error(error, "remesh")
+         call raise_library_error(error, "remesh", network)
          return
       end if
       call copy_mesh(mesher_new%handle, mesh, error)
@@ -144,7 +145,7 @@ contains
          return
       end if
       if (cm_grow(mesher_old%handle, c_network, c_loc(end_radius), mesher_new%handle) /= 0) then
-         call raise_library_error(error, "grow_mesh")
+         call raise_library_error(error, "grow_mesh", network)
          return
       end if
       call copy_mesh(mesher_new%handle, mesh, error)

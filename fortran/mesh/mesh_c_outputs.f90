@@ -1,15 +1,15 @@
-!> What comes from the C++ mesh library: meshes, maps and messages; indices become Fortran's.
+!> What comes from the C++ mesh library: meshes and maps; indices become Fortran's.
 module mesh_c_outputs
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik
-   use mesh_c_binding, only: c_string_length, cm_arrays_t, cm_copy, cm_counts_t, cm_last_error, &
-                             cm_map_copy, cm_map_sizes, cm_sizes
+   use mesh_c_binding, only: cm_arrays_t, cm_copy, cm_counts_t, cm_map_copy, cm_map_sizes, cm_sizes
+   use mesh_faults, only: raise_library_error
    use mesh_types, only: mesh_map_t, mesh_t
-   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_loc, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
    implicit none(type, external)
    private
 
-   public :: copy_map, copy_mesh, raise_library_error, text_of
+   public :: copy_map, copy_mesh
 
 contains
 
@@ -137,28 +137,5 @@ contains
       map%overlap_cell = map%overlap_cell + 1
       map%fracture_cell_old = map%fracture_cell_old + 1
    end subroutine copy_map
-
-   !> Pass on what the library says.
-   subroutine raise_library_error(error, origin)
-      type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: origin
-
-      call raise_error(error, origin, text_of(cm_last_error()))
-   end subroutine raise_library_error
-
-   !> A text of C, which a null character ends.
-   function text_of(start) result(text)
-      type(c_ptr), intent(in) :: start
-      character(len=:), allocatable :: text
-      character(kind=c_char), pointer :: characters(:)
-      integer :: i, n
-
-      n = int(c_string_length(start))
-      call c_f_pointer(start, characters, [n])
-      allocate (character(len=n) :: text)
-      do i = 1, n
-         text(i:i) = characters(i)
-      end do
-   end function text_of
 
 end module mesh_c_outputs

@@ -2,36 +2,14 @@
 module mesh_check
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use mesh_c_binding, only: cm_check, cm_fault_t, cm_joint_t, cm_last_fault, cm_network_t, &
-                             cm_spec_t
+   use mesh_c_binding, only: cm_check, cm_joint_t, cm_network_t, cm_spec_t
    use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
-   use mesh_c_outputs, only: text_of
+   use mesh_faults, only: fault_t, last_fault
    use mesh_types, only: network_t
    implicit none(type, external)
    private
 
-   public :: culprit_t, fault_t, joint_t
-   public :: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture
-   public :: check_mesh_input
-
-   ! Kinds of culprits, as cm_culprit_kind of c_api.h.
-   integer(ik), parameter :: culprit_fracture = 1
-   integer(ik), parameter :: culprit_corner = 2  !< of the specification's boundary
-   integer(ik), parameter :: culprit_edge = 3  !< from the corner of the same number
-   integer(ik), parameter :: culprit_fixed_point = 4
-
-   !> One of the inputs.
-   type :: culprit_t
-      integer(ik) :: kind = 0  !< culprit_fracture .. culprit_fixed_point
-      integer(ik) :: number = 0  !< which of them
-   end type culprit_t
-
-   !> What stands in the way of meshing.
-   type :: fault_t
-      type(culprit_t), allocatable :: culprits(:)  !< at most two, the one to blame first
-      !> A sentence in which {1} and {2} stand for the culprits
-      character(len=:), allocatable :: reason
-   end type fault_t
+   public :: check_mesh_input, joint_t
 
    !> A place inside the body where fractures meet.
    type :: joint_t
@@ -79,17 +57,5 @@ contains
          joints(i) = joint_t(fractures=found(i)%fracture + 1, xy=[found(i)%x, found(i)%y])
       end do
    end subroutine check_mesh_input
-
-   !> What the library has refused.
-   function last_fault() result(fault)
-      type(fault_t) :: fault
-      type(cm_fault_t) :: last
-
-      call cm_last_fault(last)
-      allocate (fault%culprits(last%n_culprits))
-      fault%culprits%kind = last%culprit_kind(:last%n_culprits)
-      fault%culprits%number = last%culprit(:last%n_culprits) + 1
-      fault%reason = text_of(last%reason)
-   end function last_fault
 
 end module mesh_check

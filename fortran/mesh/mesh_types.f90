@@ -6,6 +6,7 @@
 module mesh_types
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   use base_texts, only: text_t
    implicit none(type, external)
    private
 
@@ -29,6 +30,7 @@ module mesh_types
       real(rk), allocatable :: xy(:, :)  !< (2, n_vertices) [m]
       !> (n) arc length of the first vertex [m]; below 0 after growth there
       real(rk), allocatable :: s_start(:)
+      type(text_t), allocatable :: names(:)  !< (n) for messages; may be left out
    end type network_t
 
    !> The fractures' own mesh, one dimension lower. Cells are stored along each fracture's

@@ -8,7 +8,8 @@ module output_columns
    implicit none(type, external)
    private
 
-   public :: always, with_error, with_fluid, with_fractures, with_growth, without_fluid
+   public :: always, with_error, with_fluid, with_fractures, with_growth, with_toughness
+   public :: without_fluid
    public :: applies, column_t, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns, tip_columns
    public :: fracture_fields, intersection_fields, matrix_fields
@@ -21,6 +22,7 @@ module output_columns
    character(len=*), parameter :: with_fractures = "with a fluid and fractures"
    character(len=*), parameter :: without_fluid = "without a fluid"
    character(len=*), parameter :: with_growth = "without a fluid, with growth"
+   character(len=*), parameter :: with_toughness = "with tips and a toughness"
    character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
 
    !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
@@ -41,8 +43,9 @@ module output_columns
    ! The tables keep their own layout.
    !&<
    type(column_t), parameter :: history_columns(*) = [ &
-      column_t("time_s", "s", always, "Time; without a fluid the share of the load programme"), &
-      column_t("dt_s", "s", always, "Length of the step: time_s since the row before"), &
+      column_t("time_s", "s", with_fluid, "Time"), &
+      column_t("load_factor", "-", without_fluid, "Factor on the loads of the scene"), &
+      column_t("dt_s", "s", with_fluid, "Length of the step: time_s since the row before"), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem in the step"), &
       column_t("well_pressure_pa", "Pa", with_fluid, &
                "Fluid pressure, mean over the fracture cells of the wells; 0 without a well"), &
@@ -67,11 +70,11 @@ module output_columns
       column_t("n_intersections", "-", always, "Points where fractures meet"), &
       column_t("seismic_moment_nm", "N m/m", always, &
                "Shear modulus times the slip of all cells so far times their length"), &
-      column_t("load_factor", "-", without_fluid, "Factor on the loads of the scene"), &
       column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body")]
 
    type(column_t), parameter :: tip_columns(*) = [ &
-      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
+      column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("tip", "-", always, "Number of the tip, from 1"), &
       column_t("fracture", "-", always, "Number of its fracture, from 1 in the scene's order"), &
       column_t("x_m", "m", always, "Place of the tip, before it grew"), &
@@ -102,7 +105,8 @@ module output_columns
                "k2_pa_sqrtm with what the mesh lacks added, where that is known; else the same")]
 
    type(column_t), parameter :: fracture_columns(*) = [ &
-      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
+      column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("fracture", "-", always, "Number of the fracture, from 1 in the scene's order"), &
       column_t("s_m", "m", always, &
                "Arc length of the cell's middle along the fracture; below 0 where it grew at "// &
@@ -117,9 +121,10 @@ module output_columns
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
       column_t("state", "-", always, "State of contact")]
 
-   !> NAME stands for each probe's name; all but the time repeat for each probe.
+   !> NAME stands for each probe's name; all but the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
-      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
+      column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("NAME_p_pa", "Pa", with_fluid, "Pore pressure"), &
       column_t("NAME_ux_m", "m", always, "Displacement in x"), &
       column_t("NAME_uy_m", "m", always, "Displacement in y"), &
@@ -128,7 +133,8 @@ module output_columns
       column_t("NAME_sxy_pa", "Pa", always, "Total stress xy")]
 
    type(column_t), parameter :: event_columns(*) = [ &
-      column_t("time_s", "s", always, "Time, as in history.csv"), &
+      column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
+      column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("kind", "-", always, "What happened"), &
       column_t("fracture", "-", always, "Number of the fracture; empty where none is concerned"), &
       column_t("x_m", "m", always, "Where; empty where that has no meaning"), &
@@ -173,6 +179,10 @@ module output_columns
                "Largest mass_error_relative of history.csv; 0 without a fluid"), &
       column_t("contact_residual", "-", always, &
                "Largest relative residual of the contact problem at an accepted state"), &
+      column_t("keq_over_kic", "-", with_toughness, &
+               "Largest keq_pa_sqrtm of tips.csv over the toughness"), &
+      column_t("lowest_pressure_pa", "Pa", with_fluid, &
+               "Lowest fluid pressure of all cells and accepted states"), &
       column_t("condition_estimate", "-", with_fractures, &
                "Largest estimated condition number of the Newton matrices"), &
       column_t("forward_error_bound", "-", with_fractures, &
@@ -211,17 +221,19 @@ module output_columns
       column_t("joints", "-", always, &
                "Points where fractures meet each other or the boundary; may be empty"), &
       column_t("joints[].kind", "-", always, "How they meet"), &
-      column_t("joints[].time_s", "s", always, "Time when that was first so"), &
+      column_t("joints[].time_s", "s", with_fluid, "Time when that was first so"), &
+      column_t("joints[].load_factor", "-", without_fluid, "Load factor when that was first so"), &
       column_t("joints[].x_m", "m", always, "Place of the joint"), &
       column_t("joints[].y_m", "m", always, "Place of the joint"), &
       column_t("joints[].fractures", "-", always, "Numbers of the fractures, each once"), &
       column_t("steps", "-", always, "The network whenever it changed, the first one included"), &
-      column_t("steps[].time_s", "s", always, "Time of the change"), &
+      column_t("steps[].time_s", "s", with_fluid, "Time of the change"), &
+      column_t("steps[].load_factor", "-", without_fluid, "Load factor of the change"), &
       column_t("steps[].fractures", "-", always, "The fractures then, as above"), &
       column_t("steps[].tips", "-", always, "The free tips then, as above")]
 
    type(column_t), parameter :: matrix_fields(*) = [ &
-      column_t("nodal_displacement", "m", without_fluid, "Displacement at the nodes: X, Y, Z"), &
+      column_t("nodal_displacement", "m", always, "Displacement at the nodes: X, Y, Z"), &
       column_t("displacement", "m", always, "Displacement of the cells: X, Y, Z"), &
       column_t("pressure", "Pa", with_fluid, "Pore pressure"), &
       column_t("stress", "Pa", always, "Total stress: XX, YY, ZZ, XY, YZ, XZ"), &

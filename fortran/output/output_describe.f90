@@ -34,10 +34,10 @@ module output_describe
       "* Fractures and tips are numbered from 1.", &
       "* A scene with `&fluid` is a run with a fluid, one without is mechanics only. The column", &
       "  `in runs` below says in which of them a column, key or field is written.", &
-      "* Without a fluid there is no time: `time_s` is the share of the load programme that is", &
-      "  done, from 0 at `from` to 1 at `to` of `&load`, and `load_factor` in history.csv is the", &
-      "  factor itself. The rows of the other tables belong to the row of history.csv that has", &
-      "  the same `time_s`.", &
+      "* Without a fluid there is no time: `load_factor`, the factor on the loads of the scene,", &
+      "  stands in its place in all tables, in network.json and as the time of the VTU files.", &
+      "* The rows of the other tables belong to those of history.csv that have the same `time_s`", &
+      "  or `load_factor`.", &
       "* Files are whole at any time: they are written aside and renamed, the tables every few", &
       "  seconds while a run goes on, run.json last.", &
       "", &
@@ -96,10 +96,13 @@ contains
                     "for each item of a list.", network_keys)
       call describe_words(unit, "joints[].kind", joint_words)
       call describe(unit, "matrix.vtu", "Fields of the rock at the times of fractures.csv, "// &
-                    "unless the scene turns VTU files off: values of the triangles. Without a "// &
-                    "fluid these have six nodes, and those their own displacement. The field "// &
-                    "data `TimeValue` of each file is its time_s.", matrix_fields)
-      call describe(unit, "fractures.vtu", "Fields of the fracture cells.", fracture_fields)
+                    "unless the scene turns VTU files off: values of the triangles, and the "// &
+                    "displacement of their nodes too. Without a fluid these are six to a "// &
+                    "triangle. Every array has its unit as VTK's key `UNITS_LABEL`. The field "// &
+                    "data `TimeValue` of each file is its time_s or load_factor.", matrix_fields)
+      call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
+                    "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
+                    "`state_names` the words of states 0, 1 and 2.", fracture_fields)
       call describe(unit, "intersections.vtu", "Fields of the points where fractures meet; "// &
                     "written only if there are any and a fluid.", intersection_fields)
    end subroutine describe_output

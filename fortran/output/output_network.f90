@@ -27,6 +27,7 @@ module output_network
    type :: network_record_t
       character(len=:), allocatable, private :: path
       type(text_t), allocatable, private :: names(:)  !< of the fractures
+      character(len=:), allocatable, private :: clock  !< key of the times
       type(network_t), private :: network  !< as last seen
       type(fracture_mesh_t), private :: mesh  !< as last seen
       type(joint_t), allocatable, private :: joints(:)
@@ -41,11 +42,14 @@ module output_network
 contains
 
    !> Begin a record.
-   subroutine open_record(self, path, names)
+   subroutine open_record(self, path, names, has_fluid)
       class(network_record_t), intent(out) :: self
       character(len=*), intent(in) :: path
       type(text_t), intent(in) :: names(:)  !< of the fractures
+      logical, intent(in) :: has_fluid  !< else times are load factors
 
+      self%clock = "load_factor"
+      if (has_fluid) self%clock = "time_s"
       self%path = path
       self%names = names
       allocate (self%joints(0))
@@ -65,7 +69,7 @@ contains
       call note_joints(self, time)
       call json%keep_on_one_line()
       call json%begin_object("")
-      call json%add("time_s", time)
+      call json%add(self%clock, time)
       call add_fractures(json, self)
       call add_tips(json, self)
       call json%end_object()
@@ -89,7 +93,7 @@ contains
       do i = 1, size(self%joints)
          call json%begin_object("")
          call json%add("kind", joint_name(self%joints(i)%kind))
-         call json%add("time_s", self%joints(i)%time)
+         call json%add(self%clock, self%joints(i)%time)
          call json%add("x_m", self%joints(i)%xy(1))
          call json%add("y_m", self%joints(i)%xy(2))
          call json%add("fractures", self%joints(i)%fractures)

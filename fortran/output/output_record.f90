@@ -54,6 +54,10 @@ contains
       call json%add("peak_memory_mb", peak_memory_mb())
       call json%add("mass_error_relative", self%mass_error_relative)
       call json%add("contact_residual", self%contact_residual)
+      if (self%keq_over_kic > 0.0_rk) call json%add("keq_over_kic", self%keq_over_kic)
+      if (self%lowest_pressure < huge(1.0_rk)) then
+         call json%add("lowest_pressure_pa", self%lowest_pressure)
+      end if
       if (self%condition_estimate > 0.0_rk) then
          call json%add("condition_estimate", self%condition_estimate)
          call json%add("forward_error_bound", self%forward_error_bound)

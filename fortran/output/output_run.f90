@@ -105,7 +105,7 @@ contains
             call add_text(names, trim(scene%fractures(i)%name))
          end do
       end if
-      call self%network%open(self%directory//"/network.json", names)
+      call self%network%open(self%directory//"/network.json", names, fluid)
    end subroutine open_run
 
    !> Add an accepted step to history.csv.

@@ -3,10 +3,13 @@
 module output_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: add_text, text_t
+   use contact_states, only: state_name, state_open, state_stick
    use mesh_types, only: fracture_mesh_t, mesh_t
    use output_tensors, only: displacement_3d, permeability_tensor, stress_tensor, &
                              tensor_components
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use output_columns, only: fracture_fields, intersection_fields, matrix_fields
    use output_files, only: make_directory, remove_file
    use output_pvd, only: collection_t
    use output_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
@@ -25,6 +28,7 @@ module output_snapshots
       integer :: n_written = 0  !< times
       character(len=:), allocatable, private :: directory
       type(material_t), private :: material
+      type(text_t), allocatable, private :: names(:)  !< of the fractures
       type(collection_t), private :: collections(3)
    contains
       procedure :: open => open_snapshots
@@ -44,6 +48,12 @@ contains
 
       self%directory = directory
       self%material = scene%material
+      allocate (self%names(0))
+      if (allocated(scene%fractures)) then
+         do i = 1, size(scene%fractures)
+            call add_text(self%names, trim(scene%fractures(i)%name))
+         end do
+      end if
       call remove_earlier(directory)
       do i = 1, 3
          call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd")
@@ -65,7 +75,7 @@ contains
       call fill_matrix(grid, time, mesh, matrix, self%material)
       call write_one(self, 1, time, grid, error)
       if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
-         call fill_fractures(grid, time, mesh%fracture, fracture)
+         call fill_fractures(grid, time, mesh%fracture, fracture, self%names)
          call write_one(self, 2, time, grid, error)
       end if
       if (.not. allocated(error) .and. allocated(intersections%point)) then
@@ -112,10 +122,12 @@ contains
 
       if (allocated(fields%cell_nodes)) then
          call grid%begin(fields%node_xy, fields%cell_nodes, vtk_quadratic_triangle, time)
-         call grid%add_at_points("nodal_displacement", displacement_3d(fields%node_displacement), &
-                                 ["X", "Y", "Z"])
       else
          call grid%begin(mesh%xy, mesh%cell_nodes, vtk_triangle, time)
+      end if
+      if (allocated(fields%node_displacement)) then
+         call grid%add_at_points("nodal_displacement", displacement_3d(fields%node_displacement), &
+                                 ["X", "Y", "Z"])
       end if
       if (allocated(fields%displacement)) then
          call grid%add("displacement", displacement_3d(fields%displacement), ["X", "Y", "Z"])
@@ -128,13 +140,16 @@ contains
          call grid%add("permeability", permeability_tensor(fields, material, mesh), &
             & tensor_components)
       end if
+      call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
-   subroutine fill_fractures(grid, time, mesh, fields)
+   subroutine fill_fractures(grid, time, mesh, fields, names)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
       type(fracture_mesh_t), intent(in) :: mesh
       type(fracture_fields_t), intent(in) :: fields
+      type(text_t), intent(in) :: names(:)  !< of the fractures
+      integer(ik) :: i
 
       call grid%begin(mesh%point_xy, mesh%cell_points, vtk_line, time)
       call grid%add("fracture", mesh%cell_fracture)
@@ -146,6 +161,9 @@ contains
       end if
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
       if (allocated(fields%state)) call grid%add("state", fields%state)
+      call grid%set_units(fracture_fields%name, fracture_fields%unit)
+      call grid%add_legend("fracture_names", names)
+      call grid%add_legend("state_names", [(text_t(state_name(i)), i=state_stick, state_open)])
    end subroutine fill_fractures
 
    subroutine fill_intersections(grid, time, mesh, fields)
@@ -158,6 +176,7 @@ contains
       vertices(1, :) = [(i, i=1, size(fields%point, kind=ik))]
       call grid%begin(mesh%point_xy(:, fields%point), vertices, vtk_vertex, time)
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      call grid%set_units(intersection_fields%name, intersection_fields%unit)
    end subroutine fill_intersections
 
    !> A normal and a tangential component as one field.

@@ -68,6 +68,7 @@ contains
 
       associate (table => self%history)
          call table%put("time_s", row%time)
+         call table%put("load_factor", row%time)
          call table%put("dt_s", row%dt)
          call table%put("newton_iterations", row%newton_iterations)
          call table%put("well_pressure_pa", row%well_pressure)
@@ -85,7 +86,6 @@ contains
          call table%put("n_tips", row%n_tips)
          call table%put("n_intersections", row%n_intersections)
          call table%put("seismic_moment_nm", row%seismic_moment)
-         call table%put("load_factor", row%load_factor)
          call table%put("strain_energy_j", row%strain_energy)
          call table%end_row()
       end associate
@@ -99,6 +99,7 @@ contains
       if (.not. self%tips%is_open()) return
       associate (table => self%tips)
          call table%put("time_s", row%time)
+         call table%put("load_factor", row%time)
          call table%put("tip", row%tip)
          call table%put("fracture", row%fracture)
          call table%put("x_m", row%xy(1))
@@ -126,7 +127,7 @@ contains
    !> Add every fracture cell.
    subroutine fracture_rows(self, time, mesh, fields)
       class(tables_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: time  !< [s], or the load factor
       type(fracture_mesh_t), intent(in) :: mesh
       type(fracture_fields_t), intent(in) :: fields
       real(rk) :: centre(2)
@@ -138,6 +139,7 @@ contains
             centre = 0.5_rk*(mesh%point_xy(:, mesh%cell_points(1, cell)) &
                & + mesh%point_xy(:, mesh%cell_points(2, cell)))
             call table%put("time_s", time)
+            call table%put("load_factor", time)
             call table%put("fracture", mesh%cell_fracture(cell))
             call table%put("s_m", 0.5_rk*sum(mesh%cell_s(:, cell)))
             call table%put("x_m", centre(1))
@@ -161,7 +163,7 @@ contains
    !> Add the state at all probes.
    subroutine probe_row(self, time, displacement, stress, pressure)
       class(tables_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: time  !< [s], or the load factor
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_probes) [m]
       real(rk), intent(in) :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
       real(rk), intent(in), optional :: pressure(:)  !< (n_probes) [Pa]; needed in a run with fluid
@@ -170,6 +172,7 @@ contains
       if (.not. self%probes%is_open()) return
       associate (table => self%probes)
          call table%put("time_s", time)
+         call table%put("load_factor", time)
          do i = 1, size(displacement, 2)
             associate (name => self%probe_names(i)%text)
                if (present(pressure)) then
@@ -191,7 +194,7 @@ contains
    !> Add an event. What does not apply to it is left empty.
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(tables_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: time  !< [s], or the load factor
       character(len=*), intent(in) :: kind  !< event_slip_onset .. of results_chronicle
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
@@ -199,6 +202,7 @@ contains
 
       associate (table => self%events)
          call table%put("time_s", time)
+         call table%put("load_factor", time)
          call table%put("kind", kind)
          if (present(fracture)) then
             call table%put("fracture", fracture)
@@ -239,27 +243,27 @@ contains
       call table%open(path, columns%name, applies(columns, has_fluid))
    end subroutine open_table
 
-   !> Open the table of the probes: the time, then the same columns for each of them.
+   !> Open the table of the probes: the time or load factor, then the same columns for each of them.
    subroutine open_probes(self, path, scene, has_fluid)
       class(tables_t), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: has_fluid
-      integer, parameter :: n_each = size(probe_columns) - 1
-      character(len=column_length) :: names(1 + n_each*size(scene%probes))
+      integer, parameter :: n_common = 2, n_each = size(probe_columns) - n_common
+      character(len=column_length) :: names(n_common + n_each*size(scene%probes))
       integer :: i, k
 
       allocate (self%probe_names(size(scene%probes)))
-      names(1) = probe_columns(1)%name
+      names(:n_common) = probe_columns(:n_common)%name
       do i = 1, size(scene%probes)
          self%probe_names(i)%text = trim(scene%probes(i)%name)
          do k = 1, n_each
-            names(1 + n_each*(i - 1) + k) = self%probe_names(i)%text// &
-                                          & probe_columns(1 + k)%name(len("NAME") + 1:)
+            names(n_common + n_each*(i - 1) + k) = self%probe_names(i)%text// &
+               & probe_columns(n_common + k)%name(len("NAME") + 1:)
          end do
       end do
-      call self%probes%open(path, names, [applies(probe_columns(1), has_fluid), &
-         & (applies(probe_columns(2:), has_fluid), i=1, size(scene%probes))])
+      call self%probes%open(path, names, [applies(probe_columns(:n_common), has_fluid), &
+         & (applies(probe_columns(n_common + 1:), has_fluid), i=1, size(scene%probes))])
    end subroutine open_probes
 
    !> A cell's value, or nothing where the field is left out.

@@ -8,6 +8,7 @@ module output_vtu
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text, real_text
+   use base_texts, only: text_t
    use output_files, only: whole_file_t
    use output_text, only: newline, text_buffer_t
    use, intrinsic :: iso_fortran_env, only: int64, int8
@@ -27,10 +28,17 @@ module output_vtu
       character(len=:), allocatable :: name
       character(len=:), allocatable :: components  !< XML attributes that name them; may be empty
       integer :: n_components = 1
+      character(len=:), allocatable :: unit  !< unallocated: without
       logical :: at_points = .false.
       real(rk), allocatable :: reals(:)  !< component by component, cell by cell
       integer(ik), allocatable :: integers(:)  !< or these
    end type vtu_field_t
+
+   !> Words in the field data, which a number in a field counts from 0 or from 1.
+   type :: vtu_words_t
+      character(len=:), allocatable :: name
+      type(text_t), allocatable :: words(:)
+   end type vtu_words_t
 
    !> One file in the making.
    type :: vtu_grid_t
@@ -43,6 +51,7 @@ module output_vtu
       real(rk) :: time = 0.0_rk  !< [s]
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
+      type(vtu_words_t), allocatable :: legends(:)
    contains
       procedure :: begin
       procedure, private :: add_scalar
@@ -50,6 +59,8 @@ module output_vtu
       procedure, private :: add_integer
       generic :: add => add_scalar, add_vector, add_integer
       procedure :: add_at_points
+      procedure :: add_legend
+      procedure :: set_units
       procedure :: write => write_grid
    end type vtu_grid_t
 
@@ -73,7 +84,7 @@ contains
       self%connectivity = reshape(cells - 1_ik, [size(cells)])
       self%cell_type = cell_type
       self%time = time
-      allocate (self%fields(16))
+      allocate (self%fields(16), self%legends(0))
    end subroutine begin
 
    !> A number in each cell.
@@ -125,6 +136,37 @@ contains
       call new_field(self, name)
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
+
+   !> Words for the numbers in a field.
+   pure subroutine add_legend(self, name, words)
+      class(vtu_grid_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(text_t), intent(in) :: words(:)  !< ASCII
+      type(vtu_words_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(self%legends)
+      allocate (longer(n + 1))
+      longer(:n) = self%legends
+      longer(n + 1)%name = name
+      longer(n + 1)%words = words
+      call move_alloc(longer, self%legends)
+   end subroutine add_legend
+
+   !> Give the fields so far their units, as VTK's key UNITS_LABEL.
+   pure subroutine set_units(self, names, units)
+      class(vtu_grid_t), intent(inout) :: self
+      character(len=*), intent(in) :: names(:)  !< of fields, which need not all be there
+      character(len=*), intent(in) :: units(:)  !< of each, `-` without
+      integer :: i, k
+
+      do i = 1, self%n_fields
+         do k = 1, size(names)
+            if (self%fields(i)%name /= names(k) .or. units(k) == "-") cycle
+            self%fields(i)%unit = trim(units(k))
+         end do
+      end do
+   end subroutine set_units
 
    !> Write the file whole.
    subroutine write_grid(self, path, error)
@@ -179,11 +221,11 @@ contains
          & '" header_type="UInt64">')
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//real_text(self%time)//"</DataArray></FieldData>")
+         & 'format="ascii">'//real_text(self%time)//"</DataArray>"//legends(self)//"</FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
          & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
-      call array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points))
+      call array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points), "m")
       call line("      </Points>")
       call line("      <Cells>")
       call array("Int32", "connectivity", "", 4*size(self%connectivity))
@@ -220,7 +262,7 @@ contains
                if (allocated(field%reals)) then
                   call array("Float64", field%name, ' NumberOfComponents="'// &
                      & integer_text(int(field%n_components, ik))//'"'//field%components, &
-                     & 8*size(field%reals))
+                     & 8*size(field%reals), field%unit)
                else
                   call array("Int32", field%name, "", 4*size(field%integers))
                end if
@@ -228,16 +270,43 @@ contains
          end do
       end subroutine fields
 
-      subroutine array(type_name, name, attributes, n_bytes)
+      subroutine array(type_name, name, attributes, n_bytes, unit)
          character(len=*), intent(in) :: type_name, name, attributes
          integer, intent(in) :: n_bytes  !< of the values; 8 more hold their size
+         character(len=*), intent(in), optional :: unit
+         character(len=:), allocatable :: ending
 
+         ending = "/>"
+         if (present(unit)) ending = '><InformationKey name="UNITS_LABEL" '// &
+            & 'location="vtkDataArray">'//unit//"</InformationKey></DataArray>"
          call line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
-            & ' format="appended" offset="'//integer_text(offset)//'"/>')
+            & ' format="appended" offset="'//integer_text(offset)//'"'//ending)
          offset = offset + 8_int64 + int(n_bytes, int64)
       end subroutine array
 
    end function header
+
+   !> The legends as arrays of strings: the codes of their characters, each string ended by a 0.
+   pure function legends(self) result(xml)
+      type(vtu_grid_t), intent(in) :: self
+      character(len=:), allocatable :: xml
+      integer :: i, j, k
+
+      xml = ""
+      do i = 1, size(self%legends)
+         associate (words => self%legends(i)%words)
+            xml = xml//newline//'      <Array type="String" Name="'//self%legends(i)%name// &
+               & '" NumberOfTuples="'//integer_text(size(words, kind=ik))//'" format="ascii">'
+            do j = 1, size(words)
+               do k = 1, len(words(j)%text)
+                  xml = xml//integer_text(iachar(words(j)%text(k:k), ik))//" "
+               end do
+               xml = xml//"0 "
+            end do
+            xml = xml(:len(xml) - 1)//"</Array>"
+         end associate
+      end do
+   end function legends
 
    subroutine new_field(self, name)
       class(vtu_grid_t), intent(inout) :: self
@@ -245,7 +314,7 @@ contains
 
       if (self%n_fields == size(self%fields)) self%fields = [self%fields, self%fields]
       self%n_fields = self%n_fields + 1
-      self%fields(self%n_fields) = vtu_field_t(name, "")
+      self%fields(self%n_fields) = vtu_field_t(name=name, components="")
    end subroutine new_field
 
    subroutine put_reals(file, values)

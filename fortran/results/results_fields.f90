@@ -14,10 +14,10 @@ module results_fields
       real(rk), allocatable :: stress(:, :)  !< (3, n_cells) total: xx, yy, xy [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: permeability(:, :)  !< (3, n_cells) xx, yy, xy [m2]; or the scene's
-      ! Of finite elements: the nodes, and the displacement there besides that of the cells.
+      real(rk), allocatable :: node_displacement(:, :)  !< (2, n_nodes) [m]
+      ! Of finite elements: their own nodes.
       real(rk), allocatable :: node_xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then nodes on edges
-      real(rk), allocatable :: node_displacement(:, :)  !< (2, n_nodes) [m]
    end type matrix_fields_t
 
    !> State of the fracture cells. Normal n and tangent tau as in mesh_types.

@@ -8,7 +8,7 @@ module results_rows
 
    !> An accepted time step, a row of history.csv.
    type :: history_row_t
-      real(rk) :: time = 0.0_rk  !< [s]
+      real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       real(rk) :: dt = 0.0_rk  !< [s]
       integer(ik) :: newton_iterations = 0
       real(rk) :: well_pressure = 0.0_rk  !< mean over the injected cells [Pa]
@@ -26,9 +26,7 @@ module results_rows
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
-      ! Only in mechanics-only runs.
-      real(rk) :: load_factor = 0.0_rk  !< [-]
-      real(rk) :: strain_energy = 0.0_rk  !< per metre of thickness [J/m]
+      real(rk) :: strain_energy = 0.0_rk  !< only in mechanics-only runs; per metre of thickness [J/m]
    end type history_row_t
 
    !> A state at the probes, a row of probes.csv.
@@ -40,7 +38,7 @@ module results_rows
 
    !> A free tip after a step or an increment, a row of tips.csv.
    type :: tip_row_t
-      real(rk) :: time = 0.0_rk  !< [s]
+      real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       integer(ik) :: tip = 0
       integer(ik) :: fracture = 0
       real(rk) :: xy(2) = 0.0_rk  !< [m]

@@ -19,6 +19,8 @@ module results_summary
       integer(ik) :: cells = 0  !< matrix cells at the end
       integer(ik) :: fracture_cells = 0  !< at the end
       real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
+      real(rk) :: keq_over_kic = 0.0_rk  !< largest of all tips and states; 0: left out [-]
+      real(rk) :: lowest_pressure = huge(1.0_rk)  !< of the fluid; huge: left out [Pa]
       real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
       real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
       !> of their solutions, relative; with the one above [-]

@@ -11,8 +11,8 @@ module scene_check
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
-   use scene_values, only: nearest_word, value_t
-   use scene_words, only: real_text, rounded_text
+   use scene_values, only: value_t
+   use scene_words, only: nearest_word, real_text, rounded_text
    implicit none(type, external)
    private
 
@@ -110,6 +110,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(value_t) :: value, wanted
       character(len=name_length), allocatable :: names(:)
+      character(len=:), allocatable :: reason, likely
       integer :: i, k
 
       allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, &
@@ -126,9 +127,10 @@ contains
                call refuse(error, sheet, i, "fracture", "is '"//wanted%text// &
                            "', but the scene has no fracture")
             else if (.not. any(names == wanted%text)) then
-               call refuse(error, sheet, i, "fracture", "is '"//wanted%text// &
-                           "', which is no fracture of the scene; the nearest is '"// &
-                           nearest_word(wanted%text, names)//"'")
+               reason = "is '"//wanted%text//"', which is no fracture of the scene"
+               likely = nearest_word(wanted%text, names)
+               if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
+               call refuse(error, sheet, i, "fracture", reason)
             else if (record%is_given("x") .neqv. record%is_given("y")) then
                call refuse(error, sheet, i, merge("y", "x", record%is_given("x")), &
                            "is missing but must be given with the other coordinate")

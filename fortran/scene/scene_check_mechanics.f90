@@ -20,6 +20,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: smallest = 1.0e-12_rk  ! of the sums' own scale
       real(rk) :: centre(2), reach, held(3, 3), rest, ends(2, 2, 4)
+      character(len=:), allocatable :: holder
       integer :: side, k
 
       associate (d => scene%domain)
@@ -45,20 +46,28 @@ contains
             call hold([point%x, point%y], point%displacement_given, held)
          end associate
       end do
+      holder = "&side"  ! &restraint is for mechanics-only scenes
+      if (.not. scene%has_fluid()) holder = "&side or a &restraint"
       if (.not. held(1, 1) > 0.0_rk) then
-         call raise_error(error, "", sheet%path//": &side: no side has an x_displacement, but "// &
-                          "one must hold the body against moving in x (see docs/input.md)")
+        call raise_error(error, "", sheet%path//": nothing holds the body against moving in x; "// &
+                          "give a "//holder//" an x_displacement (see docs/input.md)")
          return
       else if (.not. held(2, 2) > 0.0_rk) then
-         call raise_error(error, "", sheet%path//": &side: no side has a y_displacement, but "// &
-                          "one must hold the body against moving in y (see docs/input.md)")
+        call raise_error(error, "", sheet%path//": nothing holds the body against moving in y; "// &
+                          "give a "//holder//" a y_displacement (see docs/input.md)")
          return
       end if
       rest = held(3, 3) - held(1, 3)**2/held(1, 1) - held(2, 3)**2/held(2, 2)
       if (.not. rest > smallest*(held(1, 1) + held(2, 2))) then
-         call raise_error(error, "", sheet%path//": &side: the body can rotate, but a side "// &
-                          "must hold it: left or right an x_displacement, or bottom or top a "// &
-                          "y_displacement (see docs/input.md)")
+         if (scene%domain%shape == "rectangle") then
+            holder = "&side, left or right, an x_displacement, or bottom or top a "// &
+                     "y_displacement"
+            if (.not. scene%has_fluid()) holder = holder//", or a &restraint either"
+         else
+            holder = holder//" that keeps it from turning a displacement too"
+         end if
+         call raise_error(error, "", sheet%path//": the body can rotate; give a "//holder// &
+                          " (see docs/input.md)")
       end if
 
    contains

@@ -44,7 +44,7 @@ contains
       if (side%pressure_given) call exchange(record, "pressure", side%pressure, reading)
       call exchange(record, "normal_traction", side%normal_traction, reading, nothing=0.0_rk)
       call exchange(record, "shear_traction", side%shear_traction, reading, nothing=0.0_rk)
-      if (any(abs([side%normal_traction, side%shear_traction]) > 0.0_rk)) return
+      if (record%is_set("normal_traction") .or. record%is_set("shear_traction")) return
       if (side%displacement_given(1)) then
          call exchange(record, "x_displacement", side%displacement(1), reading)
       else

@@ -11,8 +11,8 @@ module scene_parse
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
                            token_slash, token_text, token_word, tokenize
    use scene_types, only: name_length
-   use scene_values, only: default_value, nearest_word, read_value, shortened, value_t
-   use scene_words, only: is_identifier, lower_case
+   use scene_values, only: default_value, read_value, shortened, value_t
+   use scene_words, only: is_identifier, lower_case, nearest_word
    implicit none(type, external)
    private
 
@@ -98,10 +98,8 @@ contains
             end if
             group = group_index(lower_case(source(token%first:token%last)))
             if (group == 0) then
-               call raise_error(error, "", place(sheet, token%line)//"unknown group &"// &
-                                shortened(source(token%first:token%last))//", the nearest is &"// &
-                                nearest_word(source(token%first:token%last), groups%name)// &
-                                " (see docs/input.md)")
+               call raise_error(error, "", place(sheet, token%line)// &
+                                unknown_group(source(token%first:token%last)))
                return
             end if
             earlier = 0
@@ -183,23 +181,35 @@ contains
       begins_value = kind == token_word .and. next_kind == token_equals
    end function begins_value
 
+   !> Message for a group that there is not.
+   pure function unknown_group(word) result(message)
+      character(len=*), intent(in) :: word
+      character(len=:), allocatable :: message, likely
+
+      likely = nearest_word(word, groups%name)
+      message = "unknown group &"//shortened(word)
+      if (likely /= "") message = message//", the nearest is &"//likely
+      message = message//" (see docs/input.md)"
+   end function unknown_group
+
    !> Message for a name that the group does not have.
    pure function unknown_name(group, word) result(message)
       integer, intent(in) :: group
       character(len=*), intent(in) :: word
       character(len=:), allocatable :: message, likely
-      integer :: owner
+      integer :: bracket, owner
 
-      likely = nearest_word(word, pack(parameters%name, parameters%group == groups(group)%name))
+      bracket = index(word//"(", "(")
+      likely = nearest_word(word(:bracket - 1), pack(parameters%name, parameters%group == groups(group)%name))
       message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)
       owner = findloc(parameters%name == lower_case(word), .true., dim=1)
       if (owner > 0) then
-         message = message//", which belongs to &"//trim(parameters(owner)%group)// &
-                   "; the nearest here is "//likely
-      else
+         message = message//", which belongs to &"//trim(parameters(owner)%group)
+         if (likely /= "") message = message//"; the nearest here is "//likely
+      else if (likely /= "") then
          message = message//", the nearest is "//likely
       end if
-      if (index(word, "(") > 0) then
+      if (bracket <= len(word) .and. likely /= "") then
          message = message//", whose values are given as one list without indices"
       end if
       message = message//" (see docs/input.md)"

@@ -9,12 +9,12 @@ module scene_values
    use scene_tokens, only: token_comma, token_list_t, token_t, token_text, token_word, tokenize, &
                            unquoted
    use scene_types, only: name_length
-   use scene_words, only: edit_distance, is_identifier, lower_case
+   use scene_words, only: is_identifier, lower_case
    implicit none(type, external)
    private
 
    public :: value_t
-   public :: default_value, nearest_word, read_value, shortened
+   public :: default_value, read_value, shortened
 
    !> The value of a parameter in one group of a file.
    type :: value_t
@@ -84,24 +84,6 @@ contains
       call tokenize(trim(parameter%default), tokens, fault, fault_line)
       call read_value(parameter, parameter%default, tokens%items(1:tokens%length - 1), value, fault)
    end subroutine default_value
-
-   !> The candidate most like a word.
-   pure function nearest_word(word, candidates) result(best)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: candidates(:)
-      character(len=:), allocatable :: best
-      integer :: distance, least, i
-
-      best = ""
-      least = huge(0)
-      do i = 1, size(candidates)
-         distance = edit_distance(lower_case(shortened(word)), lower_case(trim(candidates(i))))
-         if (distance < least) then
-            least = distance
-            best = trim(candidates(i))
-         end if
-      end do
-   end function nearest_word
 
    !> Values are separated by blanks or by one comma; one comma may follow the last.
    pure subroutine check_commas(tokens, reason)

@@ -6,7 +6,9 @@ module scene_words
    implicit none(type, external)
    private
 
-   public :: edit_distance, is_identifier, lower_case, real_text, rounded_text
+   public :: edit_distance, is_identifier, lower_case, nearest_word, real_text, rounded_text
+
+   integer, parameter :: longest_compared = 60  !< characters of a word; no name is longer
 
 contains
 
@@ -46,6 +48,46 @@ contains
       end do
       distance = d(len(a), len(b))
    end function edit_distance
+
+   !> The candidate that a word was probably meant to be, empty if none is near. Cases are the same.
+   !!
+   !! Near is what few slips of the pen turn into the other, one to three by the word's length, and
+   !! what goes on where the other ends: `dilation` and `dilation_deg`. Fewest slips win.
+   pure function nearest_word(word, candidates) result(best)
+      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: candidates(:)
+      character(len=:), allocatable :: best, candidate, given
+      integer :: distance, least, i
+
+      best = ""
+      least = huge(0)
+      given = lower_case(word(:min(len(word), longest_compared)))
+      do i = 1, size(candidates)
+         candidate = lower_case(trim(candidates(i)))
+         distance = edit_distance(given, candidate)
+         if (distance >= least) cycle
+         if (distance > most_slips(len(given)) .and. .not. is_beginning(given, candidate)) cycle
+         least = distance
+         best = trim(candidates(i))
+      end do
+   end function nearest_word
+
+   !> So many slips leave a word of this length recognizable.
+   pure integer function most_slips(length)
+      integer, intent(in) :: length
+
+      most_slips = min(max(1, length/3), 3, max(length - 1, 0))
+   end function most_slips
+
+   !> One of two words is how the other begins, and long enough to tell them from others.
+   pure logical function is_beginning(a, b)
+      character(len=*), intent(in) :: a, b
+      integer, parameter :: shortest = 3
+      integer :: n
+
+      n = min(len(a), len(b))
+      is_beginning = n >= shortest .and. a(:n) == b(:n)
+   end function is_beginning
 
    !> Letters, digits, `_`, `-` and `.`, beginning with a letter or a digit: safe as a file name and
    !> as part of a column name.

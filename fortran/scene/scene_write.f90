@@ -46,6 +46,8 @@ contains
             if (.not. applies(parameters(item)%scenes, scene%has_fluid())) cycle
             if (sheet%records(i)%values(item)%is_set) then
                call put_value(parameters(item), sheet%records(i)%values(item))
+            else if (parameters(item)%absent == "") then  ! it has a default, but not here
+               call put("  ! "//trim(parameters(item)%name)//": does not apply")
             else
                call put("  ! "//trim(parameters(item)%name)//": "//trim(parameters(item)%absent))
             end if

@@ -23,7 +23,7 @@ module simulation_types
 
    !> The fields of a state, with the mesh that they live on.
    type :: snapshot_t
-      real(rk) :: time = -huge(1.0_rk)  !< [s]
+      real(rk) :: time = -huge(1.0_rk)  !< [s]; without a fluid the load factor [-]
       type(mesh_t) :: mesh
       type(matrix_fields_t) :: matrix
       type(fracture_fields_t) :: fracture
@@ -38,7 +38,8 @@ module simulation_types
       character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
       logical :: owes_state = .false.  !< the scene is over after one more state
       logical :: shows_state = .true.  !< the fields of the present state may be written
-      real(rk) :: end_time = 0.0_rk  !< at which the scene is over [s]
+      real(rk) :: start_time = 0.0_rk  !< at which the scene begins, as time gives it
+      real(rk) :: end_time = 0.0_rk  !< at which it is over
       logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) so far
    contains
       procedure(begin_scene), deferred :: begin
@@ -57,6 +58,8 @@ module simulation_types
       procedure :: note_growth
       procedure :: note_mesh
       procedure :: end_at_gain
+      procedure :: keq_over_kic
+      procedure :: share_done
    end type simulation_t
 
    abstract interface
@@ -115,7 +118,7 @@ module simulation_types
          type(snapshot_t), allocatable, intent(out) :: fields
       end subroutine fields_of_state
 
-      !> The time of the present state [s].
+      !> The time of the present state [s], or without a fluid its load factor [-].
       pure function time_of_state(self) result(time)
          import :: rk, simulation_t
          implicit none(type, external)
@@ -179,12 +182,16 @@ contains
    !> Note all tips. Where any tip has just grown, all are as before that.
    pure subroutine note_tips(self)
       class(simulation_t), intent(inout) :: self
+      type(tip_row_t) :: row
       logical :: any_grew
       integer(ik) :: i
 
       any_grew = any(self%tip%advance > 0.0_rk)
       do i = 1, size(self%tip, kind=ik)
-         call self%chronicle%add_tip(row_of_tip(self%time(), i, self%tip(i), any_grew))
+         row = row_of_tip(self%time(), i, self%tip(i), any_grew)
+         call self%chronicle%add_tip(row)
+         self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
+                                         over_toughness(self%scene, row%keq))
       end do
    end subroutine note_tips
 
@@ -283,6 +290,45 @@ contains
       call self%chronicle%add_event(self%time(), event_remesh, trim(detail))
       self%chronicle%has_new_network = .true.
    end subroutine note_mesh
+
+   !> The largest equivalent intensity of the tips now over the toughness [-].
+   pure function keq_over_kic(self) result(ratio)
+      class(simulation_t), intent(in) :: self
+      real(rk) :: ratio
+      integer(ik) :: i
+
+      ratio = 0.0_rk
+      if (.not. allocated(self%tip)) return
+      do i = 1, size(self%tip, kind=ik)
+         ratio = max(ratio, over_toughness(self%scene, self%tip(i)%drive%intensity))
+      end do
+   end function keq_over_kic
+
+   !> An equivalent intensity over the toughness; 0 where that has no limit [-].
+   pure function over_toughness(scene, keq) result(ratio)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: keq  !< [Pa m^1/2]
+      real(rk) :: ratio
+
+      ratio = 0.0_rk
+      if (scene%material%toughness < huge(1.0_rk)) ratio = keq/scene%material%toughness
+   end function over_toughness
+
+   !> How much of the scene is done, by what will end it: its end, or stop_gain [-].
+   pure function share_done(self) result(share)
+      class(simulation_t), intent(in) :: self
+      real(rk) :: share
+      integer(ik) :: i
+
+      share = (self%time() - self%start_time)/(self%end_time - self%start_time)
+      if (.not. allocated(self%tip)) return
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            share = max(share, end_gain(self%network, self%start, tip%fracture, tip%end) &
+                        /self%scene%growth%stop_gain)
+         end associate
+      end do
+   end function share_done
 
    !> Set `ending` if a fracture's end has grown as far as the scene wants.
    pure subroutine end_at_gain(self)

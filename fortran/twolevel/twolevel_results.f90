@@ -3,7 +3,7 @@ module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use coarse_fields, only: cell_stresses
+   use coarse_fields, only: cell_stresses, nodal_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: total_length
    use mesh_builder, only: locate
@@ -124,12 +124,17 @@ contains
    function snapshot_of_levels(simulation) result(snapshot)
       class(two_levels_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
+      real(rk), allocatable :: nodal(:, :)
 
       snapshot%time = simulation%state%time
       snapshot%mesh = simulation%mesh
       associate (state => simulation%state, n => simulation%mesh%n_cells, &
                  matrix => snapshot%matrix, fracture => snapshot%fracture)
          matrix%displacement = state%unknowns(:2, :n)
+         allocate (nodal(3, snapshot%mesh%n_nodes))
+         call nodal_values(snapshot%mesh, simulation%model%rock, simulation%model%regions, &
+                           state%unknowns, state%tractions, nodal)
+         matrix%node_displacement = nodal(:2, :)
          matrix%pressure = state%unknowns(3, :n)
          matrix%stress = stresses_of(simulation)
          fracture%aperture = state%aperture

@@ -156,6 +156,9 @@ contains
          summary%condition_estimate = max(summary%condition_estimate, report%condition)
          summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
          summary%mass_error_relative = max(summary%mass_error_relative, row%mass_error_relative)
+         summary%lowest_pressure = min(summary%lowest_pressure, &
+                                       minval(self%state%unknowns(3, :self%mesh%n_cells)), &
+                                       minval(self%state%pressure))
          summary%cells = self%mesh%n_cells
          summary%fracture_cells = self%mesh%fracture%n_cells
          call summary%add_newton(report%iterations)

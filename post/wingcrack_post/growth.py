@@ -57,6 +57,11 @@ def read_growth(network: Mapping[str, Any]) -> list[Growth]:
         raise RunError(f"the network is damaged ({reason!r}).") from None
 
 
+def moment_of(step: Mapping[str, Any]) -> float:
+    """Time of a step of network.json [s], or in a mechanics-only run its load factor."""
+    return float(step["load_factor"] if "load_factor" in step else step["time_s"])
+
+
 def _growth(last: Mapping[str, Any], first: Mapping[str, Any], steps: Sequence[Any]) -> Growth:
     number = last["fracture"]
     initial, points = _points(first), _points(last)
@@ -64,7 +69,7 @@ def _growth(last: Mapping[str, Any], first: Mapping[str, Any], steps: Sequence[A
     counts = []
     for step in steps:
         item = next(one for one in step["fractures"] if one["fracture"] == number)
-        counts.append((float(step["time_s"]), *_wings(item, initial)))
+        counts.append((moment_of(step), *_wings(item, initial)))
     return Growth(
         number=int(number),
         name=str(last.get("name") or f"fracture {number}"),

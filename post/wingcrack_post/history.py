@@ -45,7 +45,7 @@ def intensities(run: Run) -> Figure:
         If the run has no tips.
     """
     table = needed(run.tips, "tips.csv", "stress intensity factors")
-    time, label = abscissa(run, table.number("time_s"))
+    time, label = abscissa(run, table.moments())
     if has_load(run) and growth_start(run) is not None:
         time, label = tip_steps(run, table), STEP_LABEL
     tips = _tips(table)
@@ -94,7 +94,7 @@ def intensities(run: Run) -> Figure:
 def development(run: Run) -> Figure:
     """Fracture length, well pressure (with a fluid), largest slip and opening, and the states."""
     table = run.history
-    time, label = abscissa(run, table.number("time_s"))
+    time, label = abscissa(run, table.moments())
     marker = style.lone_marker(time.size)
     fluid = table.has("well_pressure_pa")
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
@@ -172,7 +172,7 @@ def balance(run: Run) -> Figure:
     table = run.history
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
-    time, below = abscissa(run, table.number("time_s"))
+    time, below = abscissa(run, table.moments())
     volume = table.number("fracture_volume_m2")
     series: list[tuple[str, FloatArray]] = [
         ("injected", table.number("injected_m2")),

@@ -16,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
-from wingcrack_post.growth import Growth, read_growth
+from wingcrack_post.growth import Growth, moment_of, read_growth
 from wingcrack_post.read import Run
 from wingcrack_post.scene import Scene
 from wingcrack_post.table import FloatArray, Table
@@ -83,7 +83,7 @@ def draw_network(
     if scene is not None and scene.outline is not None:
         x, y = unit.of(scene.outline).T
         axes.plot(x, y, color="#888888", linewidth=0.8, zorder=1)
-    times = sorted({float(step["time_s"]) for step in network["steps"][1:]})
+    times = sorted({moment_of(step) for step in network["steps"][1:]})
     order = _order(growths)
     norm = Normalize(1, max([2, *order.values()]))
     colours = style.time_colours()
@@ -146,7 +146,7 @@ def _colour_bar(
             moments |= {order[item.number, wing, k]: float(t) for k, t in enumerate(times)}
     if not moments:
         return
-    time = history.number("time_s")
+    time = history.moments()
     if history.has("load_factor"):
         loads, label = history.number("load_factor"), "increment of growth (load factor)"
         unit = Unit("", 1.0)

@@ -60,7 +60,7 @@ def probe_histories(run: Run) -> Figure:
     if not names:
         raise AbsentError("probes.csv has no probe points")
     quantities = [q for q in _QUANTITIES if any(table.has(names[0] + end) for end, _ in q.parts)]
-    time, below = abscissa(run, table.number("time_s"))
+    time, below = abscissa(run, table.moments())
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
     panels = list(figure.subplots(1, len(quantities), squeeze=False).flat)
     for axes, quantity in zip(panels, quantities, strict=True):

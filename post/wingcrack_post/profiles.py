@@ -89,7 +89,7 @@ def _arc_length_at(point: FloatArray, s: FloatArray, xy: FloatArray) -> float:
 def _profile(
     run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
 ) -> Figure:
-    time = table.number("time_s")[mine]
+    time = table.moments()[mine]
     xy = np.column_stack((table.number("x_m")[mine], table.number("y_m")[mine]))
     s = arc_length(time, table.number("s_m")[mine], xy)
     panels = list(_PANELS)
@@ -149,7 +149,7 @@ def _draw_bound(
     friction: float,
 ) -> None:
     """Dash mu_s |f_n| on the side of zero where the tangential traction is."""
-    time = table.number("time_s")[mine]
+    time = table.moments()[mine]
     normal = table.number("traction_n_pa")[mine]
     tangential = table.number("traction_t_pa")[mine]
     side = -1.0 if np.nansum(tangential) < 0.0 else 1.0

@@ -48,6 +48,10 @@ class Table:
             )
         return np.asarray(self.cells[name], dtype=np.str_)
 
+    def moments(self) -> FloatArray:
+        """Time of each row [s], or in a mechanics-only run its load factor."""
+        return self.number("load_factor" if self.has("load_factor") else "time_s")
+
     def number(self, name: str) -> FloatArray:
         """Column as numbers in the unit of its name; an empty cell is nan."""
         text = self.text(name)

@@ -34,7 +34,7 @@ def growth_start(run: Run) -> float | None:
         return None
     length = run.history.number("fracture_length_m")
     grown = np.flatnonzero(length > length[0] * (1.0 + 1e-9))
-    return float(run.history.number("time_s")[grown[0]]) if grown.size else None
+    return float(run.history.moments()[grown[0]]) if grown.size else None
 
 
 def _targets(run: Run, written: FloatArray, count: int) -> FloatArray:
@@ -42,7 +42,7 @@ def _targets(run: Run, written: FloatArray, count: int) -> FloatArray:
     if start is None or start >= written[-1]:
         return np.linspace(written[0], written[-1], count)
     later = written[written >= start]
-    time, length = run.history.number("time_s"), run.history.number("fracture_length_m")
+    time, length = run.history.moments(), run.history.number("fracture_length_m")
     lengths = np.interp(later, time, length)
     # lengths never shrink, so the time of a length is the first one that reaches it
     steps = np.linspace(lengths[0], lengths[-1], count - 1)

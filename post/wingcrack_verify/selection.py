@@ -38,6 +38,7 @@ TAKES: dict[str, Callable[[Array], float]] = {
 # A path into a JSON file; not the exponent of a number.
 _KEY = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 
+CLOCKS = ("time_s", "load_factor")  # what stands for the time of a row
 EQUAL = 1.0e-9  # relative difference up to which a number in a file is the one asked for
 
 
@@ -215,7 +216,7 @@ def _rows(table: Table, selection: Selection) -> Mask:
 
 
 def _matches(table: Table, column: str, wanted: Wanted) -> Mask:
-    if isinstance(wanted, str) and not (column == "time_s" and wanted in ("first", "last")):
+    if isinstance(wanted, str) and not (column in CLOCKS and wanted in ("first", "last")):
         return _guarded(lambda: np.asarray(table.text(column) == wanted, dtype=np.bool_))
     numbers = _numbers(table, column)
     if isinstance(wanted, Limits):

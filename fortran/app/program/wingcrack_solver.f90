@@ -76,7 +76,6 @@ contains
       end if
       if (was_interrupted) call leave("interrupted; the last state is in "//directory, &
                                       exit_interrupted)
-      if (.not. quiet) write (output_unit, "(2a)") "results in ", directory
    end subroutine run
 
    subroutine check()

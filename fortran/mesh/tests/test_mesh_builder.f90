@@ -4,6 +4,7 @@ program test_mesh_builder
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: text_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t, point_boundary, point_interior, &
                          point_joint_t, point_joint_x, point_tip, side_count
@@ -306,6 +307,10 @@ contains
       network = straight_network(reshape([0.5_rk, 0.5_rk, 1.5_rk, 0.5_rk], [2, 2, 1]))
       call build_mesh(spec, network, mesher, mesh, error)
       call checks%fails_with(error, "fracture 1 leaves the domain", "outside")
+      network%names = [text_t("west")]
+      call build_mesh(spec, network, mesher, mesh, error)
+      call checks%is_true(error%message == "fracture 'west' leaves the domain at (1.5, 0.5)", &
+                          "a fracture with a name, without advice for the scene")
       call locate(mesher, reshape([0.5_rk, 0.5_rk], [2, 1]), cells, error)
       call checks%fails_with(error, "there is no mesh", "no mesh after a refusal")
       network%s_start = [0.0_rk, 0.0_rk]

@@ -30,8 +30,8 @@ def read_vtu(path: Path) -> dict[str, tuple[float, ...]]:
     order = "<" if b'byte_order="LittleEndian"' in head else ">"
     arrays = {}
     end = 0
-    for tag in re.findall(r'<DataArray [^>]*format="appended"[^>]*/>', head.decode()):
-        attributes = ElementTree.fromstring(tag).attrib
+    for tag in re.findall(r'<DataArray [^>]*format="appended"[^>/]*', head.decode()):
+        attributes = ElementTree.fromstring(tag + "/>").attrib
         offset = int(attributes["offset"])
         assert offset == end, f"{path}: {attributes['Name']} does not follow the array before it"
         (n_bytes,) = struct.unpack_from(order + "Q", raw, offset)

@@ -24,7 +24,7 @@ program test_output_network
 
    call make_directory(folder, error)
    call remove_file(path, was_there)
-   call record%open(path, [text_t("main"), text_t("side")])
+   call record%open(path, [text_t("main"), text_t("side")], has_fluid=.true.)
    call record%flush(error)
    call checks%is_true(.not. file_exists(path), "without a network there is no file")
 

@@ -82,10 +82,10 @@ contains
                   ":6: &side: shear_traction is given beside x_displacement")
     call refuse(6, "&side name='top' edges=2 arc_to_deg=1 /", ":6: &side: arc_to_deg is given, "// &
                   "but only a disc has arcs"//doc)
-      call refuse(5, "&side name='floor' edges=6 y_displacement=0 /", "no side has an "// &
-                  "x_displacement")
-      call refuse(5, "&side name='wall' edges=1, 6 y_displacement=0 /", "no side has an "// &
-                  "x_displacement")
+      call refuse(5, "&side name='floor' edges=6 y_displacement=0 /", "give a &side or a "// &
+                  "&restraint an x_displacement")
+      call refuse(5, "&side name='wall' edges=1, 6 y_displacement=0 /", "give a &side or a "// &
+                  "&restraint an x_displacement")
       call accept(5, "&side name='walls' edges=1, 5 x_displacement=0 /"// &
                   "&restraint x=0 y=0 y_displacement=0 /", "held by walls and a point")
       call accept(6, "", "an unloaded polygon")

@@ -64,7 +64,7 @@ contains
       call refuse(3, "&material yuong=40.0e9", &
                   ":3: &material: unknown name yuong, the nearest is young"//doc)
       call refuse(4, "  poisson=0.2 viscosity=1.0e-4", ":4: &material: unknown name viscosity, "// &
-                  "which belongs to &fluid; the nearest here is porosity"//doc)
+                  "which belongs to &fluid"//doc)
       call refuse(10, "  x(1)=0.9 x(2)=1.1", ":10: &fracture: unknown name x(1), the nearest "// &
                   "is x, whose values are given as one list without indices"//doc)
       call refuse(8, "&domain x_min=0.0 x_max=2.0 y_min=0.0 y_max=1.0 /", &
@@ -146,14 +146,14 @@ contains
       call refuse(15, "&side name='left' x_displacement=0.0 x_traction=1.0 /", &
                   ":15: &side: x_traction is given beside x_displacement but only one of them "// &
                   "can be prescribed"//doc)
-      call refuse(15, "", ": &side: no side has an x_displacement, but one must hold the body "// &
-                  "against moving in x"//doc)
-      call refuse(16, "", ": &side: no side has a y_displacement, but one must hold the body "// &
-                  "against moving in y"//doc)
+      call refuse(15, "", ": nothing holds the body against moving in x; give a &side an "// &
+                  "x_displacement"//doc)
+      call refuse(16, "", ": nothing holds the body against moving in y; give a &side a "// &
+                  "y_displacement"//doc)
       call refuse_two(15, "&side name='left' y_displacement=0.0 /", &
                       16, "&side name='bottom' x_displacement=0.0 /", &
-                      ": &side: the body can rotate, but a side must hold it: left or right an "// &
-                      "x_displacement, or bottom or top a y_displacement"//doc)
+                      ": the body can rotate; give a &side, left or right, an x_displacement, "// &
+                      "or bottom or top a y_displacement"//doc)
       call refuse(5, "  biot=0.8 porosity=0.9", &
                   ":5: &material: biot is 0.8 but must be at least the porosity, 0.9"//doc)
       call refuse_two(5, "  biot=0.0 porosity=0.0", 4, "  poisson=0.2", &

@@ -47,8 +47,11 @@ program test_scene_mechanics
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' held_closed=.true. /", &
                ":3: &fracture: held_closed is .true., but the faces of the law 'open' do not touch")
    call refuse(5, "&restraint x=0 y=1 x_displacement=0 /", "", accepted=.true.)
-   call refuse(5, "&restraint x=2 y=0 x_displacement=0 /", "the body can rotate")
-   call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "no side has an x_displacement")
+   call refuse(5, "&restraint x=2 y=0 x_displacement=0 /", "the body can rotate; give a &side, "// &
+               "left or right, an x_displacement, or bottom or top a y_displacement, or a "// &
+               "&restraint either")
+   call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "give a &side or a "// &
+               "&restraint an x_displacement")
    call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: holds nothing", &
                and_4="&side name='left' x_displacement=0 y_displacement=0 /")
    call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must be greater than from, 2.0")

@@ -6,7 +6,7 @@ program test_scene_values
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
                                kind_reals, kind_text, parameter_t
    use scene_tokens, only: token_list_t, tokenize
-   use scene_values, only: nearest_word, read_value, value_t
+   use scene_values, only: read_value, value_t
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    implicit none(type, external)
    type(checks_t) :: checks
@@ -90,7 +90,6 @@ contains
       call refuses(kind_choice, "'c'", "is 'c' but must be 'a', 'bb' or 'ccc'")
       call refuses(kind_choice, "'a|bb'", "is 'a|bb' but must be")
       call refuses(kind_choice, "''", "is '' but must be")
-      call checks%is_true(nearest_word("Yuong", ["poisson", "young  "]) == "young", "nearest word")
    end subroutine check_others
 
    subroutine check_intervals()

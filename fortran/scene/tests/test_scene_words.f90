@@ -2,12 +2,14 @@
 program test_scene_words
    use testing_checks, only: checks_t
    use base_kinds, only: lk, rk
-   use scene_words, only: edit_distance, is_identifier, lower_case, real_text, rounded_text
+   use scene_words, only: edit_distance, is_identifier, lower_case, nearest_word, real_text, &
+                          rounded_text
    implicit none(type, external)
    type(checks_t) :: checks
 
    call check_real_text()
    call check_words()
+   call check_nearest()
    call checks%finish()
 
 contains
@@ -61,5 +63,26 @@ contains
       call checks%is_true(.not. is_identifier(".hidden"), "no leading point")
       call checks%is_true(.not. is_identifier("a b"), "no blank in a name")
    end subroutine check_words
+
+   !> What is near is named, and nothing else.
+   subroutine check_nearest()
+      character(len=14), parameter :: names(*) = [character(len=14) :: "young", "poisson", "load", &
+                                          "permeability", "dilation_deg", "friction", "x", "side", &
+                                                            "size_fracture", "size_boundary", "end"]
+
+      call checks%is_true(nearest_word("Yuong", names) == "young", "exchanged neighbours")
+      call checks%is_true(nearest_word("sied", names) == "side", "exchanged at the end")
+      call checks%is_true(nearest_word("dilation", names) == "dilation_deg", "the beginning")
+      call checks%is_true(nearest_word("friction_coefficient", names) == "friction", "too long")
+      call checks%is_true(nearest_word("end_time", names) == "end", "a unit or the like behind it")
+      call checks%is_true(nearest_word("size_fractrue", names) == "size_fracture", &
+                          "fewest slips win")
+      call checks%is_true(nearest_word("permaebilty", names) == "permeability", "two slips")
+      call checks%is_true(nearest_word("rokc", names) == "", "nothing near: no &load for &rokc")
+      call checks%is_true(nearest_word("y", names) == "", "one letter is near none but itself")
+      call checks%is_true(nearest_word("X", names) == "x", "itself in another case")
+      call checks%is_true(nearest_word(repeat("young", 10000), names) == "young", "a long one")
+      call checks%is_true(nearest_word("", names) == "", "no word")
+   end subroutine check_nearest
 
 end program test_scene_words

@@ -117,6 +117,14 @@ contains
                             "&restraint x=0.2 y=-3 y_displacement=0 /", &
                             "&fe size_boundary=0.2 /"])
       call round_trip(path)
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
+                            "&material young=1e9 poisson=0.2 /", &
+                            "&side name='left' x_displacement=0 y_displacement=0 /", &
+                            "&side name='right' normal_traction=-0.0 /", &
+                            "&side name='top' shear_traction=-0.0 normal_traction=0.0 /", &
+                            "&side name='bottom' shear_traction=0.0 /", &
+                            "&fe size_boundary=0.2 /"])
+      call round_trip(path)
       call put_lines(path, [character(len=100) :: "&domain shape='polygon' x=0, 0, 1, 2.1, 2", &
                             "  y=0, 1, 0.5, 1, -0.1 /", "&material young=1e9 poisson=0.2 "// &
                             "density=2.7e3 /", "&gravity y=-9.81 /", &
