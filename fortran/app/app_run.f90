@@ -2,6 +2,7 @@
 module app_run
    use app_journal, only: journal_t
    use app_process, only: interrupted
+   use app_warnings, only: show_warnings
    use base_errors, only: error_t
    use base_timers, only: phase_output, timers_t
    use mechanics_simulation, only: mechanics_simulation_t
@@ -9,6 +10,7 @@ module app_run
    use scene_types, only: scene_t
    use simulation_types, only: simulation_t
    use twolevel_simulation, only: twolevel_simulation_t
+   use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none(type, external)
    private
 
@@ -53,6 +55,7 @@ contains
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
+      call simulation%tell_limits()
       record%summary_t = simulation%summary
       record%scene = trim(scene%name)
       record%version = version
@@ -68,6 +71,7 @@ contains
       end if
       call journal%files%log(record%status//": "//record%reason)
       call journal%files%close(record, timers, trouble)
+      if (.not. quiet) call show_warnings(record%warnings, output_unit)
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
    end subroutine run_scene
 
