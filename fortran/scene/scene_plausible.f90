@@ -85,7 +85,7 @@ contains
       type(text_t), allocatable, intent(inout) :: list(:)
 
       associate (m => scene%material)
-         call add(list, .not. within(m%young, 1.0e8_rk, 1.0e12_rk), of_young, m%young)
+         call add(list,.not. within(m%young, 1.0e8_rk, 1.0e12_rk), of_young, m%young)
          ! The bound is measured: verification/extreme_cracks.
          call add(list, m%poisson > 0.49_rk .and. scene%growth%intensities .and. &
                   .not. (m%plane_stress .or. scene%adaptive%enabled), of_poisson, m%poisson)
@@ -96,7 +96,7 @@ contains
             call add(list, has_fluid .and. largest > 1.0e-8_rk, of_permeability, largest)
          end associate
          if (scene%growth%enabled) then
-            call add(list, .not. within(m%toughness, 1.0e4_rk, 1.0e8_rk), of_toughness, &
+            call add(list,.not. within(m%toughness, 1.0e4_rk, 1.0e8_rk), of_toughness, &
                      m%toughness)
          end if
       end associate
@@ -124,8 +124,7 @@ contains
    pure subroutine doubt_flow(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
-      character(len=9), parameter :: sides(4) = [character(len=9) :: " 'left'", " 'right'", &
-                                                 " 'bottom'", " 'top'"]
+      character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
       real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
       integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
       real(rk) :: across
@@ -134,7 +133,7 @@ contains
       associate (fluid => scene%fluid, d => scene%domain)
          call add(list, fluid%compressibility > 1.0e-6_rk, of_compressibility, &
                   fluid%compressibility)
-         call add(list, .not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
+         call add(list,.not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
                   fluid%viscosity)
          do i = 1, 4
             if (.not. allocated(scene%injections)) exit

@@ -34,11 +34,11 @@ module simulation_describe
       "## Where the limits come from", &
       "", &
       "The error of a result is that of the model, of the mesh and step, and of the solution of", &
-      "the equations. With the meshes of `inputs/` the mesh gives about 1 % (docs/verification.md),", &
+   "the equations. With the meshes of `inputs/` the mesh gives about 1 % (docs/verification.md),", &
       "so the share of each other source is held to a small part of that without a warning,", &
       "and a run stops where a source alone exceeds what anybody could use.", &
       "", &
-      "* **Solution of the equations**: forward error bound, mass error, contact residual. In the", &
+     "* **Solution of the equations**: forward error bound, mass error, contact residual. In the", &
       "  scenes of `inputs/` they are at most 5e-10, 3e-12 and 9e-11. A warning comes three", &
       "  decades or more below 1 %: something is badly scaled, but results are still good. Steps", &
       "  of a scene with a fluid are cut before their contact residual reaches its limit.", &
@@ -54,11 +54,11 @@ module simulation_describe
       "  or from a fluid that has nowhere to go.", &
       "* **Smallest angle**: errors grow with one over its sine; the mesher gives 20 degrees and", &
       "  more where the fractures leave it room.", &
-      "* **Stress intensity factors**: on sound meshes the two methods differ by 1 to 2 % and the", &
+     "* **Stress intensity factors**: on sound meshes the two methods differ by 1 to 2 % and the", &
       "  estimated errors are below 1 %. Growth asks whether K_eq reaches K_IC, so errors and", &
-      "  excess are in shares of K_IC: at 5 % the onset is uncertain by as much. In a state whose", &
-      "  growth is done no tip should exceed K_IC; 2 % is what fluid and growth, which take turns,", &
-      "  may leave. More means that growth lags behind the load, and times and pressures of growth", &
+     "  excess are in shares of K_IC: at 5 % the onset is uncertain by as much. In a state whose", &
+    "  growth is done no tip should exceed K_IC; 2 % is what fluid and growth, which take turns,", &
+    "  may leave. More means that growth lags behind the load, and times and pressures of growth", &
       "  depend on the step.", &
       "", &
       "## What is doubted", &

@@ -62,8 +62,8 @@ module simulation_limits
               "size in that direction", &
               "look at the loads and at young: the equations are for small strains"), &
       limit_t("pressure over the load", "-", with_fluid, 1.0e1_rk, 1.0e4_rk, &
-              "Largest fluid pressure, without its sign, over what can be expected: the largest "// &
-              "load, initial pressure, or pressure that lets the longest fracture grow", &
+              "Largest fluid pressure, without its sign, over what can be expected: the "// &
+              "largest load, initial pressure, or pressure that lets the longest fracture grow", &
               "look at the rates of the wells; shorten the step"), &
       limit_t("pressure over Young's modulus", "-", with_fluid, 1.0e-2_rk, 1.0_rk, &
               "Largest fluid pressure, without its sign, over Young's modulus", &
@@ -72,8 +72,8 @@ module simulation_limits
               "Smallest angle of all triangles", &
               "move fractures apart that run closely beside each other, or give smaller cells"), &
       limit_t("disagreement of the stress intensity factors", "-", "always", 0.1_rk, 10.0_rk, &
-              "Difference of K by the interaction integral and by displacement correlation, over "// &
-              "the largest K of all tips, or over K_IC if that is larger and tips may grow", &
+              "Difference of K by the interaction integral and by displacement correlation, "// &
+              "over the largest K of all tips, or over K_IC if that is larger and tips may grow", &
               "give smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
               10.0_rk, "Estimated error of K of a tip that may grow, over K_IC", &

@@ -12,7 +12,7 @@ module simulation_watch
 
    public :: watch_t, worst_place
 
-   integer, parameter :: digits = 3  !< of numbers in sentences
+   integer, parameter :: digits = 4  !< of numbers in sentences
 
    !> What was seen of one limit.
    type :: record_t

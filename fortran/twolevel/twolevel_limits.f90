@@ -99,9 +99,10 @@ contains
                           self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk)
    end subroutine watch_mesh
 
-   !> Take note of the tips when growth in a state is done.
-   subroutine watch_windows(self)
+   !> Take note of the tips. None shall exceed the toughness once growth in a state is done.
+   subroutine watch_windows(self, growth_is_done)
       class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: growth_is_done  !< else tips must not grow in this state
       character(len=:), allocatable :: when
       real(rk) :: drive(size(self%tip))
       integer(ik) :: i
@@ -109,7 +110,7 @@ contains
       when = present_time(self)
       associate (toughness => self%scene%material%toughness, may_grow => self%scene%growth%enabled)
          call self%watch%see_tips(self%tip, toughness, may_grow, when)
-         if (.not. may_grow .or. all(self%tip%arrested)) return
+         if (.not. growth_is_done .or. all(self%tip%arrested)) return
          drive = merge(0.0_rk, self%tip%drive%intensity, self%tip%arrested)
          i = worst_place(drive)
          call self%watch%see(limit_keq, drive(i)/toughness, when, self%tip(i)%xy)

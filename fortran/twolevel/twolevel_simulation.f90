@@ -194,7 +194,7 @@ contains
             call self%note_tips()
          end if
          call count_unknowns(self, self%summary)
-         call watch_windows(self)
+         call watch_windows(self, may_grow)
          call self%heed_limits(error)
          if (allocated(error)) return
       end if

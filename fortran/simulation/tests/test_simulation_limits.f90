@@ -6,8 +6,8 @@ program test_simulation_limits
    use base_texts, only: text_t
    use growth_tip, only: tip_t
    use simulation_describe, only: describe_limits
-   use simulation_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, limits, &
-                                verdict_fine, verdict_stop, verdict_warning
+   use simulation_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, &
+                                limits, verdict_fine, verdict_stop, verdict_warning
    use simulation_watch, only: watch_t, worst_place
    use testing_checks, only: checks_t
    use testing_pages, only: check_page
