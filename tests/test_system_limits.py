@@ -74,7 +74,7 @@ def test_soft_rock_without_fluid_is_warned_of(tmp_path: Path) -> None:
     assert status == 0
     jump, strain = warnings
     assert jump.startswith("jump over its fracture cell's length 2.1")
-    assert "strain of the body 0.0407" in strain
+    assert strain.startswith("strain of the body 0.040")
 
 
 def test_check_tells_what_is_doubted(tmp_path: Path) -> None:
