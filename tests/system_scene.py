@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -88,6 +89,13 @@ def run(place: Path, text: str, out: str = "out") -> Path:
     done = call(place, "run", scene.name, "--out", out, "--quiet", "--no-plot")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     return place / out
+
+
+def record(out: Path) -> dict[str, object]:
+    """Give what run.json holds."""
+    content = json.loads((out / "run.json").read_text())
+    assert isinstance(content, dict)
+    return content
 
 
 def rows(path: Path) -> list[dict[str, str]]:

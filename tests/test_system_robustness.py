@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import resource
 import signal
 import subprocess
@@ -10,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from system_scene import GROWING, TOP, call, numbers, rows, start
+from system_scene import GROWING, TOP, call, numbers, record, rows, start
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -27,13 +26,6 @@ HALVES = """\
 &load from = -3.0, to = 1.0, steps = 4 /
 &fe size_fracture = 0.2, size_boundary = 0.5 /
 """
-
-
-def record(out: Path) -> dict[str, object]:
-    """Give what run.json holds."""
-    content = json.loads((out / "run.json").read_text())
-    assert isinstance(content, dict)
-    return content
 
 
 def test_a_failed_run_leaves_the_last_good_state(tmp_path: Path) -> None:

@@ -1,6 +1,8 @@
 !> What a scene has and leaves out, without running it.
 module app_check
+   use app_warnings, only: show_warnings
    use base_kinds, only: ik, rk
+   use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
    use growth_network, only: network_of_scene, total_length
    implicit none(type, external)
@@ -48,6 +50,7 @@ contains
          write (unit, "(a,i0,a,i0,a)") "about:        ", estimated_cells(scene), " cells, ", &
             fracture_cells, " fracture cells"
       end associate
+      call show_warnings(doubts_of_scene(scene), unit)
    end subroutine describe_scene
 
    !> Number of cells by integrating 1/area over the body, cell size linear in the distance from the

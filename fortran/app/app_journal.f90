@@ -108,7 +108,9 @@ contains
          do i = 1, size(chronicle%tips, kind=ik)
             call self%files%tip_row(chronicle%tips(i))
          end do
-         if (allocated(chronicle%remark)) call self%files%log(chronicle%remark)
+         do i = 1, size(chronicle%remarks, kind=ik)
+            call self%files%log(chronicle%remarks(i)%text)
+         end do
          if (chronicle%has_new_network) call write_network(self, simulation)
          call chronicle%clear()
       end associate

@@ -2,6 +2,7 @@
 module app_run
    use app_journal, only: journal_t
    use app_process, only: interrupted
+   use app_warnings, only: show_warnings
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_texts, only: text_t
@@ -58,6 +59,7 @@ contains
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
+      call simulation%tell_limits()
       record%summary_t = simulation%summary
       record%scene = trim(scene%name)
       record%version = version
@@ -73,6 +75,7 @@ contains
       end if
       call journal%files%log(record%status//": "//record%reason//origin_text(error))
       call journal%files%close(record, timers, trouble)
+      if (.not. quiet) call show_warnings(record%warnings, output_unit)
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
       if (.not. quiet) call say_closing(simulation, record, timers%wall_seconds(), directory)
    end subroutine run_scene

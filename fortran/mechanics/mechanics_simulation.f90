@@ -5,6 +5,7 @@ module mechanics_simulation
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
+   use mechanics_limits, only: watch_body
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
    use mechanics_rise, only: rise
    use mechanics_state, only: loaded_body_t
@@ -65,25 +66,8 @@ contains
          call summary%note(scene%adaptive%enabled, "meshes that follow the error", &
                            "error estimates: not asked for")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
-         if (is_hard_for_tips(scene)) then
-            call summary%warn("Poisson's ratio is nearly 0.5: the elements around the tips are "// &
-                              "too stiff, the stress intensity factors have errors up to 1 % "// &
-                              "and far more by displacement correlation; with &adaptive "// &
-                              "enabled = .true. the former are within 0.1 %")
-         end if
       end associate
    end subroutine note_features
-
-   !> Rock so nearly incompressible that the elements around the tips are too stiff, on a mesh that
-   !! does not follow the error (verification/extreme_cracks).
-   pure logical function is_hard_for_tips(scene)
-      type(scene_t), intent(in) :: scene
-      real(rk), parameter :: nearly_incompressible = 0.49_rk
-
-      is_hard_for_tips = scene%growth%intensities .and. .not. scene%adaptive%enabled .and. &
-                         .not. scene%material%plane_stress .and. &
-                         scene%material%poisson > nearly_incompressible
-   end function is_hard_for_tips
 
    !> Raise the load to the end of the programme's step, or to the next onset of growth.
    subroutine next_state(self, timers, error)
@@ -98,6 +82,9 @@ contains
       end associate
       self%is_good = .false.
       call rise(self, target, self%has_onset, timers, error)
+      if (allocated(error)) return
+      call watch_body(self)
+      call self%heed_limits(error)
       if (allocated(error)) return
       self%is_good = .true.
       self%shows_state = .not. self%has_onset
@@ -131,7 +118,7 @@ contains
             write (remark, "(a,es13.6,a,es9.2,a,i0,a)") "load factor ", self%factor, &
                ": estimated error in the energy norm ", body%estimate%relative, ", ", &
                body%mesh%n_cells, " elements"
-            self%chronicle%remark = trim(remark)
+            call self%chronicle%add_remark(trim(remark))
          end if
       end associate
       self%good = body_snapshot(self)

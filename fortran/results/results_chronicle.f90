@@ -1,6 +1,7 @@
 !> What has happened in a run since its files were last written.
 module results_chronicle
    use base_kinds, only: ik, rk
+   use base_texts, only: add_text, text_t
    use results_rows, only: tip_row_t
    implicit none(type, external)
    private
@@ -32,12 +33,13 @@ module results_chronicle
    type :: chronicle_t
       type(event_t), allocatable :: events(:)
       type(tip_row_t), allocatable :: tips(:)
-      character(len=:), allocatable :: remark  !< a line for the log
+      type(text_t), allocatable :: remarks(:)  !< lines for the log
       logical :: has_new_network = .false.  !< the mesh has followed growth
    contains
       procedure :: clear
       procedure :: add_event
       procedure :: add_tip
+      procedure :: add_remark
    end type chronicle_t
 
 contains
@@ -48,7 +50,7 @@ contains
 
       self%events = [event_t ::]
       self%tips = [tip_row_t ::]
-      if (allocated(self%remark)) deallocate (self%remark)
+      self%remarks = [text_t ::]
       self%has_new_network = .false.
    end subroutine clear
 
@@ -81,5 +83,13 @@ contains
 
       self%tips = [self%tips, row]
    end subroutine add_tip
+
+   !> Add a line for the log.
+   pure subroutine add_remark(self, line)
+      class(chronicle_t), intent(inout) :: self
+      character(len=*), intent(in) :: line
+
+      call add_text(self%remarks, line)
+   end subroutine add_remark
 
 end module results_chronicle

@@ -3,6 +3,7 @@
 module simulation_types
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: text_t
    use base_timers, only: timers_t
    use contact_states, only: state_open, state_slip
    use growth_front, only: front_t
@@ -15,7 +16,9 @@ module simulation_types
    use results_fields, only: fracture_fields_t, matrix_fields_t
    use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use results_summary, only: summary_t
+   use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
+   use simulation_watch, only: watch_t
    implicit none(type, external)
    private
 
@@ -35,6 +38,7 @@ module simulation_types
       type(network_t) :: start  !< network of the scene
       type(chronicle_t) :: chronicle  !< since the files were last written
       type(summary_t) :: summary  !< of the run so far
+      type(watch_t) :: watch  !< over the limits of the run
       character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
       logical :: owes_state = .false.  !< the scene is over after one more state
       logical :: shows_state = .true.  !< the fields of the present state may be written
@@ -60,6 +64,8 @@ module simulation_types
       procedure :: end_at_gain
       procedure :: keq_over_kic
       procedure :: share_done
+      procedure :: heed_limits
+      procedure :: tell_limits
    end type simulation_t
 
    abstract interface
@@ -137,14 +143,21 @@ module simulation_types
 
 contains
 
-   !> The scene, of which nothing has happened yet.
-   pure subroutine set_scene(self, scene)
+   !> The scene, of which nothing has happened yet but that some values may be doubted.
+   subroutine set_scene(self, scene)
       class(simulation_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
+      type(text_t), allocatable :: doubts(:)
+      integer :: i
 
       self%scene = scene
       if (.not. allocated(self%scene%injections)) allocate (self%scene%injections(0))
       call self%chronicle%clear()
+      doubts = doubts_of_scene(scene)
+      do i = 1, size(doubts)
+         call self%summary%warn(doubts(i)%text)
+         call self%chronicle%add_remark("warning: "//doubts(i)%text)
+      end do
       allocate (self%has_slipped(size(scene%fractures)), source=.false.)
       allocate (self%has_opened(size(scene%fractures)), source=.false.)
    end subroutine set_scene
@@ -344,5 +357,32 @@ contains
          end associate
       end do
    end subroutine end_at_gain
+
+   !> Limits that were passed for the first time go to the log; one may ask to stop the run.
+   pure subroutine heed_limits(self, error)
+      class(simulation_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (allocated(self%watch%news)) then
+         do i = 1, size(self%watch%news)
+            call self%chronicle%add_remark("warning: "//self%watch%news(i)%text)
+         end do
+         deallocate (self%watch%news)
+      end if
+      call self%watch%stop_run(error)
+   end subroutine heed_limits
+
+   !> At the end of a run the summary learns which limits were passed.
+   subroutine tell_limits(self)
+      class(simulation_t), intent(inout) :: self
+      type(text_t), allocatable :: sentences(:)
+      integer :: i
+
+      sentences = self%watch%sentences()
+      do i = 1, size(sentences)
+         call self%summary%warn(sentences(i)%text)
+      end do
+   end subroutine tell_limits
 
 end module simulation_types

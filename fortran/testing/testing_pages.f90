@@ -33,7 +33,7 @@ contains
          call checks%is_true(from_code == from_page, name//", line "//trim(number)//": "// &
                              trim(from_page))
       end do
-      call checks%is_true(line > 100, "the page is whole")
+      call checks%is_true(line > 60, "the page is whole")
    end subroutine check_page
 
 end module testing_pages

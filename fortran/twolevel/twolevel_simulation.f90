@@ -5,12 +5,13 @@ module twolevel_simulation
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_state, only: step_report_t
+   use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_step_cut
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_types, only: snapshot_t
+   use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_results, only: cell_states, count_unknowns, history_of_levels, probes_of_levels, &
                                slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
@@ -52,6 +53,7 @@ contains
 
       self%end_time = scene%time%end
       call self%mesh_levels(scene, timers, error)
+      if (.not. allocated(error)) call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
@@ -81,27 +83,36 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: slip_before(:, :)  ! (2, fracture cells) [u]_tau [m]
+      type(state_t) :: before
+      type(history_row_t) :: row
       logical :: is_first
 
       is_first = .not. self%stepper%next > 0.0_rk
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       if (is_first) self%stepper%next = self%scene%time%step
-      slip_before = self%state%jump(2, :, :)
+      before = self%state
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
-         if (allocated(error)) return
       else
          call take_step(self, timers, error)
-         if (allocated(error)) return
+      end if
+      if (allocated(error)) return
+      self%seismic_moment = self%seismic_moment + slip_moment(self, before%jump(2, :, :))
+      self%mass_error = self%mass_error + self%report%mass_error
+      row = self%history()
+      call watch_levels(self, self%report, row%mass_error_relative)
+      call self%heed_limits(error)
+      if (allocated(error)) then
+         self%state = before  ! the last good one
+         return
+      end if
+      if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
          if (.not. self%owes_state) then
             call self%stepper%step_done(self%scene%time, self%state%pressure(self%grown))
          end if
       end if
-      self%seismic_moment = self%seismic_moment + slip_moment(self, slip_before)
-      self%mass_error = self%mass_error + self%report%mass_error
-      call note_state(self)
+      call note_state(self, row%mass_error_relative)
    end subroutine next_state
 
    !> The state before the first step.
@@ -144,18 +155,17 @@ contains
    end subroutine take_step
 
    !> An accepted state: contact and the run's largest values.
-   subroutine note_state(self)
+   subroutine note_state(self, mass_error_relative)
       class(twolevel_simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: mass_error_relative  !< of all steps [-]
       logical :: always(size(self%scene%fractures))
-      type(history_row_t) :: row
 
       always = .true.
-      row = self%history()
       associate (summary => self%summary, report => self%report)
          summary%contact_residual = max(summary%contact_residual, report%contact_residual)
          summary%condition_estimate = max(summary%condition_estimate, report%condition)
          summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
-         summary%mass_error_relative = max(summary%mass_error_relative, row%mass_error_relative)
+         summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
          summary%lowest_pressure = min(summary%lowest_pressure, &
                                        minval(self%state%unknowns(3, :self%mesh%n_cells)), &
                                        minval(self%state%pressure))
@@ -187,6 +197,9 @@ contains
             call self%note_tips()
          end if
          call count_unknowns(self, self%summary)
+         call watch_windows(self, may_grow)
+         call self%heed_limits(error)
+         if (allocated(error)) return
       end if
       if (self%state%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
@@ -213,6 +226,8 @@ contains
          call self%end_at_gain()
          if (coarse_grew) then
             call self%note_mesh(self%mesh)
+            call watch_mesh(self, error)
+            if (allocated(error)) return
             call self%stepper%network_grew(self%scene%time)
          end if
          self%owes_state = allocated(self%ending) .and. self%stepper%is_short

@@ -6,6 +6,7 @@ program wingcrack_solver
    use app_run, only: run_scene
    use app_version, only: version
    use base_errors, only: error_t
+   use simulation_describe, only: describe_limits
    use output_describe, only: describe_output
    use scene_describe, only: describe_input
    use scene_namelist, only: read_scene
@@ -17,7 +18,8 @@ program wingcrack_solver
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_interrupted = 130
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
-                                  "--describe-input | --describe-output | --version"
+                                  "--describe-input | --describe-output | "// &
+                                  "--describe-limits | --version"
 
    select case (argument(1))
    case ("run")
@@ -30,6 +32,8 @@ program wingcrack_solver
       call describe_input(output_unit)
    case ("--describe-output")
       call describe_output(output_unit)
+   case ("--describe-limits")
+      call describe_limits(output_unit)
    case ("--version")
       write (output_unit, "(2a)") "wingcrack ", version
    case ("--help")

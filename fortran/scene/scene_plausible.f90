@@ -1,0 +1,185 @@
+!> What a scene says that can be simulated but is hardly meant: values out of the usual range, as
+!> wrong units give, and values that do not go together. These are warnings; what cannot be
+!> simulated is refused (scene_check).
+module scene_plausible
+   use base_kinds, only: rk
+   use base_texts, only: add_text, text_t
+   use base_tolerances, only: same_time
+   use scene_types, only: fracture_t, scene_t
+   use scene_words, only: rounded_text
+   implicit none(type, external)
+   private
+
+   public :: doubt_t, doubts, doubts_of_scene
+
+   !> A value that is doubted, and why.
+   type :: doubt_t
+      character(len=12) :: group = ""
+      character(len=16) :: name = ""
+      character(len=8) :: unit = "-"
+      character(len=64) :: doubtful = ""  !< when, in words
+      character(len=150) :: usual = ""  !< what would be, or what follows; a sentence
+   end type doubt_t
+
+   ! Indices into the table.
+   integer, parameter :: of_young = 1, of_poisson = 2, of_density = 3, of_porosity = 4, &
+                         of_permeability = 5, of_toughness = 6, of_compressibility = 7, &
+                         of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
+                         of_traction = 12, of_start = 13, of_window = 14, of_interval = 15
+
+   ! The table keeps its own layout.
+   !&<
+   type(doubt_t), parameter :: doubts(*) = [ &
+      doubt_t("material", "young", "Pa", "below 1e8 or above 1e12", &
+              "rock has 1e9 to 1e11 Pa"), &
+      doubt_t("material", "poisson", "-", &
+              "above 0.49, with intensities, in plane strain, without &adaptive", &
+              "the elements around the tips are too stiff then: stress intensity factors are "// &
+              "off by up to 1 %, with &adaptive by 0.1 %"), &
+      doubt_t("material", "density", "kg/m3", "below 100 or above 10000, if not 0", &
+              "rock has 2000 to 3000 kg/m3"), &
+      doubt_t("material", "porosity", "-", "above 0.5", &
+              "rock has 0.001 to 0.3, not per cent"), &
+      doubt_t("material", "permeability", "m2", "above 1e-8, with &fluid", &
+              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+      doubt_t("material", "toughness", "Pa m^1/2", "below 1e4 or above 1e8, with growth", &
+              "rock has 1e5 to 1e7 Pa m^1/2, and 1 MPa m^1/2 is 1e6"), &
+      doubt_t("fluid", "compressibility", "1/Pa", "above 1e-6", &
+              "water has 4e-10 1/Pa, a gas the inverse of its pressure"), &
+      doubt_t("fluid", "viscosity", "Pa s", "below 1e-6 or above 10", &
+              "water has 1e-4 to 1e-3 Pa s, gels 0.01 to 1 Pa s"), &
+      doubt_t("fracture", "friction", "-", "above 1.5", &
+              "rock has 0.3 to 1"), &
+      doubt_t("fracture", "dilation_deg", "degree", "above the angle of friction", &
+              "then a slipping fracture does work instead of taking it up; 0 to 10 is usual"), &
+      doubt_t("fracture", "aperture", "m", "above a tenth of the fracture's length", &
+              "natural fractures have 1e-5 to 1e-3 m; the cubic law is for thin ones"), &
+      doubt_t("side", "traction", "Pa", "tension across a side, with wells", &
+              "rock at depth is compressed, and compression is negative"), &
+      doubt_t("injection", "start", "s", "not before the end of &time", &
+              "the well never runs"), &
+      doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
+              "a window is cut out around each tip; a few times the fracture is usual"), &
+      doubt_t("output", "interval", "s", "below the step of &time", &
+              "fields are written at most once per step")]
+   !&>
+
+contains
+
+   !> A sentence for each doubt about a scene.
+   pure function doubts_of_scene(scene) result(list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable :: list(:)
+      logical :: has_fluid
+
+      allocate (list(0))
+      has_fluid = scene%has_fluid()
+      call doubt_material(scene, has_fluid, list)
+      call doubt_fractures(scene%fractures, has_fluid, list)
+      if (has_fluid) call doubt_flow(scene, list)
+   end function doubts_of_scene
+
+   pure subroutine doubt_material(scene, has_fluid, list)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: has_fluid
+      type(text_t), allocatable, intent(inout) :: list(:)
+
+      associate (m => scene%material)
+         call add(list,.not. within(m%young, 1.0e8_rk, 1.0e12_rk), of_young, m%young)
+         ! The bound is measured: verification/extreme_cracks.
+         call add(list, m%poisson > 0.49_rk .and. scene%growth%intensities .and. &
+                  .not. (m%plane_stress .or. scene%adaptive%enabled), of_poisson, m%poisson)
+         call add(list, m%density > 0.0_rk .and. .not. within(m%density, 100.0_rk, 1.0e4_rk), &
+                  of_density, m%density)
+         call add(list, m%porosity > 0.5_rk, of_porosity, m%porosity)
+         associate (largest => max(m%permeability_xx, m%permeability_yy))
+            call add(list, has_fluid .and. largest > 1.0e-8_rk, of_permeability, largest)
+         end associate
+         if (scene%growth%enabled) then
+            call add(list,.not. within(m%toughness, 1.0e4_rk, 1.0e8_rk), of_toughness, &
+                     m%toughness)
+         end if
+      end associate
+   end subroutine doubt_material
+
+   pure subroutine doubt_fractures(fractures, has_fluid, list)
+      type(fracture_t), intent(in) :: fractures(:)
+      logical, intent(in) :: has_fluid
+      type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
+      integer :: i
+
+      do i = 1, size(fractures)
+         associate (f => fractures(i), whose => " '"//trim(fractures(i)%name)//"'")
+            call add(list, f%friction > 1.5_rk, of_friction, f%friction, whose)
+            call add(list, f%law == "friction" .and. tan(f%dilation) > f%friction, of_dilation, &
+                     f%dilation*degrees, whose)
+            call add(list, has_fluid .and. f%aperture > 0.1_rk*f%length(), of_aperture, &
+                     f%aperture, whose)
+         end associate
+      end do
+   end subroutine doubt_fractures
+
+   !> What only a scene with a fluid has: the body is a rectangle then.
+   pure subroutine doubt_flow(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
+      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
+      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
+      real(rk) :: across
+      integer :: i
+
+      associate (fluid => scene%fluid, d => scene%domain)
+         call add(list, fluid%compressibility > 1.0e-6_rk, of_compressibility, &
+                  fluid%compressibility)
+         call add(list,.not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
+                  fluid%viscosity)
+         do i = 1, 4
+            if (.not. allocated(scene%injections)) exit
+            across = outward(i)*scene%sides(i)%traction(axis(i)) &
+                     + scene%sides(i)%normal_traction
+            call add(list, size(scene%injections) > 0 .and. across > 0.0_rk, of_traction, across, &
+                     trim(sides(i)))
+         end do
+         call add(list, scene%growth%intensities .and. scene%discretization%window >= &
+                  min(d%x_max - d%x_min, d%y_max - d%y_min), of_window, &
+                  scene%discretization%window)
+      end associate
+      do i = 1, merge(size(scene%injections), 0, allocated(scene%injections))
+         call add(list, scene%injections(i)%start >= scene%time%end, of_start, &
+                  scene%injections(i)%start)
+      end do
+      associate (interval => scene%output%interval)
+         call add(list, interval > 0.0_rk .and. &
+                  interval < scene%time%step*(1.0_rk - same_time), of_interval, interval)
+      end associate
+   end subroutine doubt_flow
+
+   pure logical function within(value, lowest, highest)
+      real(rk), intent(in) :: value, lowest, highest
+
+      within = value >= lowest .and. value <= highest
+   end function within
+
+   !> Add the sentence of a doubt that there is.
+   pure subroutine add(list, there_is, doubt, value, whose)
+      type(text_t), allocatable, intent(inout) :: list(:)
+      logical, intent(in) :: there_is
+      integer, intent(in) :: doubt  !< index into the table
+      real(rk), intent(in) :: value  !< in the doubt's unit
+      character(len=*), intent(in), optional :: whose  !< name of fracture or side, in quotes
+      character(len=:), allocatable :: place, unit
+      type(doubt_t) :: d
+
+      if (.not. there_is) return
+      d = doubts(doubt)
+      place = "&"//trim(d%group)
+      if (present(whose)) place = place//whose
+      unit = ""
+      if (d%unit /= "-") unit = " "//trim(d%unit)
+      call add_text(list, place//": "//trim(d%name)//" is "//rounded_text(value)//unit//": "// &
+                    trim(d%usual))
+   end subroutine add
+
+end module scene_plausible

@@ -1,0 +1,144 @@
+!> What a scene says that is hardly meant: each doubt by a value just past its bound and none at it,
+!> and none about a scene as it should be.
+program test_scene_plausible
+   use base_kinds, only: rk
+   use base_texts, only: text_t
+   use scene_plausible, only: doubts, doubts_of_scene
+   use scene_types, only: boundary_part_t, fracture_t, injection_t, scene_t
+   use testing_checks, only: checks_t
+   implicit none(type, external)
+   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  ! per degree
+   type(checks_t) :: checks
+   type(scene_t) :: scene, solid
+   integer :: provoked = 0
+
+   scene = sound()
+   solid = sound()
+   solid%fluid%viscosity = 0.0_rk
+   call expect(scene, "", "a scene with a fluid")
+   call expect(solid, "", "a scene without")
+
+   scene%material%young = 40.0_rk
+   call expect(scene, "&material: young is 40.0 Pa: rock has 1e9 to 1e11 Pa", "young")
+   call test_material()
+   call test_fractures()
+   call test_flow()
+   call checks%is_true(provoked == size(doubts), "every doubt is provoked")
+   call checks%finish()
+
+contains
+
+   !> Injection into a fracture of a pressed body.
+   function sound() result(s)
+      type(scene_t) :: s
+
+      s%domain%x_max = 2.0_rk
+      s%domain%y_max = 2.0_rk
+      s%material%young = 40.0e9_rk
+      s%material%poisson = 0.2_rk
+      s%material%permeability_xx = 5.0e-20_rk
+      s%material%permeability_yy = 5.0e-20_rk
+      s%material%toughness = 0.7e6_rk
+      s%fluid%viscosity = 1.0e-3_rk
+      s%fluid%compressibility = 4.0e-10_rk
+      s%fractures = [fracture_t(name="f1", x=[0.9_rk, 1.1_rk], y=[1.0_rk, 1.0_rk], &
+                                friction=0.5_rk, dilation=radians, aperture=1.0e-3_rk)]
+      s%sides(2)%traction(1) = -20.0e6_rk
+      s%sides(4)%traction(2) = -10.0e6_rk
+      s%injections = [injection_t(fracture=1, rate=5.0e-9_rk)]
+      s%time%end = 3600.0_rk
+      s%time%step = 60.0_rk
+      s%output%interval = 60.0_rk
+      s%discretization%window = 0.5_rk
+      s%growth%enabled = .true.
+      s%growth%intensities = .true.
+      s%parts = [boundary_part_t ::]
+   end function sound
+
+   !> A scene raises one doubt, whose sentence begins with the given words; none if these are empty.
+   subroutine expect(s, words, name)
+      type(scene_t), intent(in) :: s
+      character(len=*), intent(in) :: words, name
+      type(text_t), allocatable :: list(:)
+
+      list = doubts_of_scene(s)
+      call checks%is_true(size(list) == merge(0, 1, words == ""), name//": how many")
+      if (size(list) /= 1) return
+      provoked = provoked + 1
+      call checks%is_true(index(list(1)%text, words) == 1, name//": "//list(1)%text)
+   end subroutine expect
+
+   subroutine test_material()
+      type(scene_t) :: s
+
+      s = solid
+      s%material%poisson = 0.4999_rk
+      call expect(s, "&material: poisson is 0.4999: ", "poisson")
+      s%adaptive%enabled = .true.
+      call expect(s, "", "poisson with a mesh that follows the error")
+      s = solid
+      s%material%density = 2.65_rk
+      call expect(s, "&material: density is 2.65 kg/m3: ", "density")
+      s = scene
+      s%material%young = 40.0e9_rk
+      s%material%porosity = 1.0_rk
+      call expect(s, "&material: porosity is 1.0: ", "porosity")
+      s = sound()
+      s%material%permeability_yy = 0.1_rk
+      call expect(s, "&material: permeability is 0.1 m2: ", "permeability")
+      s%fluid%viscosity = 0.0_rk
+      call expect(s, "", "permeability without a fluid")
+      s = sound()
+      s%material%toughness = 0.7_rk
+      call expect(s, "&material: toughness is 0.7 Pa m^1/2: ", "toughness")
+      s%growth%enabled = .false.
+      call expect(s, "", "toughness without growth")
+   end subroutine test_material
+
+   subroutine test_fractures()
+      type(scene_t) :: s
+
+      s = sound()
+      s%fractures(1)%friction = 1.5_rk
+      call expect(s, "", "friction at its bound")
+      s%fractures(1)%friction = 1.6_rk
+      call expect(s, "&fracture 'f1': friction is 1.6: ", "friction")
+      s = sound()
+      s%fractures(1)%dilation = 30.0_rk*radians
+      call expect(s, "&fracture 'f1': dilation_deg is 30.0 degree: ", "dilation")
+      s%fractures(1)%law = "frictionless"
+      call expect(s, "", "dilation of another law")
+      s = sound()
+      s%fractures(1)%aperture = 0.03_rk
+      call expect(s, "&fracture 'f1': aperture is 0.03 m: ", "aperture")
+   end subroutine test_fractures
+
+   subroutine test_flow()
+      type(scene_t) :: s
+
+      s = sound()
+      s%fluid%compressibility = 4.0e-4_rk
+      call expect(s, "&fluid: compressibility is 4.0e-4 1/Pa: ", "compressibility")
+      s = sound()
+      s%fluid%viscosity = 100.0_rk
+      call expect(s, "&fluid: viscosity is 100.0 Pa s: ", "viscosity")
+      s = sound()
+      s%sides(4)%traction(2) = 10.0e6_rk
+      call expect(s, "&side 'top': traction is 1.0e7 Pa: ", "tension")
+      s%injections = [injection_t ::]
+      call expect(s, "", "tension without a well")
+      s = sound()
+      s%sides(1)%traction(1) = 20.0e6_rk
+      call expect(s, "", "compression from the left")
+      s = sound()
+      s%injections%start = 3600.0_rk
+      call expect(s, "&injection: start is 3600.0 s: ", "a well that never runs")
+      s = sound()
+      s%discretization%window = 2.0_rk
+      call expect(s, "&fine: window is 2.0 m: ", "window")
+      s = sound()
+      s%output%interval = 6.0_rk
+      call expect(s, "&output: interval is 6.0 s: ", "interval")
+   end subroutine test_flow
+
+end program test_scene_plausible

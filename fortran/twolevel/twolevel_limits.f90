@@ -1,0 +1,167 @@
+!> What the limits of a run watch in a scene with a fluid (simulation_limits).
+module twolevel_limits
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text
+   use coarse_state, only: step_report_t
+   use mesh_builder, only: mesh_quality
+   use scene_types, only: scene_t
+   use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
+                                limit_jump, limit_keq, limit_mass, limit_pressure_load, &
+                                limit_pressure_stiffness, limit_strain
+   use simulation_watch, only: worst_place
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: pressure_scale, watch_levels, watch_mesh, watch_windows
+
+contains
+
+   !> Take note of a converged step, before it is accepted.
+   subroutine watch_levels(self, report, mass_error_relative)
+      class(two_levels_t), intent(inout) :: self
+      type(step_report_t), intent(in) :: report
+      real(rk), intent(in) :: mass_error_relative  !< of all steps, with this one [-]
+      character(len=:), allocatable :: when
+      real(rk) :: strain(2)
+
+      when = present_time(self)
+      associate (watch => self%watch, d => self%scene%domain, n => self%mesh%n_cells, &
+                 u => self%state%unknowns)
+         call watch%see(limit_forward_error, report%error_bound, when)
+         call watch%see(limit_mass, mass_error_relative, when)
+         call watch%see(limit_contact, report%contact_residual, when)
+         strain = (maxval(u(:2, :n), dim=2) - minval(u(:2, :n), dim=2)) &
+                  /[d%x_max - d%x_min, d%y_max - d%y_min]
+         call watch%see(limit_strain, strain(worst_place(strain)), when)
+      end associate
+      call watch_pressure(self, when)
+      if (self%mesh%fracture%n_cells > 0) call watch_fractures(self, when)
+   end subroutine watch_levels
+
+   !> Pressure in the rock and in the fractures.
+   subroutine watch_pressure(self, when)
+      class(two_levels_t), intent(inout) :: self
+      character(len=*), intent(in) :: when
+      real(rk) :: pressure, scale, xy(2)
+      integer(ik) :: i
+
+      associate (mesh => self%mesh, p => self%state%unknowns(3, :self%mesh%n_cells))
+         i = worst_place(abs(p))
+         pressure = abs(p(i))
+         xy = sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk
+      end associate
+      if (self%mesh%fracture%n_cells > 0) then
+         associate (p => self%state%pressure)
+            i = worst_place(abs(p))
+            if (.not. abs(p(i)) <= pressure) then
+               pressure = abs(p(i))
+               xy = middle(self, i)
+            end if
+         end associate
+      end if
+      call self%watch%see(limit_pressure_stiffness, pressure/self%scene%material%young, when, xy)
+      scale = pressure_scale(self%scene)
+      if (scale > 0.0_rk) call self%watch%see(limit_pressure_load, pressure/scale, when, xy)
+   end subroutine watch_pressure
+
+   !> Aperture and jump of the fracture cells.
+   subroutine watch_fractures(self, when)
+      class(two_levels_t), intent(inout) :: self
+      character(len=*), intent(in) :: when
+      real(rk) :: ratio(self%mesh%fracture%n_cells)
+      integer(ik) :: i
+
+      associate (d => self%scene%domain, state => self%state, &
+                 length => self%model%condensed%length)
+         i = worst_place(state%aperture)
+         call self%watch%see(limit_aperture, &
+                             state%aperture(i)/min(d%x_max - d%x_min, d%y_max - d%y_min), when, &
+                             middle(self, i))
+         ratio = maxval(norm2(state%jump, dim=1), dim=1)/length
+         i = worst_place(ratio)
+         call self%watch%see(limit_jump, ratio(i), when, middle(self, i))
+      end associate
+   end subroutine watch_fractures
+
+   !> Take note of a new coarse mesh.
+   subroutine watch_mesh(self, error)
+      class(two_levels_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
+      real(rk) :: angle
+      integer(ik) :: cell
+
+      call mesh_quality(self%mesher, angle, cell, error)
+      if (allocated(error)) return
+      call self%watch%see(limit_angle, angle*degrees, present_time(self), sum( &
+                          self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk)
+   end subroutine watch_mesh
+
+   !> Take note of the tips. None shall exceed the toughness once growth in a state is done.
+   subroutine watch_windows(self, growth_is_done)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: growth_is_done  !< else tips must not grow in this state
+      character(len=:), allocatable :: when
+      real(rk) :: drive(size(self%tip))
+      integer(ik) :: i
+
+      when = present_time(self)
+      associate (toughness => self%scene%material%toughness, may_grow => self%scene%growth%enabled)
+         call self%watch%see_tips(self%tip, toughness, may_grow, when)
+         if (.not. growth_is_done .or. all(self%tip%arrested)) return
+         drive = merge(0.0_rk, self%tip%drive%intensity, self%tip%arrested)
+         i = worst_place(drive)
+         call self%watch%see(limit_keq, drive(i)/toughness, when, self%tip(i)%xy)
+      end associate
+   end subroutine watch_windows
+
+   !> The largest pressure that can be expected in a scene: that of its loads or of its state before
+   !! them, and with growth what opens the longest fracture against its toughness [Pa]; 0 if it has
+   !! none of these.
+   pure real(rk) function pressure_scale(scene) result(scale)
+      type(scene_t), intent(in) :: scene
+      real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
+      real(rk) :: extent, longest
+      integer :: i
+
+      associate (d => scene%domain)
+         extent = min(d%x_max - d%x_min, d%y_max - d%y_min)
+      end associate
+      scale = abs(scene%initial%pressure)
+      do i = 1, size(scene%sides)
+         associate (side => scene%sides(i))
+            scale = max(scale, maxval(abs(side%traction)), abs(side%normal_traction), &
+                        abs(side%shear_traction), abs(side%pressure), &
+                        scene%material%young*maxval(abs(side%displacement))/extent)
+         end associate
+      end do
+      longest = 0.0_rk
+      do i = 1, size(scene%fractures)
+         longest = max(longest, scene%fractures(i)%length())
+      end do
+      if (scene%growth%enabled .and. longest > 0.0_rk) then
+         scale = max(scale, scene%material%toughness/sqrt(half_pi*longest))
+      end if
+   end function pressure_scale
+
+   !> Of a fracture cell [m].
+   pure function middle(self, cell) result(xy)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      real(rk) :: xy(2)
+
+      associate (fracture => self%mesh%fracture)
+         xy = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+      end associate
+   end function middle
+
+   pure function present_time(self) result(words)
+      class(two_levels_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = brief_text(self%state%time, 6)//" s"
+   end function present_time
+
+end module twolevel_limits

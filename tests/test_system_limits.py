@@ -1,0 +1,104 @@
+"""Limits of a run and doubts about a scene, through the real program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from system_scene import GROWING, SCENE, TOP, call, numbers, record, varied
+
+pytestmark = pytest.mark.usefixtures("program")
+
+
+def run(place: Path, text: str) -> tuple[int, str, str, list[str]]:
+    """Run a scene: status, terminal, last line of stderr, warnings on record."""
+    (place / "scene.nml").write_text(text)
+    done = call(place, "run", "scene.nml", "--out", "out", "--no-plot")
+    warnings = record(place / "out")["warnings"]
+    assert isinstance(warnings, list)
+    reason = done.stderr.splitlines()[-1] if done.stderr else ""
+    return done.returncode, done.stdout, reason, warnings
+
+
+def test_a_sound_run_has_no_warnings(tmp_path: Path) -> None:
+    status, terminal, _, warnings = run(tmp_path, SCENE)
+    assert (status, warnings) == (0, [])
+    assert "warning" not in terminal
+
+
+def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
+    """A rock like gravel: the rounding errors are large, and fluid gets lost."""
+    changes = ("permeability = 5.0e-20", "permeability = 1.0e-10")
+    status, terminal, _, warnings = run(tmp_path, varied(changes))
+    assert status == 0
+    bound, mass = warnings
+    assert bound.startswith("forward error bound 0.003503 above 1e-06 at 3600 s; in 5 states, ")
+    assert mass.startswith("mass error ")
+    assert "2 warnings:" in terminal
+    assert bound in terminal
+    log = (tmp_path / "out" / "run.log").read_text()
+    assert log.count("warning: forward error bound") == 1
+    assert log.count("warning: mass error") == 1
+
+
+def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:
+    """Fluid enough to part the body: that state is not accepted, the one before is on disk."""
+    changes = ("rate = 5.0e-9", "rate = 1.0e-2")
+    status, _, reason, warnings = run(tmp_path, varied(changes))
+    out = tmp_path / "out"
+    assert status == 1
+    told = record(out)
+    assert told["status"] == "failed"
+    assert reason == f"wingcrack: {told['reason']}"
+    assert reason.startswith("wingcrack: after 3600 s: a limit of the run is passed: ")
+    assert "pressure over Young's modulus" in reason
+    assert any(warning.startswith("aperture over the body's size") for warning in warnings)
+    times = numbers(out / "history.csv", "time_s")
+    assert times[-1] == 3600.0
+    assert told["steps"] == 1
+    assert numbers(out / "fractures.csv", "time_s")[-1] == 3600.0
+    assert max(numbers(out / "fractures.csv", "aperture_m")) < 1.1e-3
+
+
+def test_growth_that_lags_behind_is_warned_of(tmp_path: Path) -> None:
+    """The step of one hour is too long for the load: K_eq stays above K_IC after growth."""
+    status, _, _, warnings = run(tmp_path, GROWING)
+    assert status == 0
+    assert any(warning.startswith("K_eq over K_IC after growth 1.") for warning in warnings)
+
+
+def test_soft_rock_without_fluid_is_warned_of(tmp_path: Path) -> None:
+    """A strain of 4 %: the result is that of the linear equations, and the run says so."""
+    text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
+    status, _, _, warnings = run(tmp_path, text.replace("young = 70.0e9", "young = 150.0e6"))
+    assert status == 0
+    jump, strain = warnings
+    assert jump.startswith("jump over its fracture cell's length 2.1")
+    assert strain.startswith("strain of the body 0.040")
+
+
+def test_check_tells_what_is_doubted(tmp_path: Path) -> None:
+    text = varied(
+        ("young = 40.0e9", "young = 40.0"),
+        ("friction = 0.5", "friction = 1.6"),
+        ("permeability = 5.0e-20", "permeability = 0.05"),
+        ("start = 3600.0, end = 14400.0", "start = 36000.0, end = 72000.0"),
+    )
+    (tmp_path / "scene.nml").write_text(text)
+    done = call(tmp_path, "check", "scene.nml")
+    assert done.returncode == 0
+    told = done.stdout.split("4 warnings:\n")[1].splitlines()
+    assert told == [
+        "  &material: young is 40.0 Pa: rock has 1e9 to 1e11 Pa",
+        "  &material: permeability is 0.05 m2: rock has 1e-22 to 1e-11 m2, "
+        "and a millidarcy is 1e-15 m2",
+        "  &fracture 'f1': friction is 1.6: rock has 0.3 to 1",
+        "  &injection: start is 36000.0 s: the well never runs",
+    ]
+
+
+@pytest.mark.parametrize("scene", sorted((TOP / "inputs").rglob("*.nml")), ids=lambda p: p.stem)
+def test_nothing_in_the_shipped_scenes_is_doubted(scene: Path, tmp_path: Path) -> None:
+    done = call(tmp_path, "check", scene)
+    assert done.returncode == 0
+    assert "warning" not in done.stdout
