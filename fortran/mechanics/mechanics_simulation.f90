@@ -1,5 +1,5 @@
-!> A scene without a fluid in progress: the load rises in steps, and from one onset of growth to the
-!! next.
+!> A scene without a fluid in progress: the load rises or falls in steps, and from one onset of
+!! growth to the next.
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -19,8 +19,8 @@ module mechanics_simulation
 
    !> The scene, and where its load programme stands.
    type, extends(loaded_body_t) :: mechanics_simulation_t
-      integer(ik) :: step = 1  !< of the programme, in which the load rises
-      logical :: has_onset = .false.  !< growth has stopped the rise
+      integer(ik) :: step = 1  !< of the programme, in which the load changes
+      logical :: has_onset = .false.  !< growth has stopped the load
       real(rk) :: time_before = 0.0_rk  !< of the state before the present one [s]
       real(rk) :: accepted_time = 0.0_rk  !< of the present or last accepted state [s]
       type(snapshot_t), allocatable :: good  !< of the last accepted state
@@ -84,7 +84,7 @@ contains
                          scene%material%poisson > nearly_incompressible
    end function is_hard_for_tips
 
-   !> Raise the load to the end of the programme's step, or to the next onset of growth.
+   !> Take the load to the end of the programme's step, or to the next onset of growth.
    subroutine next_state(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
