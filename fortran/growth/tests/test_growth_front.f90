@@ -14,6 +14,8 @@ program test_growth_front
 
    real(rk), parameter :: radius = 0.025_rk  !< of the rosettes [m]
    real(rk), parameter :: increment = 0.03_rk  !< l_max [m]
+   !> Kinks and advances are multiples of 1e-7 rad and 1e-7 l_max; half of each, in 15 steps.
+   real(rk), parameter :: grains = 15.0_rk*1.0e-7_rk*increment
    !> Fracture 1 with two tips that grow here, fracture 2 above it.
    real(rk), parameter :: lines(2, 2, 2) = reshape([0.51_rk, 1.0_rk, 1.51_rk, 1.0_rk, 0.51_rk, &
                                                     1.51_rk, 1.51_rk, 1.51_rk], [2, 2, 2])
@@ -90,7 +92,7 @@ contains
       call grow(front, any_grew)
       call checks%is_true(any_grew, "both grow")
       call checks%is_close(front%tip(1)%advance, increment, 1.0e-15_rk, "the stronger tip: l_max")
-      call checks%is_close(front%tip(2)%advance, advance, 1.0e-15_rk, "the weaker one: less")
+      call checks%is_close(front%tip(2)%advance, advance, grains, "the weaker one: less")
       ! Anticlockwise from the tip's own direction.
       call is_at(front%tip(1)%xy, lines(:, 1, 1) - increment*[cos(0.3_rk), sin(0.3_rk)], "tip 1")
       call is_at(front%tip(2)%xy, lines(:, 2, 1) + advance*[cos(0.5_rk), -sin(0.5_rk)], "tip 2")
@@ -105,7 +107,7 @@ contains
       real(rk), intent(in) :: xy(2), expected(2)
       character(len=*), intent(in) :: name
 
-      call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, 1.0e-13_rk, name)
+      call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, grains, name)
    end subroutine is_at
 
    !> An advance below 0.4 of the rosette's radius waits until there is enough of it.
@@ -119,7 +121,7 @@ contains
       front%tip(1)%drive = growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk)
       call grow(front, any_grew)
       call checks%is_true(.not. any_grew, "too short for the mesh")
-      call checks%is_close(front%tip(1)%carried, small, 0.0_rk, "kept")
+      call checks%is_close(front%tip(1)%carried, small, grains, "kept")
       call checks%is_close(total_length(front%network), 2.0_rk, 0.0_rk, "the network waits")
       call grow(front, any_grew)
       call checks%is_true(any_grew, "enough together")
