@@ -22,6 +22,7 @@ program test_growth_front
    type(checks_t) :: checks
 
    call test_growth_law()
+   call test_rounding()
    call test_carried_growth()
    call test_arrest()
    call test_join()
@@ -109,6 +110,28 @@ contains
 
       call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, grains, name)
    end subroutine is_at
+
+   !> Drives that differ by rounding only lead to the same tips, bit for bit.
+   subroutine test_rounding()
+      type(sample_t) :: front(2)
+      logical :: any_grew
+      integer :: i, k
+
+      do i = 1, 2
+         call start(front(i), .false.)
+         associate (noise => 1.0_rk + real(i - 1, rk)*1.0e-12_rk)
+            front(i)%tip(1)%drive = growth_drive_t(angle=0.3123_rk*noise, intensity=2.0e6_rk, &
+                                                   energy=40.0_rk)
+            front(i)%tip(2)%drive = growth_drive_t(angle=-0.5123_rk*noise, intensity=2.0e6_rk, &
+                                                   energy=10.0_rk*noise)
+         end associate
+         call grow(front(i), any_grew)
+      end do
+      do k = 1, 2
+         call checks%is_true(all(abs(front(1)%tip(k)%xy - front(2)%tip(k)%xy) <= 0.0_rk), &
+                             "the same tip in spite of rounding")
+      end do
+   end subroutine test_rounding
 
    !> An advance below 0.4 of the rosette's radius waits until there is enough of it.
    subroutine test_carried_growth()
