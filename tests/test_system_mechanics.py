@@ -398,17 +398,6 @@ def test_a_crack_crosses_a_polygon(tmp_path: Path) -> None:
     assert 0.25 < float(joint["y_m"]) < 0.35
 
 
-def test_joined_tips_have_no_more_rows(tmp_path: Path) -> None:
-    """A tip that has joined something is none any more: its frozen intensities are not repeated."""
-    out = run_input(tmp_path, "paper_b/five_fractures.nml")
-    values: dict[str, list[str]] = {}
-    for row in rows(out / "tips.csv"):
-        values.setdefault(row["tip"], []).append(row["k1_pa_sqrtm"])
-    lengths = [len(series) for series in values.values()]
-    assert min(lengths) < max(lengths)
-    assert all(series[-1] != series[-2] for series in values.values() if len(series) > 1)
-
-
 def test_point_load_on_a_fracture(tmp_path: Path) -> None:
     """A load there would act on one face: refused with the names and lines of both."""
     text = (TOP / "inputs" / "paper_b" / "disc_sif.nml").read_text()

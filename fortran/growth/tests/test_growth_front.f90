@@ -23,6 +23,7 @@ program test_growth_front
 
    call test_growth_law()
    call test_rounding()
+   call test_joined_tip()
    call test_carried_growth()
    call test_arrest()
    call test_join()
@@ -132,6 +133,21 @@ contains
                              "the same tip in spite of rounding")
       end do
    end subroutine test_rounding
+
+   !> A tip that a joint has ended has a last state, the one before that, and none afterwards.
+   subroutine test_joined_tip()
+      type(sample_t) :: front
+
+      call start(front, .true.)
+      associate (tip => front%tip(1))
+         call tip%begin_increment()
+         tip%is_free = .false.
+         call checks%is_true(tip%has_state(is_before=.true.), "the state before the joint")
+         call checks%is_true(.not. tip%has_state(is_before=.false.), "no tip after the joint")
+         call tip%begin_increment()
+         call checks%is_true(.not. tip%has_state(is_before=.true.), "no tip in later increments")
+      end associate
+   end subroutine test_joined_tip
 
    !> An advance below 0.4 of the rosette's radius waits until there is enough of it.
    subroutine test_carried_growth()
