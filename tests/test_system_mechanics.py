@@ -405,3 +405,14 @@ def test_a_crack_crosses_a_polygon(tmp_path: Path) -> None:
     assert joint["detail"] == "joins the outer boundary"
     assert float(joint["x_m"]) == 0.0
     assert 0.25 < float(joint["y_m"]) < 0.35
+
+
+def test_point_load_on_a_fracture(tmp_path: Path) -> None:
+    """A load there would act on one face: refused with the names and lines of both."""
+    text = (TOP / "inputs" / "paper_b" / "disc_sif.nml").read_text()
+    scene = tmp_path / "scene.nml"
+    scene.write_text(text + "&point_load x = 0.0, y = 0.0, x_force = 1.0 /\n")
+    done = call(tmp_path, "run", scene.name, "--out", "out", "--quiet", "--no-plot")
+    assert done.returncode == 2
+    assert "where it would act on one of its two faces only" in done.stderr
+    assert not (tmp_path / "out").exists()

@@ -220,8 +220,9 @@ int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity, c
         require(n_joints != nullptr, "no place was given for the number of joints");
         *n_joints = 0;
         const Network fractures = network_from(network);
-        const std::vector<Joint> found =
-            joints_of(judged_graph(specification_from(spec, fractures.size()), fractures));
+        const Graph graph = judged_graph(specification_from(spec, fractures.size()), fractures);
+        check_fixed_points(graph);
+        const std::vector<Joint> found = joints_of(graph);
         *n_joints = static_cast<int32_t>(found.size());
         for (int32_t k = 0; k < std::min(capacity, *n_joints); ++k)
             joints[k] = {

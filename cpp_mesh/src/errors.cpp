@@ -1,6 +1,7 @@
 #include "errors.hpp"
 
-#include <sstream>
+#include <array>
+#include <charconv>
 
 namespace cpp_mesh {
 
@@ -63,10 +64,11 @@ MeshError::MeshError(Fault fault)
     : std::runtime_error(message_of(with_place(fault))), fault_(with_place(std::move(fault))) {}
 
 std::string number_text(double value) {
-    std::ostringstream text;
-    text.precision(6);
-    text << value;
-    return text.str();
+    constexpr int digits = 6;
+    std::array<char, 32> text; // sign, digits, point and exponent need 13 of them
+    const auto written = std::to_chars(text.data(), text.data() + text.size(), value,
+                                       std::chars_format::general, digits);
+    return {text.data(), written.ptr};
 }
 
 } // namespace cpp_mesh

@@ -48,20 +48,43 @@ public:
 
 class RegionMesher {
 public:
-    RegionMesher(const Region& region, const SizeField& size, std::vector<Vec2>& xy)
-        : region_(region), size_(size), xy_(xy), scaling_(scaling_of(region.loops.at(0), xy)) {}
+    RegionMesher(const Region& region, const SizeField& size, std::vector<Vec2>& xy,
+                 double coverage)
+        : region_(region), size_(size), xy_(xy), scaling_(scaling_of(region.loops.at(0), xy)),
+          limit_(scaled_area(), coverage) {}
 
     std::vector<Triangle> run() {
         build_model();
         gmsh::model::mesh::setSizeCallback([this](int, int, double x, double y, double, double) {
-            return rounded_size(size_(scaling_.original({x, y})) * scaling_.factor);
+            const double size = rounded_size(size_(scaling_.original({x, y})) * scaling_.factor);
+            if (!limit_.allows(size)) // gmsh catches it, and is ready for the next region
+                throw std::runtime_error(no_end);
+            return size;
         });
-        gmsh::model::mesh::generate(2);
+        try {
+            gmsh::model::mesh::generate(2);
+        } catch (...) {
+            if (limit_.is_reached())
+                throw MeshError(no_end);
+            throw;
+        }
         collect_nodes();
         return collect_triangles();
     }
 
 private:
+    static constexpr const char* no_end =
+        "gmsh was stopped: it tried far more nodes than the wanted sizes ask for";
+
+    double scaled_area() const {
+        double twice = 0.0;
+        for (const std::vector<int>& loop : region_.loops)
+            for (std::size_t k = 0; k < loop.size(); ++k)
+                twice += cross(scaling_.scaled(xy_[loop[k]]),
+                               scaling_.scaled(xy_[loop[(k + 1) % loop.size()]]));
+        return 0.5 * std::abs(twice);
+    }
+
     // Rounding to fewer digits removes the rounding errors of the given places and of the sizes,
     // which differ between units of length, so that gmsh decides alike. Only gmsh sees it.
     Vec2 rounded_place(Vec2 p) const {
@@ -153,6 +176,7 @@ private:
     const SizeField& size_;
     std::vector<Vec2>& xy_;
     const Scaling scaling_;
+    WorkLimit limit_;
     std::unordered_map<int, int> point_of_node_;
     std::vector<int> node_of_point_;
     std::unordered_map<std::size_t, int> node_of_tag_;
@@ -187,10 +211,10 @@ GmshSession::~GmshSession() {
 }
 
 std::vector<Triangle> GmshSession::triangulate(const Region& region, const SizeField& size,
-                                               std::vector<Vec2>& xy) {
+                                               std::vector<Vec2>& xy, double coverage) {
     try {
         const Model model;
-        return RegionMesher(region, size, xy).run();
+        return RegionMesher(region, size, xy, coverage).run();
     } catch (const MeshError&) {
         throw;
     } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 
 #include "plane_mesh.hpp"
 #include "size_field.hpp"
+#include "work_limit.hpp"
 
 #include <array>
 #include <memory>
@@ -30,9 +31,11 @@ public:
     GmshSession(const GmshSession&) = delete;
     GmshSession& operator=(const GmshSession&) = delete;
 
-    // Triangles of the region; nodes that gmsh adds are appended to xy.
+    // Triangles of the region; nodes that gmsh adds are appended to xy. Fails where gmsh would
+    // cover the region more often than `coverage` times (work_limit.hpp).
     std::vector<Triangle> triangulate(const Region& region, const SizeField& size,
-                                      std::vector<Vec2>& xy);
+                                      std::vector<Vec2>& xy,
+                                      double coverage = WorkLimit::usual_coverage);
 };
 
 } // namespace cpp_mesh

@@ -196,7 +196,7 @@ private:
             else if (gap < tolerances_.near_miss)
                 refuse(FaultKind::too_near, {self, owner(i)}, wanted,
                        "{1} lies within " + number_text(gap) +
-                           " m of {2} {at}; put it on the fracture or farther away");
+                           " m of {2} {at}; move it farther away");
         }
     }
 

@@ -79,4 +79,25 @@ std::vector<Joint> joints_of(const Graph& graph) {
     return joints;
 }
 
+void check_fixed_points(const Graph& graph) {
+    for (std::size_t k = 0; k < graph.fixed_points.size(); ++k) {
+        const int point = graph.fixed_points[k];
+        int n_edges = 0, fracture = -1;
+        for (const GraphEdge& edge : graph.edges) {
+            if (edge.point[0] != point && edge.point[1] != point)
+                continue;
+            ++n_edges;
+            fracture = edge.fracture;
+        }
+        const GraphPoint& place = graph.points[point];
+        if (n_edges >= 2 || (n_edges == 1 && place.on_boundary))
+            throw MeshError(
+                {FaultKind::overlap,
+                 {{CulpritKind::fixed_point, static_cast<int>(k)}, fracture_culprit(fracture)},
+                 place.xy,
+                 "{1} lies on {2} {at}, where it would act on one of its two faces "
+                 "only; move it off the fracture"});
+    }
+}
+
 } // namespace cpp_mesh

@@ -21,6 +21,10 @@ struct Joint {
 
 std::vector<Joint> joints_of(const Graph& graph);
 
+// Throws MeshError where a fixed point is not one node: on a fracture, but for a tip inside the
+// body, each face has a node of its own. Growth may bring that about, an input should not.
+void check_fixed_points(const Graph& graph);
+
 } // namespace cpp_mesh
 
 #endif

@@ -97,6 +97,27 @@ void fixed_points(Checks& checks) {
          "m of {2} at (0.5, 0.50001)");
     with({0.2, 0.2, 0.2, 0.20001}, {second, {cm_culprit_fixed, 0}}, cm_fault_too_near,
          "m from {2} at (0.2, 0.20001)");
+    // On a fracture each face has a node; at a tip inside the body there is one.
+    TestNetwork edge_crack({{{0.0, 0.5}, {0.7, 0.5}}});
+    const cm_network view = edge_crack.view();
+    for (const double x : {0.0, 0.5, 0.7}) {
+        const std::array<double, 4> xy = {0.2, 0.2, x, 0.5};
+        cm_spec spec = unit_square();
+        spec.n_fixed = 2;
+        spec.fixed = xy.data();
+        int32_t n_joints = 0;
+        const bool is_good = cm_check(&spec, &view, 0, nullptr, &n_joints) == 0;
+        checks.is_equal(is_good, x == 0.7, "a point on a fracture: refused but at the tip");
+        if (is_good)
+            continue;
+        cm_fault fault;
+        cm_last_fault(&fault);
+        checks.is_equal(fault.kind, cm_fault_overlap, "a point on a fracture: kind");
+        checks.is_true(fault.culprit_kind[0] == cm_culprit_fixed && fault.culprit[0] == 1 &&
+                           fault.culprit_kind[1] == cm_culprit_fracture && fault.culprit[1] == 0,
+                       "a point on a fracture: culprits");
+        checks.says(fault.reason, "{1} lies on {2} at (", "a point on a fracture: reason");
+    }
 }
 
 void joints(Checks& checks) {

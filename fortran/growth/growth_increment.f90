@@ -3,7 +3,7 @@
 module growth_increment
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use growth_law, only: advances, carry_over
+   use growth_law, only: advances, carry_over, in_grains
    use growth_tip, only: tip_t
    implicit none(type, external)
    private
@@ -40,7 +40,7 @@ contains
 
       advance = 0.0_rk
       if (.not. any(grows)) return
-      wanted = advances(tips%drive%energy, grows, increment, exponent)
+      wanted = in_grains(advances(tips%drive%energy, grows, increment, exponent), increment)
       do i = 1, size(tips, kind=ik)
          if (.not. grows(i)) cycle
          call carry_over(wanted(i), tips(i)%carried, tips(i)%rosette_radius, advance(i), left)

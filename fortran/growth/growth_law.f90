@@ -5,7 +5,7 @@ module growth_law
    private
 
    public :: advances, carry_over, energy_release_rate, equivalent_intensity, growth_drive
-   public :: growth_drive_t, kink_angle, kinked_intensities, new_tip
+   public :: growth_drive_t, in_grains, kink_angle, kinked_intensities, new_tip
 
    real(rk), parameter :: smallest_advance = 0.4_rk  !< of the rosette radius; less is carried over
 
@@ -104,6 +104,16 @@ contains
          applied = 0.0_rk
       end if
    end subroutine carry_over
+
+   !> The nearest multiple of a grain. A mesh made for a tip that differs in its last bits may be
+   !! quite another one, with intensities that differ by their errors. Kinks and advances in grains,
+   !! far below these errors, let responses that are equal but for rounding grow to equal tips.
+   elemental real(rk) function in_grains(value, unit)
+      real(rk), intent(in) :: value, unit  !< of one kind; a grain is a ten-millionth of the unit
+      real(rk), parameter :: grain = 1.0e-7_rk
+
+      in_grains = grain*unit*anint(value/(grain*unit))
+   end function in_grains
 
    !> Where a tip is after its growth [m].
    pure function new_tip(tip, direction, angle, advance) result(xy)

@@ -8,7 +8,7 @@
 !! the end of the step (backward Euler for the path; local symmetry).
 module growth_path
    use base_kinds, only: rk
-   use growth_law, only: new_tip
+   use growth_law, only: in_grains, new_tip
    implicit none(type, external)
    private
 
@@ -44,6 +44,7 @@ module growth_path
    !> By how much a kink by the criterion's angle changes that angle, where nothing is known yet: as
    !! much for a short step under no stress along the crack, more with common steps and stresses.
    real(rk), parameter :: usual_answer = 2.0_rk
+   real(rk), parameter :: radian = 1.0_rk  !< the unit of kinks [rad]
    !> Kinks so near to each other tell nothing about the slope between them [rad].
    real(rk), parameter :: too_near = 0.003_rk
 
@@ -62,12 +63,13 @@ contains
 
       self%start_drive = drive
       self%strength = strength
-      kink = drive_angle
+      kink = in_grains(drive_angle, radian)
       if (.not. self%has_wing) return
       kink = drive_angle/usual_answer
       if (self%falls > 0.0_rk) kink = drive/(self%falls*strength)
       kink = max(-abs(drive_angle), min(abs(drive_angle), kink)) &
              + max(-most, min(most, self%curvature*advance))
+      kink = in_grains(kink, radian)
    end subroutine foresee
 
    !> Grow straight to a new place.
@@ -130,7 +132,7 @@ contains
       ! A drive that does not fall with the kink tells nothing: then turn as the criterion says.
       if (.not. slope < 0.1_rk*usual_slope) slope = usual_slope
       kink = self%kink - max(-longest, min(longest, drive/slope))
-      kink = min(largest, max(-largest, kink))
+      kink = in_grains(min(largest, max(-largest, kink)), radian)
       if (.not. abs(kink - self%kink) > 0.0_rk) return
       self%xy = new_tip(self%origin, self%heading, kink, self%advance)
       self%direction = (self%xy - self%origin)/self%advance

@@ -17,7 +17,9 @@ module growth_tip
       logical :: arrested = .false.  !< it will not grow again
       integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
-      logical, private :: was_arrested = .false.  !< before the last increment of any tip
+      logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
+      ! Before the last increment of any tip.
+      logical, private :: was_arrested = .false., was_free = .true.
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
@@ -26,6 +28,7 @@ module growth_tip
    contains
       procedure :: begin_increment
       procedure :: has_just_stopped
+      procedure :: has_state
    end type tip_t
 
 contains
@@ -38,6 +41,7 @@ contains
       self%intensity_before = self%intensity
       self%drive_before = self%drive
       self%was_arrested = self%arrested
+      self%was_free = self%is_free
    end subroutine begin_increment
 
    !> In the last increment it has come to something that it does not join.
@@ -47,5 +51,13 @@ contains
       has_just_stopped = self%target /= target_none .and. .not. self%joined &
                          .and. .not. self%was_arrested
    end function has_just_stopped
+
+   !> There is a tip to speak of: now, or before the last increment.
+   elemental logical function has_state(self, is_before)
+      class(tip_t), intent(in) :: self
+      logical, intent(in) :: is_before
+
+      has_state = merge(self%was_free, self%is_free, is_before)
+   end function has_state
 
 end module growth_tip

@@ -23,7 +23,7 @@ contains
    !! middle.
    pure real(rk) function foreseen_onset(a, b, low, high, toughness) result(factor)
       type(reading_t), intent(in) :: a, b  !< at different factors
-      real(rk), intent(in) :: low, high  !< limits [-]
+      real(rk), intent(in) :: low, high  !< limits, in this order on the way of the load [-]
       real(rk), intent(in) :: toughness  !< [Pa sqrt(m)]
       integer, parameter :: halvings = 200  ! more than there are digits: it ends by itself
       real(rk) :: below, above
@@ -35,7 +35,7 @@ contains
       above = high
       do k = 1, halvings
          factor = 0.5_rk*(below + above)
-         if (.not. (factor > below .and. factor < above)) exit
+         if (.not. (factor > min(below, above) .and. factor < max(below, above))) exit
          if (excess(factor) < 0.0_rk) then
             below = factor
          else

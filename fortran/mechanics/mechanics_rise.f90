@@ -1,4 +1,4 @@
-!> The load rises to each onset of growth and never past one.
+!> The load goes up or down to each onset of growth and never past one.
 module mechanics_rise
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
@@ -6,7 +6,6 @@ module mechanics_rise
    use base_tolerances, only: same_value
    use mechanics_onset, only: foreseen_onset, reading_t
    use mechanics_state, only: loaded_body_t
-   use scene_types, only: scene_t
    implicit none(type, external)
    private
 
@@ -17,7 +16,7 @@ module mechanics_rise
 
 contains
 
-   !> Raise the load up to a factor, or to the onset of growth if that comes first.
+   !> Take the load up or down to a factor, or to the onset of growth if that comes first.
    !!
    !! Without contact the intensities are linear in the factor. The equivalent intensity, the
    !! largest over all angles of linear functions, is then convex: where it is below the toughness
@@ -34,7 +33,7 @@ contains
       has_onset = .false.
       if (.not. allocated(self%body%displacement)) then
          low%factor = self%factor
-         call self%adapt(target, timers, error)
+         call self%adapt(merge(target, low%factor, abs(target) >= abs(low%factor)), timers, error)
          if (allocated(error)) return
          call self%respond(low%factor, timers, error)
          if (allocated(error)) return
@@ -49,11 +48,8 @@ contains
       has_onset = self%largest_excess() >= -same_value
       if (has_onset) return
       low = self%reading()
-      ! Where all loads rise in proportion, the intensities do so until contact changes.
-      onset = target
-      if (all_loads_rise(self%scene) .and. low%factor > 0.0_rk .and. &
-          self%largest_excess() > -1.0_rk) onset = low%factor/(1.0_rk + self%largest_excess())
-      if (onset < target) then
+      onset = proportional_onset(self)
+      if (onset > min(low%factor, target) .and. onset < max(low%factor, target)) then
          call self%respond(onset, timers, error)
          if (allocated(error)) return
          has_onset = abs(self%largest_excess()) <= same_value
@@ -86,7 +82,7 @@ contains
       width = huge(1.0_rk)
       do k = 1, iterations
          if (abs(self%largest_excess()) <= same_value) return
-         width(k) = high%factor - low%factor
+         width(k) = abs(high%factor - low%factor)
          if (k > 3 .and. width(k) > 0.5_rk*width(max(k - 3, 0))) then
             next%factor = 0.5_rk*(low%factor + high%factor)  ! the lines lead nowhere
          else
@@ -103,7 +99,7 @@ contains
             high = next
          end if
          ! Where contact changes, the intensity may jump past the toughness: at this load.
-         if (high%factor - low%factor <= at_jump*abs(high%factor)) then
+         if (abs(high%factor - low%factor) <= at_jump*max(abs(low%factor), abs(high%factor))) then
             call self%respond(high%factor, timers, error)
             return
          end if
@@ -111,12 +107,17 @@ contains
       call raise_error(error, "", "the load at which the next tip grows was not found")
    end subroutine find_onset
 
-   !> No load but those that the factor multiplies.
-   pure logical function all_loads_rise(scene)
-      type(scene_t), intent(in) :: scene
+   !> The onset where all loads change in proportion: until contact changes, or locked-in slip is
+   !! left, the intensities do so too. The present factor where that says nothing.
+   pure real(rk) function proportional_onset(self) result(onset)
+      class(loaded_body_t), intent(in) :: self
 
-      all_loads_rise = .not. any(abs([scene%material%density*scene%gravity, &
-                                      scene%in_situ%stress, scene%in_situ%per_y]) > 0.0_rk)
-   end function all_loads_rise
+      onset = self%factor
+      associate (scene => self%scene)
+         if (any(abs([scene%material%density*scene%gravity, scene%in_situ%stress, &
+                      scene%in_situ%per_y]) > 0.0_rk)) return
+      end associate
+      if (self%largest_excess() > -1.0_rk) onset = self%factor/(1.0_rk + self%largest_excess())
+   end function proportional_onset
 
 end module mechanics_rise

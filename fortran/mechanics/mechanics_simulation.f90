@@ -1,5 +1,5 @@
-!> A scene without a fluid in progress: the load rises in steps, and from one onset of growth to the
-!! next.
+!> A scene without a fluid in progress: the load rises or falls in steps, and from one onset of
+!! growth to the next.
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -20,8 +20,8 @@ module mechanics_simulation
 
    !> The scene, and where its load programme stands.
    type, extends(loaded_body_t) :: mechanics_simulation_t
-      integer(ik) :: step = 1  !< of the programme, in which the load rises
-      logical :: has_onset = .false.  !< growth has stopped the rise
+      integer(ik) :: step = 1  !< of the programme, in which the load changes
+      logical :: has_onset = .false.  !< growth has stopped the load
       real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
       type(snapshot_t), allocatable :: good  !< of the last accepted state
       logical :: is_good = .false.  !< the present state is in equilibrium, not one on the way
@@ -69,7 +69,7 @@ contains
       end associate
    end subroutine note_features
 
-   !> Raise the load to the end of the programme's step, or to the next onset of growth.
+   !> Take the load to the end of the programme's step, or to the next onset of growth.
    subroutine next_state(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers

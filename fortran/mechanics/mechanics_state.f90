@@ -91,7 +91,8 @@ contains
             associate (tip => self%tip(i))
                k = findloc(fracture%tip_fracture == tip%fracture .and. &
                            fracture%tip_end == tip%end, .true., dim=1)
-               if (k == 0) then  ! another fracture has joined it
+               tip%is_free = k > 0  ! else it has joined something, or something has joined it
+               if (.not. tip%is_free) then
                   tip%arrested = .true.
                   cycle
                end if

@@ -78,7 +78,8 @@ contains
                     "follows its step: it shows in the next row.", history_columns)
       call describe(unit, "tips.csv", "With growth or stress intensity factors: a row per free "// &
                     "tip and state, or per tip and increment of growth. Where any tip grows, "// &
-                    "the rows of all hold the values before that.", tip_columns)
+                    "the rows of all hold the values before that. A tip that "// &
+                    "has joined something, or been joined, has no more rows.", tip_columns)
       call describe(unit, "fractures.csv", "With fractures: a row per fracture cell and "// &
                     "written time. These are the times that `interval` of `&output` asks for, "// &
                     "without a fluid the ends of the load programme's steps, and the end of "// &

@@ -88,7 +88,7 @@ module scene_parameters
       group_t("fluid", &
               meaning="The fluid in pores and fractures. A scene without this group is "// &
               "mechanics only, and can have neither injections nor pressures: finite elements "// &
-              "on the whole body under a load that rises."), &
+              "on the whole body under a load that rises or falls."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary."), &
@@ -98,10 +98,12 @@ module scene_parameters
               "displacement or the total traction is prescribed; what is not given is free of "// &
               "traction. The displacements must hold the body against translation and rotation."), &
       group_t("restraint", repeated=.true., scenes=in_mechanics, &
-              meaning="A point of the body held in place. It becomes a node of the mesh."), &
+              meaning="A point of the body held in place. It becomes a node of the mesh, and must not lie "// &
+              "on a fracture, unless at a tip: each face has nodes of its own."), &
       group_t("point_load", repeated=.true., scenes=in_mechanics, &
               meaning="A force at a point of the body, per metre of thickness, times the load "// &
-              "factor. The point becomes a node of the mesh."), &
+              "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &
+              "unless at a tip: each face has nodes of its own."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
               "is at the start, or into its cell nearest to a point. That point must lie "// &
@@ -118,9 +120,11 @@ module scene_parameters
               "which the load factor does not scale. An in-situ stress that changes with y "// &
               "carries it from the start; without one it loads the body."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
-              meaning="How the load rises: tractions, point loads and displacements are those "// &
-              "of the scene times a factor. With growth the factor at which the next tip grows "// &
-              "is found, and never stepped over."), &
+              meaning="How the load changes: tractions, point loads and displacements are those "// &
+              "of the scene times a factor, which rises, or falls where to is less than from; "// &
+              "the first state, at from, is reached from nothing. Faces keep what they have "// &
+              "slipped until friction lets them slip back. With growth the factor at which the "// &
+              "next tip grows is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
               "quarter-point elements around the fracture tips."), &
@@ -315,8 +319,8 @@ module scene_parameters
       parameter_t("gravity", "y", unit="m/s2", default="0.0", &
                   meaning="Acceleration in y, on earth -9.81"), &
       parameter_t("load", "from", default="0.0", &
-                  meaning="Load factor before the first step; with growth at least 0"), &
-      parameter_t("load", "to", default="1.0", meaning="Load factor at the end"), &
+                  meaning="Load factor before the first step"), &
+      parameter_t("load", "to", default="1.0", meaning="Load factor at the end, another one"), &
       parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
                   meaning="Equal steps from the one to the other"), &
       parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &

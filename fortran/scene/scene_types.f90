@@ -106,7 +106,7 @@ module scene_types
       real(rk) :: y_datum = 0.0_rk  !< [m]
    end type in_situ_t
 
-   !> How the load of a mechanics-only scene rises.
+   !> How the load of a mechanics-only scene changes: up or down.
    type :: load_t
       real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
       integer(ik) :: steps = 1  !< equal ones

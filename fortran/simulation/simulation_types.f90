@@ -192,7 +192,8 @@ contains
       end do
    end subroutine note_contact
 
-   !> Note all tips. Where any tip has just grown, all are as before that.
+   !> Note all tips. Where any tip has just grown, all are as before that. One that has joined
+   !! something, or been joined, is no tip from then on.
    pure subroutine note_tips(self)
       class(simulation_t), intent(inout) :: self
       type(tip_row_t) :: row
@@ -201,6 +202,7 @@ contains
 
       any_grew = any(self%tip%advance > 0.0_rk)
       do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%has_state(is_before=any_grew)) cycle
          row = row_of_tip(self%time(), i, self%tip(i), any_grew)
          call self%chronicle%add_tip(row)
          self%summary%keq_over_kic = max(self%summary%keq_over_kic, &

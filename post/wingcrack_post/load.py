@@ -39,7 +39,7 @@ def moment_label(run: Run, time_s: float) -> str:
 
 
 def tip_steps(run: Run, table: Table) -> FloatArray:
-    """Number of the step, from 1, of each row of tips.csv: every tip has one row in each."""
+    """Number of the step, from 1, of each row of tips.csv: a tip has one in each until it joins."""
     tips = table.text("tip")
     steps = np.zeros(table.rows)
     for tip in np.unique(tips):

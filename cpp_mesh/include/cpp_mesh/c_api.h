@@ -93,7 +93,7 @@ typedef enum {
     cm_fault_too_short = 6, /* a segment of a fracture */
     cm_fault_too_near = 7,  /* things nearly meet, but do not */
     cm_fault_angle = 8,     /* too small for cells of fair shape */
-    cm_fault_overlap = 9    /* fractures lie on each other */
+    cm_fault_overlap = 9    /* fractures, or one and a fixed point, lie on each other */
 } cm_fault_kind;
 
 typedef enum {
@@ -123,7 +123,8 @@ typedef struct {
 } cm_joint;
 
 /* Judge what cm_create would mesh, by the same code, but mesh nothing; fails where the body or the
-   network is at fault. Up to `capacity` joints are told of all that there are. */
+   network is at fault, and where a fixed point would have a node on each face of a fracture. Up to
+   `capacity` joints are told of all that there are. */
 int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity,
              cm_joint* joints /* [capacity] */, int32_t* n_joints);
 

@@ -127,14 +127,20 @@ contains
                   "restraint lies outside the body at (1.5, 1.5); put it inside or on the "// &
                   "boundary"//doc)
       call refuse(7, "&point_load x=0.5 y=0.50001 y_force=1 /", ":7: &point_load: the point "// &
-                  "load lies within 1e-05 m of fracture 'g' (line 5) at (0.5, 0.50001); put it "// &
-                  "on the fracture or farther away"//doc)
+                  "load lies within 1e-05 m of fracture 'g' (line 5) at (0.5, 0.50001); move it "// &
+                  "farther away"//doc)
+      call refuse(7, "&point_load x=0.5 y=0.5 y_force=1 /", ":7: &point_load: the point load "// &
+                  "lies on fracture 'g' (line 5) at (0.5, 0.5), where it would act on one of "// &
+                  "its two faces only; move it off the fracture"//doc)
+      call refuse(7, "&restraint x=0 y=1 y_displacement=0 /", ":7: &restraint: the restraint "// &
+                  "lies on fracture 'f' (line 4) at (0, 1), where it would act")
+      call accept(7, "&point_load x=0.7 y=0.5 y_force=1 /", "a load at a tip")
    end subroutine check_polygon
 
    subroutine check_disc()
      call refuse(5, "&fracture name='f' x=0.9, 1.6 y=2*0.1 law='open' /", "fracture 'f' leaves "// &
                   "the domain at (1.6, 0.1)")
-      call accept(5, "&fracture name='f' x=1, 1 y=0.5, 0.3 law='open' /", "from the rim")
+      call accept(5, "&fracture name='f' x=0.5, 0.7 y=2*0 law='open' /", "from the rim")
       call refuse(6, "&point_load x=1 y=0.6 y_force=-1 /", ":6: &point_load: the point load "// &
                   "lies outside the body at (1, 0.6)")
       call refuse(6, "&point_load x=1 y=0.00001 y_force=-1 /", ":6: &point_load: the point "// &

@@ -14,12 +14,16 @@ program test_growth_front
 
    real(rk), parameter :: radius = 0.025_rk  !< of the rosettes [m]
    real(rk), parameter :: increment = 0.03_rk  !< l_max [m]
+   !> Kinks and advances are multiples of 1e-7 rad and 1e-7 l_max; half of each, in 15 steps.
+   real(rk), parameter :: grains = 15.0_rk*1.0e-7_rk*increment
    !> Fracture 1 with two tips that grow here, fracture 2 above it.
    real(rk), parameter :: lines(2, 2, 2) = reshape([0.51_rk, 1.0_rk, 1.51_rk, 1.0_rk, 0.51_rk, &
                                                     1.51_rk, 1.51_rk, 1.51_rk], [2, 2, 2])
    type(checks_t) :: checks
 
    call test_growth_law()
+   call test_rounding()
+   call test_joined_tip()
    call test_carried_growth()
    call test_arrest()
    call test_join()
@@ -90,7 +94,7 @@ contains
       call grow(front, any_grew)
       call checks%is_true(any_grew, "both grow")
       call checks%is_close(front%tip(1)%advance, increment, 1.0e-15_rk, "the stronger tip: l_max")
-      call checks%is_close(front%tip(2)%advance, advance, 1.0e-15_rk, "the weaker one: less")
+      call checks%is_close(front%tip(2)%advance, advance, grains, "the weaker one: less")
       ! Anticlockwise from the tip's own direction.
       call is_at(front%tip(1)%xy, lines(:, 1, 1) - increment*[cos(0.3_rk), sin(0.3_rk)], "tip 1")
       call is_at(front%tip(2)%xy, lines(:, 2, 1) + advance*[cos(0.5_rk), -sin(0.5_rk)], "tip 2")
@@ -105,8 +109,45 @@ contains
       real(rk), intent(in) :: xy(2), expected(2)
       character(len=*), intent(in) :: name
 
-      call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, 1.0e-13_rk, name)
+      call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, grains, name)
    end subroutine is_at
+
+   !> Drives that differ by rounding only lead to the same tips, bit for bit.
+   subroutine test_rounding()
+      type(sample_t) :: front(2)
+      logical :: any_grew
+      integer :: i, k
+
+      do i = 1, 2
+         call start(front(i), .false.)
+         associate (noise => 1.0_rk + real(i - 1, rk)*1.0e-12_rk)
+            front(i)%tip(1)%drive = growth_drive_t(angle=0.3123_rk*noise, intensity=2.0e6_rk, &
+                                                   energy=40.0_rk)
+            front(i)%tip(2)%drive = growth_drive_t(angle=-0.5123_rk*noise, intensity=2.0e6_rk, &
+                                                   energy=10.0_rk*noise)
+         end associate
+         call grow(front(i), any_grew)
+      end do
+      do k = 1, 2
+         call checks%is_true(all(abs(front(1)%tip(k)%xy - front(2)%tip(k)%xy) <= 0.0_rk), &
+                             "the same tip in spite of rounding")
+      end do
+   end subroutine test_rounding
+
+   !> A tip that a joint has ended has a last state, the one before that, and none afterwards.
+   subroutine test_joined_tip()
+      type(sample_t) :: front
+
+      call start(front, .true.)
+      associate (tip => front%tip(1))
+         call tip%begin_increment()
+         tip%is_free = .false.
+         call checks%is_true(tip%has_state(is_before=.true.), "the state before the joint")
+         call checks%is_true(.not. tip%has_state(is_before=.false.), "no tip after the joint")
+         call tip%begin_increment()
+         call checks%is_true(.not. tip%has_state(is_before=.true.), "no tip in later increments")
+      end associate
+   end subroutine test_joined_tip
 
    !> An advance below 0.4 of the rosette's radius waits until there is enough of it.
    subroutine test_carried_growth()
@@ -119,7 +160,7 @@ contains
       front%tip(1)%drive = growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk)
       call grow(front, any_grew)
       call checks%is_true(.not. any_grew, "too short for the mesh")
-      call checks%is_close(front%tip(1)%carried, small, 0.0_rk, "kept")
+      call checks%is_close(front%tip(1)%carried, small, grains, "kept")
       call checks%is_close(total_length(front%network), 2.0_rk, 0.0_rk, "the network waits")
       call grow(front, any_grew)
       call checks%is_true(any_grew, "enough together")

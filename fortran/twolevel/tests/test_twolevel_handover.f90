@@ -174,7 +174,7 @@ contains
             associate (tip => simulation%tip(i), network => simulation%network)
                call checks%is_close(tip%advance, increment, 0.02_rk*increment, "advance of a wing")
                if (k == 1) then
-                  call checks%is_close(tip%kink, tip%drive_before%angle, 1.0e-12_rk, "first kink")
+                  call checks%is_close(tip%kink, tip%drive_before%angle, 1.0e-7_rk, "first kink")
                else
                   call checks%is_close(tip%drive%angle, 0.0_rk, 0.0350001_rk, "straight on")
                end if
