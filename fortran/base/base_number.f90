@@ -89,7 +89,7 @@ contains
    !> The decimal digits d of a number, |x| = d.ddd * 10**power: as few as read back as x, or
    !! rounded. No zeros at the end; but the digit of 0 is 0.
    pure subroutine decimal_digits(x, digits, power, n_digits)
-      real(rk), intent(in) :: x  !< finite
+      real(rk), intent(in) :: x  !< finite [any unit]
       character(len=most_digits), intent(out) :: digits  !< blanks follow
       integer, intent(out) :: power
       integer, intent(in), optional :: n_digits  !< 1 to 17; default: as many as needed

@@ -14,14 +14,14 @@ contains
 
    !> The component of u x v out of the plane: positive if v points to the left of u.
    pure real(rk) function cross(u, v)
-      real(rk), intent(in) :: u(2), v(2)
+      real(rk), intent(in) :: u(2), v(2)  !< [any unit]
 
       cross = u(1)*v(2) - u(2)*v(1)
    end function cross
 
    !> A vector turned by a right angle, to its left.
    pure function turned_left(v) result(normal)
-      real(rk), intent(in) :: v(2)
+      real(rk), intent(in) :: v(2)  !< [any unit]
       real(rk) :: normal(2)
 
       normal = [-v(2), v(1)]
@@ -29,7 +29,7 @@ contains
 
    !> A vector turned by an angle.
    pure function turned(v, angle) result(w)
-      real(rk), intent(in) :: v(2)
+      real(rk), intent(in) :: v(2)  !< [any unit]
       real(rk), intent(in) :: angle  !< counter-clockwise [rad]
       real(rk) :: w(2)
 
@@ -38,8 +38,8 @@ contains
 
    !> Where a segment is nearest to a point, as the share of the segment before it: 0 to 1.
    pure real(rk) function nearest_share(point, ends) result(share)
-      real(rk), intent(in) :: point(2)
-      real(rk), intent(in) :: ends(2, 2)
+      real(rk), intent(in) :: point(2)  !< [m]
+      real(rk), intent(in) :: ends(2, 2)  !< [m]
       real(rk) :: along(2)
 
       share = 0.0_rk
@@ -51,24 +51,24 @@ contains
 
    !> The place on a segment nearest to a point.
    pure function nearest_place(point, ends) result(place)
-      real(rk), intent(in) :: point(2)
-      real(rk), intent(in) :: ends(2, 2)
+      real(rk), intent(in) :: point(2)  !< [m]
+      real(rk), intent(in) :: ends(2, 2)  !< [m]
       real(rk) :: place(2)
 
       place = ends(:, 1) + nearest_share(point, ends)*(ends(:, 2) - ends(:, 1))
    end function nearest_place
 
-   !> Distance of a point from a segment.
+   !> Distance of a point from a segment [m].
    pure real(rk) function point_distance(point, ends) result(distance)
-      real(rk), intent(in) :: point(2)
-      real(rk), intent(in) :: ends(2, 2)
+      real(rk), intent(in) :: point(2)  !< [m]
+      real(rk), intent(in) :: ends(2, 2)  !< [m]
 
       distance = norm2(point - ends(:, 1) - nearest_share(point, ends)*(ends(:, 2) - ends(:, 1)))
    end function point_distance
 
    !> Where the lines through two segments meet, as shares of both; -1 if they are parallel.
    pure function meeting(first, second) result(share)
-      real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends
+      real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends [m]
       real(rk) :: share(2)
       real(rk) :: along(2), side(2), between(2), determinant
 
@@ -84,7 +84,7 @@ contains
 
    !> Two segments cross or touch; parallel ones never do.
    pure logical function crosses(first, second)
-      real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends
+      real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends [m]
       real(rk) :: share(2)
 
       share = meeting(first, second)
@@ -93,8 +93,8 @@ contains
 
    !> Barycentric coordinates: the weights, of sum 1, of a triangle's corners that give a point.
    pure function barycentric(corners, point) result(weight)
-      real(rk), intent(in) :: corners(2, 3)
-      real(rk), intent(in) :: point(2)
+      real(rk), intent(in) :: corners(2, 3)  !< [m]
+      real(rk), intent(in) :: point(2)  !< [m]
       real(rk) :: weight(3)
       real(rk) :: a(2), b(2), p(2)
 
@@ -105,17 +105,17 @@ contains
       weight(1) = 1.0_rk - weight(2) - weight(3)
    end function barycentric
 
-   !> Area of a triangle, positive if its corners run counter-clockwise.
+   !> Area of a triangle [m2], positive if its corners run counter-clockwise.
    pure real(rk) function triangle_area(corners) result(area)
-      real(rk), intent(in) :: corners(2, 3)
+      real(rk), intent(in) :: corners(2, 3)  !< [m]
 
       area = 0.5_rk*cross(corners(:, 2) - corners(:, 1), corners(:, 3) - corners(:, 1))
    end function triangle_area
 
-   !> Area of a polygon, positive if its corners run counter-clockwise. It is the sum of those of
-   !! the triangles with the first corner, so that nothing is lost far from the origin.
+   !> Area of a polygon [m2], positive if its corners run counter-clockwise. It is the sum of the
+   !! areas of the triangles with the first corner, so that nothing is lost far from the origin.
    pure real(rk) function polygon_area(corners) result(area)
-      real(rk), intent(in) :: corners(:, :)  !< (2, n)
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) [m]
       integer(ik) :: k
 
       area = 0.0_rk

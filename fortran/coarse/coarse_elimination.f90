@@ -48,7 +48,7 @@ contains
    pure subroutine fix_unknown(local, i, value)
       type(local_system_t), intent(inout) :: local
       integer(ik), intent(in) :: i  !< the unknown
-      real(rk), intent(in) :: value  !< in its unit
+      real(rk), intent(in) :: value  !< [unit of the unknown]
 
       associate (b => local%rhs(:, size(local%rhs, 2)))
          b = b - local%matrix(:, i)*value
@@ -81,8 +81,8 @@ contains
    !> The eliminated unknowns from the global ones around the vertex, in their units.
    pure subroutine apply(self, d, y)
       class(response_t), intent(in) :: self
-      real(rk), intent(in) :: d(:)  !< (m)
-      real(rk), intent(out) :: y(:)  !< (n)
+      real(rk), intent(in) :: d(:)  !< (m) [unit of each]
+      real(rk), intent(out) :: y(:)  !< (n) [unit of each]
 
       y = matmul(self%matrix(:, :size(d)), d) + self%matrix(:, size(d) + 1)
    end subroutine apply

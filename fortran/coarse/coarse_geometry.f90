@@ -19,7 +19,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cell, k
       integer(ik), intent(out) :: faces(2)  !< the faces after and before the corner
-      real(rk), intent(out) :: sign_out(2)  !< +1 where the face's normal leaves this cell, else -1
+      real(rk), intent(out) :: sign_out(2)  !< +1 where the normal leaves this cell, else -1 [-]
       real(rk), intent(out) :: length(2)  !< [m]
       real(rk), intent(out) :: lever(2, 2)  !< (component, face) [-]
       real(rk), intent(out) :: area  !< of the whole cell [m2]

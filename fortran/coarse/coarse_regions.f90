@@ -137,7 +137,7 @@ contains
    pure subroutine traction_face(mesh, face, sign_out)
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(inout) :: face  !< of a cell
-      real(rk), intent(inout) :: sign_out  !< +1 where its normal leaves the cell, else -1
+      real(rk), intent(inout) :: sign_out  !< +1 where its normal leaves the cell, else -1 [-]
 
       integer(ik) :: i
 

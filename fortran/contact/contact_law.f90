@@ -50,7 +50,7 @@ contains
       integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
       integer(ik), intent(out) :: state
       real(rk), intent(out) :: residual(2)  !< [Pa]
-      real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j
+      real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j [-]
       real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
 
       real(rk) :: gap_slope, pressure, shear

@@ -123,7 +123,7 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: face  !< index in boundary_faces
       real(rk), intent(in) :: traction(2)  !< [Pa]
-      real(rk), intent(inout) :: force(:, :)
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
       real(rk) :: resultant(2)
       integer(ik) :: k
 
@@ -227,7 +227,7 @@ contains
 
    !> Whether a symmetric matrix is positive definite, by Cholesky's elimination.
    pure logical function is_definite(matrix)
-      real(rk), intent(in) :: matrix(3, 3)
+      real(rk), intent(in) :: matrix(3, 3)  !< [-]
       real(rk), parameter :: smallest = 1.0e-10_rk  ! pivot over trace
       real(rk) :: rest(3, 3)
       integer(ik) :: i, j, k

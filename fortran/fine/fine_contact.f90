@@ -175,7 +175,8 @@ contains
    !> Let the tractions of closing links act: combine the rows of the condensed system or the load.
    pure subroutine close_joints(problem, rows)
       type(contact_problem_t), intent(in) :: problem
-      real(rk), intent(inout) :: rows(:, :)  !< (any, 2 n) an equation per column
+      !> (any, 2 n) an equation per column [Pa], or the load [N/m]
+      real(rk), intent(inout) :: rows(:, :)
       integer(ik) :: i, row
 
       do i = 1, size(problem%closing)
@@ -241,8 +242,8 @@ contains
    !> From values on the cells to values at the pairs: means weighted by the cells' lengths.
    pure subroutine gather(problem, cells, pairs)
       type(contact_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: cells(:, :)  !< (3, fracture cells)
-      real(rk), intent(out) :: pairs(:)  !< (n)
+      real(rk), intent(in) :: cells(:, :)  !< (3, fracture cells) [m]
+      real(rk), intent(out) :: pairs(:)  !< (n) [m]
       integer(ik) :: cell, k
 
       pairs = 0.0_rk
@@ -259,7 +260,8 @@ contains
    !> From pairs to cells.
    pure subroutine scatter(problem, jump, traction, state, contact)
       type(contact_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: jump(:), traction(:, :)
+      real(rk), intent(in) :: jump(:)  !< (2 n) n and tau of each pair [m]
+      real(rk), intent(in) :: traction(:, :)  !< (n tau, n) [Pa]
       integer(ik), intent(in) :: state(:)
       type(contact_t), intent(inout) :: contact
       integer(ik) :: cell, i_closing, k

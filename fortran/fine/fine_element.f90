@@ -23,7 +23,7 @@ contains
 
    !> The six shape functions.
    pure function shape_values(lambda) result(values)
-      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle [-]
       real(rk) :: values(6)
       integer(ik) :: k
 
@@ -35,7 +35,7 @@ contains
 
    !> Derivatives of the shape functions by lambda(2) and lambda(3), where lambda(1) follows.
    pure function shape_derivatives(lambda) result(derivatives)
-      real(rk), intent(in) :: lambda(3)
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates [-]
       real(rk) :: derivatives(2, 6)
       real(rk) :: by_lambda(3, 6)
       integer(ik) :: k, next
@@ -56,10 +56,10 @@ contains
                                     determinant, collapsed)
       real(rk), intent(in) :: xy(2, 6)  !< nodes [m]
       integer(ik), intent(in) :: tip_corner  !< corner at a tip, 0 for an ordinary element
-      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle
-      real(rk), intent(out) :: values(6)  !< shape functions
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle [-]
+      real(rk), intent(out) :: values(6)  !< shape functions [-]
       real(rk), intent(out) :: gradients(2, 6)  !< their gradients [1/m]
-      real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space: linear in x
+      real(rk), intent(out) :: area_coordinates(3)  !< barycentric, in space: linear in x [-]
       real(rk), intent(out) :: determinant  !< of the Jacobian [m2]
       logical, intent(in), optional :: collapsed  !< quadrilateral at the tip; default: triangle
       real(rk) :: derivatives(2, 6), jacobian(2, 2), inverse(2, 2), t
@@ -86,8 +86,8 @@ contains
    !! barycentric coordinate l_0 of the tip and those of the ends of the opposite edge.
    pure subroutine add_bubble(tip_corner, lambda, values, derivatives)
       integer(ik), intent(in) :: tip_corner
-      real(rk), intent(in) :: lambda(3)
-      real(rk), intent(inout) :: values(6), derivatives(2, 6)
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates [-]
+      real(rk), intent(inout) :: values(6), derivatives(2, 6)  !< of the shape functions [-]
       real(rk) :: bubble, by_lambda(3), slope(2), t, share
       integer(ik) :: first, second, k
 

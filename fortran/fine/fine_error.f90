@@ -77,7 +77,7 @@ contains
    !> Energy product of the differences between recovered and computed stress in one element [J/m].
    pure real(rk) function product_in(model, displacement, recovery, other, other_recovery, cell)
       type(fine_model_t), intent(in) :: model
-      real(rk), intent(in) :: displacement(:, :), other(:, :)
+      real(rk), intent(in) :: displacement(:, :), other(:, :)  !< (2, n_nodes) [m]
       type(recovery_t), intent(in) :: recovery, other_recovery
       integer(ik), intent(in) :: cell
       integer(ik), parameter :: n_t = 4, n_w = 5
@@ -110,7 +110,7 @@ contains
 
       !> Recovered less computed stress, xx yy xy [Pa].
       pure function difference(field, recovered)
-         real(rk), intent(in) :: field(:, :)
+         real(rk), intent(in) :: field(:, :)  !< (2, n_nodes) displacement [m]
          type(recovery_t), intent(in) :: recovered
          real(rk) :: difference(3)
          real(rk) :: stress(2, 2)
@@ -157,7 +157,7 @@ contains
       type(energy_error_t), intent(in) :: estimate
       real(rk), intent(in) :: relative  !< wanted error over the norm of the solution [-]
       real(rk), allocatable, intent(out) :: sizes(:)  !< (n_cells) edge if equilateral [m]
-      real(rk), allocatable, intent(out) :: shrinkage(:)  !< (n_tips) new radius over the old
+      real(rk), allocatable, intent(out) :: shrinkage(:)  !< (n_tips) new radius over the old [-]
       real(rk), parameter :: smooth_order = 2.0_rk  ! p of quadratic elements
       real(rk), parameter :: finest = 0.1_rk, coarsest = 4.0_rk  ! change of size at once
       real(rk) :: share, here
@@ -192,7 +192,7 @@ contains
 
       !> A change of size within what is trusted at once; no error at all lets sizes grow.
       pure real(rk) function within(change)
-         real(rk), intent(in) :: change
+         real(rk), intent(in) :: change  !< new size over the old [-]
 
          within = coarsest
          if (change < coarsest) within = max(finest, change)
@@ -210,7 +210,7 @@ contains
    !> The error s that each element may have: n(s) s**2 + 2 m s**2 (tips) is the square of what is
    !! allowed, n(s) = sum s**(-2/3). The sum rises with s; by bisection.
    pure real(rk) function share_of_element(sum_of_powers, n_tips, allowed) result(share)
-      real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out
+      real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out [(J/m)^1/3]
       integer(ik), intent(in) :: n_tips
       real(rk), intent(in) :: allowed  !< [(J/m)^1/2]
       integer, parameter :: halvings = 60

@@ -239,7 +239,7 @@ contains
       type(fine_boundary_t), intent(in) :: boundary
       type(face_conditions_t), intent(in) :: conditions
       type(constraints_t), intent(inout) :: constraints
-      real(rk), allocatable, intent(out) :: dilation(:)  !< (n_pairs)
+      real(rk), allocatable, intent(out) :: dilation(:)  !< (n_pairs) tan(psi) [-]
       integer(ik), allocatable :: n_alike(:)
       logical, allocatable :: is_bilateral(:)
       real(rk) :: share(3), tau(2)

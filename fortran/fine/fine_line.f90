@@ -16,7 +16,7 @@ contains
 
    !> The shape functions of start, end and the node within.
    pure function line_shapes(x) result(shapes)
-      real(rk), intent(in) :: x  !< parameter, 0 to 1
+      real(rk), intent(in) :: x  !< parameter, 0 to 1 [-]
       real(rk) :: shapes(3)
 
       shapes = [(1.0_rk - x)*(1.0_rk - 2.0_rk*x), x*(2.0_rk*x - 1.0_rk), 4.0_rk*x*(1.0_rk - x)]
@@ -24,7 +24,7 @@ contains
 
    !> Their derivatives by the parameter.
    pure function line_slopes(x) result(slopes)
-      real(rk), intent(in) :: x  !< parameter, 0 to 1
+      real(rk), intent(in) :: x  !< parameter, 0 to 1 [-]
       real(rk) :: slopes(3)
 
       slopes = [4.0_rk*x - 3.0_rk, 4.0_rk*x - 1.0_rk, 4.0_rk - 8.0_rk*x]
@@ -32,7 +32,7 @@ contains
 
    !> The parameter of a place on the line.
    pure real(rk) function line_parameter(share, tip_end) result(x)
-      real(rk), intent(in) :: share  !< of the length from the start, 0 to 1
+      real(rk), intent(in) :: share  !< of the length from the start, 0 to 1 [-]
       integer(ik), intent(in) :: tip_end
 
       x = share

@@ -143,10 +143,10 @@ contains
    pure subroutine evaluate(self, cell, lambda, values, gradients, area_coordinates, determinant)
       class(fine_mesh_t), intent(in) :: self
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle
-      real(rk), intent(out) :: values(6)  !< shape functions
+      real(rk), intent(in) :: lambda(3)  !< barycentric coordinates of the reference triangle [-]
+      real(rk), intent(out) :: values(6)  !< shape functions [-]
       real(rk), intent(out) :: gradients(2, 6)  !< their gradients [1/m]
-      real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space
+      real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space [-]
       real(rk), intent(out) :: determinant  !< of the Jacobian [m2]
 
       call evaluate_element(self%xy(:, self%cell_nodes(:, cell)), self%tip_corner(cell), lambda, &

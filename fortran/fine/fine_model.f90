@@ -137,7 +137,7 @@ contains
    subroutine assemble(self, row, col, values)
       class(fine_model_t), intent(in) :: self
       integer(ik), allocatable, intent(out) :: row(:), col(:)
-      real(rk), allocatable, intent(out) :: values(:)
+      real(rk), allocatable, intent(out) :: values(:)  !< of the entries [Pa]
       real(rk) :: ties(12, 6*columns_max), products(12, 6*columns_max)
       real(rk) :: reduced(6*columns_max, 6*columns_max)
       integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(6*columns_max)
@@ -284,9 +284,9 @@ contains
    !> The unknowns from their loads, by way of the condensed system where faces touch.
    subroutine solve_unknowns(self, given_jump, contact, x, error)
       class(fine_model_t), intent(inout) :: self
-      real(rk), intent(in) :: given_jump(:, :, :)
+      real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
       type(contact_t), intent(inout) :: contact
-      real(rk), intent(inout), contiguous :: x(:, :)  !< (n_dofs, 1) loads, then unknowns
+      real(rk), intent(inout), contiguous :: x(:, :)  !< (n_dofs, 1) loads [N/m], then unknowns [m]
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: load(1, 2*self%contact_problem%n), jump(2*self%contact_problem%n)
       character(len=:), allocatable :: reason
@@ -380,7 +380,7 @@ contains
       class(fine_model_t), intent(in) :: self
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: lambda(3)  !< reference coordinates; not those of the tip
+      real(rk), intent(in) :: lambda(3)  !< reference coordinates; not those of the tip [-]
       real(rk) :: gradient(2, 2)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
 

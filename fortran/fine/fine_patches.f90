@@ -127,7 +127,7 @@ contains
 
    !> The terms of a quadratic.
    pure function quadratic_terms(xy) result(term)
-      real(rk), intent(in) :: xy(2)
+      real(rk), intent(in) :: xy(2)  !< from the node, in units of the patch's size [-]
       real(rk) :: term(n_terms)
 
       term = [1.0_rk, xy(1), xy(2), xy(1)**2, xy(1)*xy(2), xy(2)**2]
@@ -136,9 +136,9 @@ contains
    !> The quadratics that come closest to values at points, by least squares. Where the points
    !! leave a quadratic undetermined it is reduced to a linear function, or to their mean.
    subroutine fit_quadratic(xy, values, coefficients)
-      real(rk), intent(in) :: xy(:, :)  !< (2, n) from the node, in units of the patch's size
-      real(rk), intent(in) :: values(:, :)  !< (3, n)
-      real(rk), intent(out) :: coefficients(n_terms, 3)
+      real(rk), intent(in) :: xy(:, :)  !< (2, n) from the node, in units of the patch's size [-]
+      real(rk), intent(in) :: values(:, :)  !< (xx yy xy, n) [Pa]
+      real(rk), intent(out) :: coefficients(n_terms, 3)  !< (term, xx yy xy) [Pa]
       integer(ik), parameter :: orders(3) = [6, 3, 1]  ! terms of a quadratic, a linear, a constant
       real(rk), parameter :: smallest = 1.0e-6_rk  ! pivot over its diagonal entry, both rooted
       real(rk) :: normal(n_terms, n_terms), right(n_terms, 3), term(n_terms), diagonal(n_terms)

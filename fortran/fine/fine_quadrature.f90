@@ -14,7 +14,7 @@ contains
    !> Gauss and Legendre's rule on [0, 1], exact up to degree 2n-1.
    pure subroutine gauss_rule(n, points, weights)
       integer(ik), intent(in) :: n
-      real(rk), intent(out) :: points(n), weights(n)  !< weights add up to 1
+      real(rk), intent(out) :: points(n), weights(n)  !< weights add up to 1 [-]
       real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk) :: x, step, p, p_before, p_next, slope
       integer(ik) :: i, k, iteration
@@ -41,8 +41,8 @@ contains
 
    !> Three points inside, exact for quadratics (Strang and Fix).
    pure subroutine triangle_rule_3(points, weights)
-      real(rk), intent(out) :: points(3, 3)  !< (barycentric coordinate, point)
-      real(rk), intent(out) :: weights(3)
+      real(rk), intent(out) :: points(3, 3)  !< (barycentric coordinate, point) [-]
+      real(rk), intent(out) :: weights(3)  !< their sum is 1/2 [-]
       integer(ik) :: k
 
       points = 1.0_rk/6.0_rk
@@ -54,8 +54,8 @@ contains
 
    !> Seven points, exact up to degree 5 (Radon).
    pure subroutine triangle_rule_7(points, weights)
-      real(rk), intent(out) :: points(3, 7)  !< (barycentric coordinate, point)
-      real(rk), intent(out) :: weights(7)
+      real(rk), intent(out) :: points(3, 7)  !< (barycentric coordinate, point) [-]
+      real(rk), intent(out) :: weights(7)  !< their sum is 1/2 [-]
       real(rk), parameter :: root = sqrt(15.0_rk)
       real(rk) :: a(2), w(2)
       integer(ik) :: group, k, point
@@ -80,8 +80,8 @@ contains
    pure subroutine collapsed_rule(corner, n_t, n_w, points, weights)
       integer(ik), intent(in) :: corner  !< 1, 2 or 3
       integer(ik), intent(in) :: n_t, n_w  !< points in each direction
-      real(rk), intent(out) :: points(3, n_t*n_w)  !< (barycentric coordinate, point)
-      real(rk), intent(out) :: weights(n_t*n_w)
+      real(rk), intent(out) :: points(3, n_t*n_w)  !< (barycentric coordinate, point) [-]
+      real(rk), intent(out) :: weights(n_t*n_w)  !< their sum is 1/2 [-]
       real(rk) :: t(n_t), w(n_w), weight_t(n_t), weight_w(n_w)
       integer(ik) :: i, j, point
 

@@ -97,7 +97,7 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       type(recovery_t), intent(in) :: recovery
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: area_coordinates(3)  !< barycentric coordinates in space
+      real(rk), intent(in) :: area_coordinates(3)  !< barycentric coordinates in space [-]
       real(rk) :: stress(3)
       real(rk) :: corner(2, 3), here(2), middle(2), centre(2)
       integer(ik) :: k, next
@@ -124,7 +124,7 @@ contains
       !> A vertex' fit at a point: with the singular field of its tip, unless the element adds that.
       pure function value_at(vertex, xy) result(value)
          integer(ik), intent(in) :: vertex
-         real(rk), intent(in) :: xy(2)
+         real(rk), intent(in) :: xy(2)  !< [m]
          real(rk) :: value(3)
 
          value = matmul(quadratic_terms((xy - fine%xy(:, vertex))/recovery%scale(vertex)), &

@@ -118,7 +118,7 @@ contains
    !> Where a tip is after its growth [m].
    pure function new_tip(tip, direction, angle, advance) result(xy)
       real(rk), intent(in) :: tip(2)  !< [m]
-      real(rk), intent(in) :: direction(2)  !< unit vector, ahead of the tip
+      real(rk), intent(in) :: direction(2)  !< unit vector, ahead of the tip [-]
       real(rk), intent(in) :: angle  !< of the kink, anticlockwise [rad]
       real(rk), intent(in) :: advance  !< [m]
       real(rk) :: xy(2)

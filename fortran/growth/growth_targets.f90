@@ -66,11 +66,11 @@ contains
    !> Keep the candidate if it comes first. Crossings rank by their share of the segment, below 1;
    !! nearness follows after all of them.
    pure subroutine try(from, to, ends, reach, candidate, best, target, at)
-      real(rk), intent(in) :: from(2), to(2), ends(2, 2), reach
+      real(rk), intent(in) :: from(2), to(2), ends(2, 2), reach  !< [m]
       integer(ik), intent(in) :: candidate
-      real(rk), intent(inout) :: best
+      real(rk), intent(inout) :: best  !< rank of the target so far [-]
       integer(ik), intent(inout) :: target
-      real(rk), intent(inout) :: at(2)
+      real(rk), intent(inout) :: at(2)  !< [m]
       real(rk) :: place(2), share(2), rank
       integer :: k
 

@@ -157,7 +157,7 @@ contains
    !> Rosettes as much smaller as the error around the tips asks for.
    pure subroutine fit_rosettes(mesh, shrinkage, spec)
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: shrinkage(:)  !< (n_tips) new radius over the present one
+      real(rk), intent(in) :: shrinkage(:)  !< (n_tips) new radius over the present one [-]
       type(mesh_spec_t), intent(inout) :: spec
       integer(ik) :: tip
 

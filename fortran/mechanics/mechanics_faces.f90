@@ -77,7 +77,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
       type(fine_mesh_t), intent(in) :: fine
-      real(rk), intent(inout) :: jump(:, :, :)
+      real(rk), intent(inout) :: jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
       logical :: is_free(2)
       real(rk) :: length
       integer(ik) :: cell, f, k
@@ -105,7 +105,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start
       type(fine_mesh_t), intent(in) :: fine
-      real(rk), intent(inout) :: jump(:, :, :)
+      real(rk), intent(inout) :: jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
       real(rk) :: tangent(2), along
       integer(ik) :: cell
 
@@ -173,7 +173,7 @@ contains
          integer(ik), intent(in) :: f
          real(rk), intent(in) :: s  !< [m]
          integer(ik), intent(out) :: source  !< 0: none
-         real(rk), intent(out) :: weight(3)  !< start, end, mid
+         real(rk), intent(out) :: weight(3)  !< start, end, mid [-]
          real(rk) :: x
          integer(ik) :: i
 

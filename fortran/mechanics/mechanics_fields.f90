@@ -104,7 +104,7 @@ contains
    !> Reference coordinates from those in space: a quarter-point element maps 1 - lambda of the
    !! tip's corner to its square.
    pure function reference_place(area_coordinates, tip_corner) result(lambda)
-      real(rk), intent(in) :: area_coordinates(3)
+      real(rk), intent(in) :: area_coordinates(3)  !< [-]
       integer(ik), intent(in) :: tip_corner
       real(rk) :: lambda(3)
       real(rk) :: t
@@ -120,7 +120,7 @@ contains
    pure function stress_at(body, cell, lambda, area_coordinates) result(stress)
       type(body_t), intent(in) :: body
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: lambda(3), area_coordinates(3)
+      real(rk), intent(in) :: lambda(3), area_coordinates(3)  !< [-]
       real(rk) :: stress(3)
       real(rk) :: tensor(2, 2)
 

@@ -216,7 +216,7 @@ contains
 
       !> An angle between -pi and pi.
       elemental real(rk) function turned(difference)
-         real(rk), intent(in) :: difference
+         real(rk), intent(in) :: difference  !< [rad]
 
          turned = modulo(difference + pi, 2.0_rk*pi) - pi
       end function turned
@@ -225,7 +225,7 @@ contains
 
    !> Ascending order, by insertion: nearly all are in order.
    pure subroutine sort(values)
-      real(rk), intent(inout) :: values(:)
+      real(rk), intent(inout) :: values(:)  !< angles [rad]
       real(rk) :: value
       integer :: i, k
 

@@ -89,7 +89,7 @@ contains
    subroutine add_real(self, key, value)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
-      real(rk), intent(in) :: value  !< in the unit that the key names
+      real(rk), intent(in) :: value  !< [unit that the key names]
 
       call begin_member(self, key)
       call append_number(self, value)
@@ -122,7 +122,7 @@ contains
    subroutine add_reals(self, key, values)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
-      real(rk), intent(in) :: values(:)  !< in the unit that the key names
+      real(rk), intent(in) :: values(:)  !< [unit that the key names]
       integer :: i
 
       call begin_member(self, key)
@@ -259,7 +259,7 @@ contains
 
    subroutine append_number(self, value)
       class(json_t), intent(inout) :: self
-      real(rk), intent(in) :: value  !< in the unit that the key names
+      real(rk), intent(in) :: value  !< [unit that the key names]
 
       if (abs(value) <= huge(value)) then
          call self%buffer%append_real(value)

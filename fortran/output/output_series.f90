@@ -65,7 +65,7 @@ contains
    subroutine put_real(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: value  !< in the unit of the name
+      real(rk), intent(in) :: value  !< [unit of the name]
       character(len=number_width + 1) :: piece  ! with the comma behind it
       integer :: length
       logical :: is_wanted

@@ -44,7 +44,7 @@ contains
    !> Add a number at the end, with the digits that it needs.
    pure subroutine append_real(self, x)
       class(text_buffer_t), intent(inout) :: self
-      real(rk), intent(in) :: x  !< in any unit
+      real(rk), intent(in) :: x  !< [any unit]
       character(len=number_width) :: piece
       integer :: length
 

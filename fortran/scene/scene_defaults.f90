@@ -36,8 +36,8 @@ contains
    end subroutine resolve_defaults
 
    pure subroutine default(value, otherwise)
-      real(rk), intent(inout) :: value
-      real(rk), intent(in) :: otherwise
+      real(rk), intent(inout) :: value  !< [any unit]
+      real(rk), intent(in) :: otherwise  !< [unit of value]
 
       if (.not. value > 0.0_rk) value = otherwise
    end subroutine default

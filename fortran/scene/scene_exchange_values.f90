@@ -26,9 +26,9 @@ contains
    pure subroutine exchange_real(record, name, component, reading, nothing)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
-      real(rk), intent(inout) :: component
+      real(rk), intent(inout) :: component  !< [unit of the name]
       logical, intent(in) :: reading
-      real(rk), intent(in), optional :: nothing
+      real(rk), intent(in), optional :: nothing  !< what an absent value is [unit of the name]
 
       associate (value => record%values(parameter_index(record%group, name)))
          if (reading) then
@@ -44,7 +44,7 @@ contains
    pure subroutine exchange_reals(record, name, component, reading)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout) :: component(:)
+      real(rk), allocatable, intent(inout) :: component(:)  !< [unit of the name]
       logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
@@ -155,7 +155,7 @@ contains
    end function to_degrees
 
    pure logical function same_bits(a, b)
-      real(rk), intent(in) :: a, b
+      real(rk), intent(in) :: a, b  !< [any unit]
 
       same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
    end function same_bits

@@ -44,7 +44,7 @@ contains
    !> A value lies within an interval; a NaN does not.
    pure logical function holds(interval, value)
       type(interval_t), intent(in) :: interval
-      real(rk), intent(in) :: value
+      real(rk), intent(in) :: value  !< [any unit]
 
       holds = value >= interval%lowest .and. value <= interval%highest
       if (interval%open_below) holds = holds .and. value > interval%lowest
@@ -76,7 +76,7 @@ contains
    end function in_words
 
    pure function bound_text(bound, whole) result(text)
-      real(rk), intent(in) :: bound
+      real(rk), intent(in) :: bound  !< [any unit]
       logical, intent(in) :: whole
       character(len=:), allocatable :: text
 

@@ -135,7 +135,7 @@ contains
       character(len=*), intent(in) :: word  !< a text still has its quotes
       logical, intent(in) :: is_text
       type(value_t), intent(inout) :: value
-      real(rk), intent(out) :: number
+      real(rk), intent(out) :: number  !< [unit of the name]
       character(len=:), allocatable, intent(out) :: reason
       logical :: good
 
@@ -168,7 +168,7 @@ contains
    !> A finite number as Fortran writes it: `-1`, `.5`, `2.0e-3`, `1d6`.
    pure subroutine read_real(word, number, good)
       character(len=*), intent(in) :: word
-      real(rk), intent(inout) :: number
+      real(rk), intent(inout) :: number  !< [any unit]
       logical, intent(out) :: good
       character(len=24) :: style
       integer :: mark, status

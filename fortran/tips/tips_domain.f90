@@ -42,7 +42,7 @@ contains
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: cell
       integer(ik), intent(out) :: n_points
-      real(rk), intent(out) :: points(3, rule_size), weights(rule_size)
+      real(rk), intent(out) :: points(3, rule_size), weights(rule_size)  !< [-]
       integer(ik) :: corner
 
       corner = findloc(fine%cell_nodes(1:3, cell), frame%node, dim=1)
@@ -131,7 +131,7 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
       real(rk) :: place(2)
       integer(ik) :: k
 

@@ -58,11 +58,11 @@ contains
    pure real(rk) function cell_share(model, loads, displacement, frame, reference_stress, cell, q)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: displacement(:, :)
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)  !< (n_nodes)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
@@ -124,11 +124,11 @@ contains
    pure real(rk) function face_share(model, loads, displacement, frame, reference_stress, cell, q)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: displacement(:, :)
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)  !< (n_nodes)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
       integer(ik), parameter :: n_points = 3  ! exact: q and the slope have degrees 2 and 1
       real(rk) :: x(n_points), weights(n_points), traction(2), jump(2, 3), q_here, slope(2), along
       integer(ik) :: point

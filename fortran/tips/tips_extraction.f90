@@ -43,8 +43,8 @@ contains
       type(fine_model_t), intent(in) :: model
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)  !< (n_nodes)
-      real(rk), intent(inout) :: force(:, :, :)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
+      real(rk), intent(inout) :: force(:, :, :)  !< (2, n_nodes, modes) d(2 K/E')/du [m^1/2 per m]
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: place(2), q_slope(2), coefficients(2, 2), outer(2, 2), reference

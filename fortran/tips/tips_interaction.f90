@@ -67,7 +67,7 @@ contains
       real(rk), intent(in) :: biot  !< [-]
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: corners(3)
-      real(rk), intent(in) :: area_coordinates(3)
+      real(rk), intent(in) :: area_coordinates(3)  !< [-]
       real(rk) :: stress(2, 2)
       real(rk) :: given(3), pressure
       integer(ik) :: i
@@ -85,12 +85,12 @@ contains
    pure subroutine add_cell(model, loads, displacement, frame, reference_stress, cell, q, integral)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: displacement(:, :)
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)  !< (n_nodes)
-      real(rk), intent(inout) :: integral(2)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
+      real(rk), intent(inout) :: integral(2)  !< 2 K/E' of both modes [m^1/2]
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: place(2), gradient(2, 2), stress(2, 2), initial(2, 2), q_slope(2), p(2), body(2)
@@ -136,12 +136,12 @@ contains
    pure subroutine add_face(model, loads, displacement, frame, reference_stress, cell, q, integral)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: displacement(:, :)
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: q(:)  !< (n_nodes)
-      real(rk), intent(inout) :: integral(2)
+      real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
+      real(rk), intent(inout) :: integral(2)  !< 2 K/E' of both modes [m^1/2]
       integer(ik), parameter :: n_points = 5
       real(rk) :: s(n_points), weights(n_points), traction(2), ends(2, 2), r, x, q_here, weight
       real(rk) :: kolosov, shear_modulus, difference(2)

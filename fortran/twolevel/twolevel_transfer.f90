@@ -51,7 +51,7 @@ contains
       logical, intent(in) :: is_prefilled
       type(state_t), intent(in) :: before
       type(state_t), intent(out) :: after
-      real(rk), intent(out) :: prefilled
+      real(rk), intent(out) :: prefilled  !< [m2]
 
       integer(ik), parameter :: both(2) = [1_ik, 2_ik]  ! ends of a fracture cell
       integer(ik) :: c, i, k, n, old

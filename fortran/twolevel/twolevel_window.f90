@@ -112,7 +112,7 @@ contains
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
-      real(rk), intent(inout) :: lower(2), upper(2)
+      real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
 
       integer(ik) :: axis
 
