@@ -63,7 +63,8 @@ contains
       call checks%is_true(fields(7) > 0.0_rk, "the crack is open there")
       tips = last_row(directory//"/tips.csv", 13)
       call checks%is_true(tips(13) > 0.0_rk, "the last increment is told")
-      call checks%is_close(tips(4) + tips(13), 1.0_rk, 1.0e-9_rk, "it ends at the other side")
+      ! The path leaves the straight line by some 1e-3, and its length that in x by the square.
+      call checks%is_close(tips(4) + tips(13), 1.0_rk, 1.0e-6_rk, "it ends at the other side")
    end subroutine test_broken_body
 
    !> The first numbers of a table's last row; an aperture that is left empty reads as 0.
