@@ -67,6 +67,13 @@ def test_growth_that_lags_behind_is_warned_of(tmp_path: Path) -> None:
     assert any(warning.startswith("K_eq over K_IC after growth 1.") for warning in warnings)
 
 
+def test_fluid_that_stays_where_it_is_loses_nothing(tmp_path: Path) -> None:
+    """Without fractures and flow, rounding is no error of mass."""
+    scene = TOP / "verification" / "undrained_square" / "scene.nml"
+    status, _, _, warnings = run(tmp_path, scene.read_text())
+    assert (status, warnings) == (0, [])
+
+
 def test_soft_rock_without_fluid_is_warned_of(tmp_path: Path) -> None:
     """A strain of 4 %: the result is that of the linear equations, and the run says so."""
     text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()

@@ -45,7 +45,7 @@ module simulation_limits
               "look for values of the scene that lie too many decades apart"), &
       limit_t("mass error", "-", with_fluid, 1.0e-8_rk, 1.0e-3_rk, &
               "Fluid gained or lost by numerical error so far, over the injected fluid or the "// &
-              "fractures' volume", &
+              "fractures' volume, or without these what the pressure would store in the rock", &
               "look for values of the scene that lie too many decades apart"), &
       limit_t("contact residual", "-", "always", 1.0e-8_rk, 1.0e-4_rk, &
               "How far the law of contact is missed, over the largest traction", &

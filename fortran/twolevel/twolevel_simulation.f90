@@ -100,7 +100,7 @@ contains
       self%seismic_moment = self%seismic_moment + slip_moment(self, before%jump(2, :, :))
       self%mass_error = self%mass_error + self%report%mass_error
       row = self%history()
-      call watch_levels(self, self%report, row%mass_error_relative)
+      call watch_levels(self, self%report, self%mass_error, row%mass_error_relative)
       call self%heed_limits(error)
       if (allocated(error)) then
          self%state = before  ! the last good one
