@@ -9,8 +9,8 @@ module base_number
    implicit none(type, external)
    private
 
-   public :: brief_text, decimal_digits, format_integer, format_real, integer_text, most_digits
-   public :: number_width, real_text
+   public :: brief_text, decimal_digits, exact_text, format_integer, format_real, integer_text
+   public :: most_digits, number_width
 
    integer, parameter :: number_width = 28  !< longest text of a number
    integer, parameter :: most_digits = 17  !< that a double may need
@@ -37,7 +37,7 @@ contains
 
    !> A short text that reads back as x; nan, inf and -inf for what is no number.
    pure subroutine format_real(x, text, length, n_digits)
-      real(rk), intent(in) :: x
+      real(rk), intent(in) :: x  !< [any unit]
       character(len=number_width), intent(out) :: text
       integer, intent(out) :: length  !< characters used
       integer, intent(in), optional :: n_digits  !< as in decimal_digits
@@ -60,20 +60,20 @@ contains
       end if
    end subroutine format_real
 
-   !> Text of a real, see format_real.
-   pure function real_text(x) result(text)
-      real(rk), intent(in) :: x
+   !> A real as files hold it: a text that reads back as x.
+   pure function exact_text(x) result(text)
+      real(rk), intent(in) :: x  !< [any unit]
       character(len=:), allocatable :: text
       character(len=number_width) :: buffer
       integer :: length
 
       call format_real(x, buffer, length)
       text = buffer(1:length)
-   end function real_text
+   end function exact_text
 
    !> A real for people: rounded to a few significant digits.
    pure function brief_text(x, n_digits) result(text)
-      real(rk), intent(in) :: x
+      real(rk), intent(in) :: x  !< [any unit]
       integer, intent(in) :: n_digits  !< significant digits, 1 to 17
       character(len=:), allocatable :: text
       character(len=number_width) :: buffer

@@ -22,9 +22,11 @@ module base_timers
    integer, parameter :: phase_count = 10
 
    !> Names as run.json has them.
-   character(len=10), parameter :: phase_names(phase_count) = [character(len=10) :: "mesh", &
-      & "discretize", "assemble", "factorize", "solve", "contact", "tips", "remesh", "transfer", &
-      & "output"]
+   character(len=10), parameter :: phase_names(phase_count) = [character(len=10) :: &
+                                                               "mesh", "discretize", &
+                                                               "assemble", "factorize", &
+                                                               "solve", "contact", "tips", &
+                                                               "remesh", "transfer", "output"]
 
    !> The stop watch of one run.
    type :: timers_t

@@ -53,7 +53,7 @@ contains
       if (n_bytes > 2) then  ! overlong forms, surrogates, and code points above the last
          second = iachar(text(2:2))
          if (first == 224 .and. second < 160 .or. first == 237 .and. second > 159 .or. &
-            & first == 240 .and. second < 144 .or. first == 244 .and. second > 143) n_bytes = 0
+             first == 240 .and. second < 144 .or. first == 244 .and. second > 143) n_bytes = 0
       end if
    end function utf8_length
 

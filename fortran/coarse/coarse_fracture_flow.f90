@@ -4,7 +4,7 @@
 !! (theory.md):
 !!   l (a - a_before + a c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
 !! Flow between neighbours by the cubic law, exchange with the rock through half the aperture. The
-!! flow is an unknown of its own because the pressure difference that drives it along an open
+!! flow is a separate unknown because the pressure difference that drives it along an open
 !! fracture is far below the rounding of the pressures.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk

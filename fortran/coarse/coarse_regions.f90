@@ -3,7 +3,7 @@
 !! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector
 !! between fractures. Across a fracture the traction is continuous and the displacement jumps; the
 !! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
-!! varies linearly along the cell. Each node has a rotation of its own.
+!! varies linearly along the cell. Each node has its own rotation.
 module coarse_regions
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk

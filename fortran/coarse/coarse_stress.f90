@@ -2,7 +2,7 @@
 !!
 !! Multi-point stress approximation with weakly symmetric stress (Nordbotten 2016; Keilegavlen and
 !! Nordbotten 2017), in its mixed form on triangles: each face has, at each of its two ends, a
-!! traction [Pa] of its own; around a vertex these are found from the displacements and pressures of
+!! own traction [Pa]; around a vertex these are found from the displacements and pressures of
 !! the cells there, so that the displacement is continuous at a third of each face, and that the
 !! stress is symmetric in the mean over the vertex (a rotation is the multiplier). With the corners'
 !! areas as weights this is a lumped mixed method (Wheeler and Yotov 2006; Ambartsumyan, Khattatov,

@@ -107,9 +107,9 @@ contains
          more = "tips "//integer_text(values%n_tips)
       end if
       line = integer_text(int(share, ik))//"%  "//place//"  step "//integer_text(values%step)// &
-         & "  "//more//"  stick "//integer_text(values%n_stick)//" slip "// &
-         & integer_text(values%n_slip)//" open "//integer_text(values%n_open)//"  L "// &
-         & brief_text(values%fracture_length, 4)//" m"
+             "  "//more//"  stick "//integer_text(values%n_stick)//" slip "// &
+             integer_text(values%n_slip)//" open "//integer_text(values%n_open)//"  L "// &
+             brief_text(values%fracture_length, 4)//" m"
    end function progress_line
 
 end module output_progress

@@ -7,7 +7,7 @@
 module output_vtu
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_number, only: integer_text, real_text
+   use base_number, only: exact_text, integer_text
    use output_files, only: whole_file_t
    use output_text, only: newline, text_buffer_t
    use, intrinsic :: iso_fortran_env, only: int64, int8
@@ -100,7 +100,7 @@ contains
          field%reals = reshape(values, [size(values)])
          do i = 1, size(components)
             field%components = field%components//" ComponentName"//integer_text(int(i - 1, ik))// &
-               & '="'//trim(components(i))//'"'
+                               '="'//trim(components(i))//'"'
          end do
       end associate
    end subroutine add_vector
@@ -176,12 +176,12 @@ contains
       offset = 0_int64
       call line('<?xml version="1.0"?>')
       call line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'//byte_order()// &
-         & '" header_type="UInt64">')
+                '" header_type="UInt64">')
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//real_text(self%time)//"</DataArray></FieldData>")
+                'format="ascii">'//exact_text(self%time)//"</DataArray></FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
-         & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
+                '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
       call array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points))
       call line("      </Points>")
@@ -219,8 +219,8 @@ contains
                if (field%at_points .neqv. at_points) cycle
                if (allocated(field%reals)) then
                   call array("Float64", field%name, ' NumberOfComponents="'// &
-                     & integer_text(int(field%n_components, ik))//'"'//field%components, &
-                     & 8*size(field%reals))
+                             integer_text(int(field%n_components, ik))//'"'//field%components, &
+                             8*size(field%reals))
                else
                   call array("Int32", field%name, "", 4*size(field%integers))
                end if
@@ -233,7 +233,7 @@ contains
          integer, intent(in) :: n_bytes  !< of the values; 8 more hold their size
 
          call line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
-            & ' format="appended" offset="'//integer_text(offset)//'"/>')
+                   ' format="appended" offset="'//integer_text(offset)//'"/>')
          offset = offset + 8_int64 + int(n_bytes, int64)
       end subroutine array
 

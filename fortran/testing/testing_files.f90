@@ -23,7 +23,7 @@ contains
 
       text = ""
       open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
-         & status="old", iostat=status)
+            status="old", iostat=status)
       if (status /= 0) return
       inquire (unit, size=n_bytes)
       if (n_bytes > 0) then

@@ -30,16 +30,16 @@ module twolevel_window
    implicit none(type, external)
    private
 
-   public :: coarse_level_t, window_t
+   public :: coarse_values_t, window_t
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
 
-   !> What a window needs of the coarse level.
-   type :: coarse_level_t
-      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y, p at the coarse mesh's nodes
-      real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi)
-   end type coarse_level_t
+   !> What a window takes from the coarse level.
+   type :: coarse_values_t
+      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi) [-]
+   end type coarse_values_t
 
    !> One window.
    type :: window_t
@@ -216,11 +216,11 @@ contains
    end subroutine match_faces
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tip.
-   subroutine intensity(self, scene, coarse, level, state, result, error)
+   subroutine intensity(self, scene, coarse, values, state, result, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
-      type(coarse_level_t), intent(in) :: level
+      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(intensity_t), intent(out) :: result
       type(error_t), allocatable, intent(out) :: error
@@ -232,15 +232,15 @@ contains
          do v = 1, fine%n_nodes
             if (v > fine%n_vertices .and. .not. fine%on_boundary(v)) cycle
             associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               self%loads%boundary_displacement(:, v) = matmul(level%nodal(1:2, nodes), &
+               self%loads%boundary_displacement(:, v) = matmul(values%nodal(1:2, nodes), &
                                                                self%weight(:, v))
-               if (v <= fine%n_vertices) self%loads%pore_pressure(v) = dot_product(level%nodal(3, &
-                                                                          nodes), self%weight(:, v))
+               if (v > fine%n_vertices) cycle
+               self%loads%pore_pressure(v) = dot_product(values%nodal(3, nodes), self%weight(:, v))
             end associate
          end do
       end associate
       if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
-      call load_faces(self, scene%discretization%face_condition, coarse, level, state, conditions)
+      call load_faces(self, scene%discretization%face_condition, coarse, values, state, conditions)
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error)
          if (allocated(error)) return
@@ -252,11 +252,11 @@ contains
    end subroutine intensity
 
    !> Conditions and loads on the fracture faces.
-   subroutine load_faces(self, face_condition, coarse, level, state, conditions)
+   subroutine load_faces(self, face_condition, coarse, values, state, conditions)
       class(window_t), intent(inout) :: self
       character(len=*), intent(in) :: face_condition  !< "contact", "jump" or "traction"
       type(mesh_t), intent(in) :: coarse
-      type(coarse_level_t), intent(in) :: level
+      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(face_conditions_t), intent(out) :: conditions
 
@@ -276,7 +276,7 @@ contains
          case ("contact")
             if (contact == state_slip) then
                conditions%condition(i) = face_slip
-               conditions%dilation(i) = sign(level%dilation(j), state%jump(2, end, j))
+               conditions%dilation(i) = sign(values%dilation(j), state%jump(2, end, j))
             else if (contact /= state_open) then
                conditions%condition(i) = face_jump
                call keep_jump(self, coarse, state, i, j)
