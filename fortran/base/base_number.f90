@@ -41,7 +41,6 @@ contains
       character(len=number_width), intent(out) :: text
       integer, intent(out) :: length  !< characters used
       integer, intent(in), optional :: n_digits  !< as in decimal_digits
-
       character(len=most_digits) :: digits
       integer :: power
 
@@ -93,7 +92,6 @@ contains
       character(len=most_digits), intent(out) :: digits  !< blanks follow
       integer, intent(out) :: power
       integer, intent(in), optional :: n_digits  !< 1 to 17; default: as many as needed
-
       integer(c_int) :: n
 
       n = 0
@@ -106,7 +104,6 @@ contains
       integer(lk), intent(in) :: n
       character(len=number_width), intent(out) :: text
       integer, intent(out) :: length  !< characters used
-
       integer(lk) :: rest
       integer :: position
       character(len=number_width) :: reversed
@@ -154,7 +151,6 @@ contains
       integer, intent(in) :: power  !< decimal exponent of the first one
       character(len=number_width), intent(inout) :: text
       integer, intent(inout) :: length
-
       integer :: n, exponent_size
 
       n = len_trim(digits)

@@ -9,9 +9,8 @@ contains
 
    !> Every byte is printable ASCII or part of a UTF-8 character: no control characters, nothing of
    !! another encoding.
-   pure function is_printable(text)
+   pure logical function is_printable(text)
       character(len=*), intent(in) :: text
-      logical :: is_printable
       integer :: i, n_bytes
 
       is_printable = .false.

@@ -24,7 +24,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, conductance, slope, volume
       integer(ik) :: at, fluid, jumps(2), n, row, side
 
@@ -51,7 +50,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, compression
       integer(ik) :: from_rock(2), jumps(2), n, row
 
@@ -79,7 +77,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: conductance
       integer(ik) :: at, faces(2), fluid, side
 
@@ -104,7 +101,6 @@ contains
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, resistance, slope
       integer(ik) :: end, first, i, row, second
 

@@ -86,7 +86,7 @@ contains
       self%before%contact = self%contact
    end subroutine remember
 
-   !> The body with fractures that have grown since `remember`: meshed again around their ends, or as
+   !> The body with fractures that have grown since `remember`: new around their ends, or as
    !! a whole where that does not go, assembled and factorized. Contact is carried over.
    subroutine grow(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self

@@ -8,9 +8,8 @@ module testing_files
 contains
 
    !> A file of this name is there.
-   function file_exists(path)
+   logical function file_exists(path)
       character(len=*), intent(in) :: path
-      logical :: file_exists
 
       inquire (file=path, exist=file_exists)
    end function file_exists

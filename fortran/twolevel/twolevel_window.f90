@@ -74,7 +74,6 @@ contains
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture, end
       type(error_t), allocatable, intent(out) :: error
-
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       real(rk) :: tip(2), half
@@ -113,7 +112,6 @@ contains
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
       real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
-
       integer(ik) :: axis
 
       do axis = 1, 2
@@ -136,7 +134,6 @@ contains
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: undrained
       type(error_t), allocatable, intent(out) :: error
-
       type(elasticity_t) :: elasticity
       type(rock_t) :: rock
       real(rk) :: lame
@@ -160,7 +157,6 @@ contains
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
       type(error_t), allocatable, intent(out) :: error
-
       real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
       real(rk), allocatable :: inside(:, :)
       integer(ik) :: c, k, v
@@ -193,7 +189,6 @@ contains
    subroutine match_faces(self, coarse)
       class(window_t), intent(inout) :: self
       type(mesh_t), intent(in) :: coarse
-
       integer(ik) :: i, j
       real(rk) :: distance, s, shortest
 
@@ -224,7 +219,6 @@ contains
       type(state_t), intent(in) :: state
       type(intensity_t), intent(out) :: result
       type(error_t), allocatable, intent(out) :: error
-
       type(face_conditions_t) :: conditions
       integer(ik) :: v
 
@@ -259,7 +253,6 @@ contains
       type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(face_conditions_t), intent(out) :: conditions
-
       integer(ik) :: contact, i, j, end
 
       conditions = loaded_everywhere(self%model%mesh)
@@ -296,7 +289,6 @@ contains
       type(mesh_t), intent(in) :: coarse
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-
       real(rk) :: jump(2)
       integer(ik) :: k
       logical :: found
@@ -320,7 +312,6 @@ contains
       type(mesh_t), intent(in) :: coarse
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-
       integer(ik) :: k
       real(rk) :: t
 

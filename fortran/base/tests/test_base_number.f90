@@ -3,8 +3,8 @@ program test_base_number
    use testing_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text, exact_text, integer_text
-   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, &
-                                                                          ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan
    implicit none(type, external)
 
    type(checks_t) :: checks
