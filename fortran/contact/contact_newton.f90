@@ -18,7 +18,7 @@ module contact_newton
    private
 
    public :: contact_system_t, iterate, iteration_report_t, iteration_settings_t, step_quality_t
-   public :: outcome_converged, outcome_not_a_number, outcome_singular, outcome_stuck
+   public :: outcome_converged, outcome_not_a_number, outcome_singular
 
    integer(ik), parameter :: outcome_converged = 0
    integer(ik), parameter :: outcome_stuck = 1  !< cycled, or took too many iterations
