@@ -39,7 +39,6 @@ module algebra_mumps
       procedure :: get_schur
       procedure :: condense
       procedure :: expand
-      procedure :: entries_in_factors
       procedure :: release
       final :: finalize
    end type mumps_t
@@ -190,14 +189,6 @@ contains
       call check_status(self, "expansion", error)
       x = self%id%rhs(:size(x))
    end subroutine expand
-
-   !> Number of entries in the factors, a measure of memory and work.
-   pure function entries_in_factors(self) result(n)
-      class(mumps_t), intent(in) :: self
-      integer(ik) :: n
-
-      n = self%id%infog(9)
-   end function entries_in_factors
 
    !> Give all memory back.
    subroutine release(self)

@@ -33,9 +33,7 @@ module app_process
 contains
 
    !> The user has asked the run to stop.
-   function interrupted()
-      logical :: interrupted
-
+   logical function interrupted()
       interrupted = c_interrupted() /= 0
    end function interrupted
 

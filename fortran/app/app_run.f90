@@ -22,7 +22,7 @@ module app_run
 
 contains
 
-   !> Run a scene to its end. `refused` tells that it could not even begin, and nothing was written.
+   !> Run a scene to its end. `refused`: it could not even begin, and nothing was written.
    subroutine run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: directory, version

@@ -18,7 +18,7 @@ module base_groups
 
 contains
 
-   !> Every member is a group of its own.
+   !> Every member is its own group.
    pure function single_groups(n) result(groups)
       integer(ik), intent(in) :: n  !< members
       type(groups_t) :: groups

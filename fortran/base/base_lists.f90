@@ -4,7 +4,7 @@
 !!   item     7 2        5 9 1        first  1 3 3 6
 !!
 !! List i is item(first(i):first(i + 1) - 1). What goes along with the numbers, such as a
-!! coefficient for each of them, stands in an array of its own in the order of `item`.
+!! coefficient for each of them, stands in a separate array in the order of `item`.
 module base_lists
    use base_kinds, only: ik
    implicit none(type, external)
@@ -12,7 +12,7 @@ module base_lists
 
    public :: inverted, lists_t
 
-   !> n lists. In loops ask for `at` and `place`, which need no memory of their own; `of` makes a
+   !> n lists. In loops ask for `at` and `place`, which allocate nothing; `of` makes a
    !! copy.
    type :: lists_t
       integer(ik), allocatable :: first(:)  !< (n + 1) where each list begins in item

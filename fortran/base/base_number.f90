@@ -9,8 +9,8 @@ module base_number
    implicit none(type, external)
    private
 
-   public :: brief_text, decimal_digits, format_integer, format_real, integer_text, most_digits
-   public :: number_width, real_text
+   public :: brief_text, decimal_digits, exact_text, format_integer, format_real, integer_text
+   public :: most_digits, number_width
 
    integer, parameter :: number_width = 28  !< longest text of a number
    integer, parameter :: most_digits = 17  !< that a double may need
@@ -37,11 +37,10 @@ contains
 
    !> A short text that reads back as x; nan, inf and -inf for what is no number.
    pure subroutine format_real(x, text, length, n_digits)
-      real(rk), intent(in) :: x
+      real(rk), intent(in) :: x  !< [any unit]
       character(len=number_width), intent(out) :: text
       integer, intent(out) :: length  !< characters used
       integer, intent(in), optional :: n_digits  !< as in decimal_digits
-
       character(len=most_digits) :: digits
       integer :: power
 
@@ -60,20 +59,20 @@ contains
       end if
    end subroutine format_real
 
-   !> Text of a real, see format_real.
-   pure function real_text(x) result(text)
-      real(rk), intent(in) :: x
+   !> A real as files hold it: a text that reads back as x.
+   pure function exact_text(x) result(text)
+      real(rk), intent(in) :: x  !< [any unit]
       character(len=:), allocatable :: text
       character(len=number_width) :: buffer
       integer :: length
 
       call format_real(x, buffer, length)
       text = buffer(1:length)
-   end function real_text
+   end function exact_text
 
    !> A real for people: rounded to a few significant digits.
    pure function brief_text(x, n_digits) result(text)
-      real(rk), intent(in) :: x
+      real(rk), intent(in) :: x  !< [any unit]
       integer, intent(in) :: n_digits  !< significant digits, 1 to 17
       character(len=:), allocatable :: text
       character(len=number_width) :: buffer
@@ -93,7 +92,6 @@ contains
       character(len=most_digits), intent(out) :: digits  !< blanks follow
       integer, intent(out) :: power
       integer, intent(in), optional :: n_digits  !< 1 to 17; default: as many as needed
-
       integer(c_int) :: n
 
       n = 0
@@ -106,7 +104,6 @@ contains
       integer(lk), intent(in) :: n
       character(len=number_width), intent(out) :: text
       integer, intent(out) :: length  !< characters used
-
       integer(lk) :: rest
       integer :: position
       character(len=number_width) :: reversed
@@ -154,7 +151,6 @@ contains
       integer, intent(in) :: power  !< decimal exponent of the first one
       character(len=number_width), intent(inout) :: text
       integer, intent(inout) :: length
-
       integer :: n, exponent_size
 
       n = len_trim(digits)

@@ -9,9 +9,8 @@ contains
 
    !> Every byte is printable ASCII or part of a UTF-8 character: no control characters, nothing of
    !! another encoding.
-   pure function is_printable(text)
+   pure logical function is_printable(text)
       character(len=*), intent(in) :: text
-      logical :: is_printable
       integer :: i, n_bytes
 
       is_printable = .false.
@@ -53,7 +52,7 @@ contains
       if (n_bytes > 2) then  ! overlong forms, surrogates, and code points above the last
          second = iachar(text(2:2))
          if (first == 224 .and. second < 160 .or. first == 237 .and. second > 159 .or. &
-            & first == 240 .and. second < 144 .or. first == 244 .and. second > 143) n_bytes = 0
+             first == 240 .and. second < 144 .or. first == 244 .and. second > 143) n_bytes = 0
       end if
    end function utf8_length
 

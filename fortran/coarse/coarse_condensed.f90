@@ -49,7 +49,6 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-
       integer(ik), allocatable :: row(:), col(:), schur(:)
       real(rk), allocatable :: values(:)
       integer(ik) :: i, n
@@ -96,7 +95,6 @@ contains
       real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
       real(rk), intent(out) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       type(error_t), allocatable, intent(out) :: error
-
       real(rk) :: x(size(rhs), 1)
       real(rk), allocatable :: jumps(:)
 
@@ -114,7 +112,6 @@ contains
    !> S, in the fractures' own directions.
    subroutine find_stiffness(self)
       class(condensed_t), intent(inout) :: self
-
       real(rk) :: schur(self%layout%count(), self%layout%count())
       integer(ik) :: i
 
@@ -136,7 +133,6 @@ contains
    pure subroutine turn_to_normals(self, v)
       class(condensed_t), intent(in) :: self
       real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
-
       integer(ik) :: at, end, i
 
       do i = 1, self%n
@@ -162,7 +158,6 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(out) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
-
       real(rk) :: diagonal
       integer(ik) :: a, entry, i
 
@@ -183,7 +178,6 @@ contains
       type(mesh_t), intent(in) :: mesh
       real(rk), allocatable, intent(out) :: normal(:, :)  !< (2, n) [-]
       real(rk), allocatable, intent(out) :: length(:)  !< (n) [m]
-
       integer(ik) :: i
       real(rk) :: tangent(2)
 
@@ -201,7 +195,6 @@ contains
    subroutine triplet_pattern(matrix, row, col)
       type(matrix_t), intent(in) :: matrix
       integer(ik), allocatable, intent(out) :: row(:), col(:)
-
       integer(ik) :: a, b, block, entry, i, n
 
       n = triplet_count(matrix)
@@ -227,7 +220,6 @@ contains
       real(rk), intent(in) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(out) :: values(:)  !< [-]
-
       integer(ik) :: a, at_col, at_row, b, entry, i, n
       real(rk) :: block(3, 3)
 

@@ -37,7 +37,6 @@ contains
       type(response_t), intent(out) :: response  !< fluxes [m/s]
       type(share_t), intent(out) :: share  !< flows into cells, and into fractures negated [m2/s]
       integer(ik), intent(out) :: info
-
       type(local_system_t) :: local
       integer(ik) :: m
 
@@ -57,7 +56,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: at(2), c, cell, faces(2), i, j, k
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, w
 
@@ -86,7 +84,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: at, b, block, cell
 
       do b = regions%cell_count(region) + 1, regions%blocks%length(region)
@@ -106,7 +103,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: f, j, last
 
       last = size(local%rhs, 2)
@@ -130,7 +126,6 @@ contains
       type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
       real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
       real(rk), intent(out) :: outflow(:)  !< (n_cells) [m2/s]
-
       real(rk), allocatable :: flux(:)
       integer(ik) :: f, j, r
 
@@ -159,7 +154,6 @@ contains
       real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: gradient(2)  !< [Pa/m]
-
       integer(ik) :: faces(2), b, before, j, m, r, row
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, flux, velocity(2)
 

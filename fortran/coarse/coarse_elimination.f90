@@ -66,7 +66,6 @@ contains
       type(response_t), intent(out) :: response
       type(share_t), intent(out) :: share
       integer(ik), intent(out) :: info
-
       integer(ik) :: m, n, pivots(size(local%matrix, 1))
 
       n = size(local%matrix, 1)

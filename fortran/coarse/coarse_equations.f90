@@ -22,7 +22,6 @@ contains
    subroutine evaluate(self, x)
       class(equations_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
-
       real(rk) :: pressure
       integer(ik) :: end, i, k
 
@@ -53,7 +52,6 @@ contains
       integer(ik), intent(in) :: end  !< 1 start, 2 end
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(equations_t), intent(inout) :: eq
-
       real(rk) :: by_force, by_traction(2, 2), by_jump(2, 2), half_length
       integer(ik) :: at, fluid, k, m, n, point, row
 

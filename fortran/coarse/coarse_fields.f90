@@ -19,7 +19,6 @@ contains
       type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), allocatable, intent(out) :: tractions(:)  !< [Pa], rotations [-]
-
       real(rk), allocatable :: d(:)
       integer(ik) :: r
 
@@ -40,7 +39,6 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: content(:)  !< (n_cells) above the initial state [m2]
-
       integer(ik) :: c, k
       real(rk) :: stress(2, 2), rotation, area
 
@@ -61,7 +59,6 @@ contains
       type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: stresses(:, :)  !< (3, n_cells) xx, yy, xy [Pa]
-
       integer(ik) :: c, k
       real(rk) :: stress(2, 2), rotation
 
@@ -83,7 +80,6 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
-
       integer(ik) :: c, k, v
       real(rk) :: gradient(2, 2, 3), rotation(3), offset(2), centre(2), pressure_gradient(2)
       real(rk), allocatable :: weight(:)
@@ -101,7 +97,7 @@ contains
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
             offset = mesh%xy(:, v) - centre
-            ! A loaded corner of the body knows no rotation of its own: take the cell's other
+            ! A loaded corner of the body knows no rotation: take the cell's other
             ! corners'.
             if (free(k) .and. .not. all(free)) rotation(k) = sum(rotation, mask=.not. free) &
                                                              /real(count(.not. free), rk)
@@ -129,7 +125,6 @@ contains
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: strain(2, 2), rotation  !< [-]
-
       real(rk) :: stress(2, 2), nu
       integer(ik) :: i
 
@@ -153,7 +148,6 @@ contains
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: stress(2, 2)  !< not symmetric by itself [Pa]
       real(rk), intent(out) :: rotation  !< [-]
-
       integer(ik) :: at, faces(2), i, j
       real(rk) :: sign_out(2), length(2), lever(2, 2), area
 

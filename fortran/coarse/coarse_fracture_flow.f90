@@ -4,7 +4,7 @@
 !! (theory.md):
 !!   l (a - a_before + a c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
 !! Flow between neighbours by the cubic law, exchange with the rock through half the aperture. The
-!! flow is an unknown of its own because the pressure difference that drives it along an open
+!! flow is a separate unknown because the pressure difference that drives it along an open
 !! fracture is far below the rounding of the pressures.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
@@ -24,7 +24,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, conductance, slope, volume
       integer(ik) :: at, fluid, jumps(2), n, row, side
 
@@ -51,7 +50,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, compression
       integer(ik) :: from_rock(2), jumps(2), n, row
 
@@ -79,7 +77,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: conductance
       integer(ik) :: at, faces(2), fluid, side
 
@@ -104,7 +101,6 @@ contains
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-
       real(rk) :: aperture, resistance, slope
       integer(ik) :: end, first, i, row, second
 

@@ -61,7 +61,6 @@ contains
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(in), target :: before
       class(fracture_system_t), intent(out) :: eq
-
       real(rk) :: reference
       integer(ik) :: n, n_all, n_condensed
 
@@ -90,7 +89,6 @@ contains
    !> Derivatives of the condensed forces by the unknowns of the cells.
    subroutine find_slopes(eq)
       class(fracture_system_t), intent(inout) :: eq
-
       integer(ik) :: at, from, i, k
 
       allocate (eq%force_slope(eq%layout%cell_count(), eq%condensed%layout%count()), source=0.0_rk)
@@ -131,7 +129,6 @@ contains
    subroutine find_forces(self, x)
       class(fracture_system_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
-
       integer(ik) :: at, from, i, k
 
       associate (condensed => self%condensed)

@@ -23,7 +23,6 @@ contains
       real(rk), intent(out) :: length(2)  !< [m]
       real(rk), intent(out) :: lever(2, 2)  !< (component, face) [-]
       real(rk), intent(out) :: area  !< of the whole cell [m2]
-
       real(rk) :: after(2), before(2), origin(2)
       integer(ik) :: next, previous
 

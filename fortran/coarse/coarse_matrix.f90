@@ -49,7 +49,6 @@ contains
       type(regions_t), intent(out) :: regions
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
-
       type(response_t) :: flux, traction
       type(share_t) :: elastic, flow
       integer(ik) :: c, info, r
@@ -81,7 +80,6 @@ contains
    subroutine refuse_place(xy, error)
       real(rk), intent(in) :: xy(2)  !< [m]
       type(error_t), allocatable, intent(out) :: error
-
       character(len=80) :: place
 
       write (place, "(a,es12.5,a,es12.5,a)") "(", xy(1), ",", xy(2), ")"
@@ -93,7 +91,6 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions
       type(matrix_t), intent(inout) :: matrix
-
       integer(ik), allocatable :: last_row(:), found(:)
       integer(ik) :: block, i, k, n, r, side
 
@@ -135,7 +132,6 @@ contains
       integer(ik), intent(in) :: region
       type(share_t), intent(in) :: elastic, flow
       type(matrix_t), intent(inout) :: matrix
-
       integer(ik) :: a, at_a, at_b, b, entry, row
       integer(ik), allocatable :: blocks(:)
 

@@ -82,7 +82,6 @@ contains
       real(rk), intent(in) :: pressure  !< [Pa]
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(out) :: state
-
       integer(ik) :: c, n
 
       n = mesh%fracture%n_cells
@@ -111,7 +110,6 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-
       real(rk) :: time
       integer(ik), allocatable :: connections(:, :)
 
@@ -135,7 +133,6 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-
       real(rk), allocatable :: rhs(:, :), g(:), q(:)
       type(state_t) :: before
       integer(ik) :: n
@@ -194,7 +191,6 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
       real(rk), intent(out) :: balance  !< [m2]
-
       real(rk), allocatable :: outflow(:)
 
       balance = sum(after%content - before%content)
@@ -217,7 +213,6 @@ contains
    subroutine find_connections(mesh, connections)
       type(mesh_t), intent(in) :: mesh
       integer(ik), allocatable, intent(out) :: connections(:, :)
-
       integer(ik) :: n, point
 
       allocate (connections(2, mesh%fracture%n_points))

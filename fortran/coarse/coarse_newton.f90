@@ -30,7 +30,6 @@ contains
       type(state_t), intent(inout), target :: state
       real(rk), intent(out) :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       type(step_report_t), intent(out) :: report
-
       type(equations_t) :: eq
       type(iteration_report_t) :: found
       real(rk), allocatable :: x(:)
@@ -64,7 +63,6 @@ contains
       type(equations_t), intent(in) :: eq
       type(state_t), intent(in) :: state
       real(rk), allocatable, intent(out) :: x(:)  !< [Pa]
-
       integer(ik) :: at, i, k
 
       allocate (x(eq%layout%count()), source=0.0_rk)
@@ -87,7 +85,6 @@ contains
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(inout) :: report
-
       real(rk) :: aperture(condensed%n), residual
       integer(ik) :: at, end, i
 

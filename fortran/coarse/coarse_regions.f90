@@ -3,7 +3,7 @@
 !! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector
 !! between fractures. Across a fracture the traction is continuous and the displacement jumps; the
 !! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
-!! varies linearly along the cell. Each node has a rotation of its own.
+!! varies linearly along the cell. Each node has its own rotation.
 module coarse_regions
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
@@ -47,7 +47,6 @@ contains
    subroutine find_regions(mesh, regions)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(out) :: regions
-
       integer(ik), allocatable :: ends(:, :)
       integer(ik) :: c, end, f, i, n
 
@@ -90,7 +89,6 @@ contains
    subroutine find_corners(mesh, regions)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(inout) :: regions
-
       integer(ik) :: c, faces(2), j, k, r
       real(rk) :: sign_out
 
@@ -113,7 +111,6 @@ contains
    subroutine join_nodes(mesh, regions)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(inout) :: regions
-
       type(groups_t) :: groups
       integer(ik) :: a, b, i
 
@@ -138,7 +135,6 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(inout) :: face  !< of a cell
       real(rk), intent(inout) :: sign_out  !< +1 where its normal leaves the cell, else -1 [-]
-
       integer(ik) :: i
 
       i = mesh%face_fracture_cell(face)

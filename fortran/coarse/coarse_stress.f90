@@ -1,8 +1,8 @@
 !> Multi-point stress stencil around one vertex.
 !!
 !! Multi-point stress approximation with weakly symmetric stress (Nordbotten 2016; Keilegavlen and
-!! Nordbotten 2017), in its mixed form on triangles: each face has, at each of its two ends, a
-!! traction [Pa] of its own; around a vertex these are found from the displacements and pressures of
+!! Nordbotten 2017), in its mixed form on triangles: each face has, at each of its two ends,
+!! its own traction [Pa]; around a vertex these are found from the displacements and pressures of
 !! the cells there, so that the displacement is continuous at a third of each face, and that the
 !! stress is symmetric in the mean over the vertex (a rotation is the multiplier). With the corners'
 !! areas as weights this is a lumped mixed method (Wheeler and Yotov 2006; Ambartsumyan, Khattatov,
@@ -46,7 +46,6 @@ contains
       type(response_t), intent(out) :: response  !< tractions x, y [Pa], then rotations [-]
       type(share_t), intent(out) :: share  !< forces [N/m] and contents [m2]
       integer(ik), intent(out) :: info
-
       type(local_system_t) :: local
       integer(ik) :: m, n_tractions
 
@@ -71,7 +70,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: at(2), c, cell, faces(2), i, j, k, rotation
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, nu, w
 
@@ -109,7 +107,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: at, b, block, cell, f
       real(rk) :: half_length
 
@@ -132,7 +129,6 @@ contains
       real(rk), intent(in) :: factor  !< weight/(2G) [m2/Pa]
       real(rk), intent(in) :: nu  !< lambda/(2(lambda+G)) [-]
       real(rk), intent(in) :: lever_i(2), lever_j(2)  !< m_i, m_j [-]
-
       integer(ik) :: a, b
 
       do b = 1, 2
@@ -161,7 +157,6 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-
       integer(ik) :: axis, f, j, last, n
 
       last = size(local%rhs, 2)

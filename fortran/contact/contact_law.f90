@@ -52,7 +52,6 @@ contains
       real(rk), intent(out) :: residual(2)  !< [Pa]
       real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j [-]
       real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
-
       real(rk) :: gap_slope, pressure, shear
       integer(ik) :: way_before
 

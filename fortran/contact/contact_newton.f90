@@ -18,7 +18,7 @@ module contact_newton
    private
 
    public :: contact_system_t, iterate, iteration_report_t, iteration_settings_t, step_quality_t
-   public :: outcome_converged, outcome_not_a_number, outcome_singular, outcome_stuck
+   public :: outcome_converged, outcome_not_a_number, outcome_singular
 
    integer(ik), parameter :: outcome_converged = 0
    integer(ik), parameter :: outcome_stuck = 1  !< cycled, or took too many iterations
@@ -75,7 +75,7 @@ module contact_newton
       end subroutine evaluate_system
 
       !> The step that makes the linearized residuals zero, from where the system was last
-      !! evaluated. Residuals and derivatives may be used up: the next evaluation makes them anew.
+      !! evaluated. Residuals and derivatives may be used up: the next evaluation makes new ones.
       subroutine find_linear_step(self, with_condition, step, quality)
          import :: contact_system_t, rk, step_quality_t
          implicit none(type, external)
@@ -100,13 +100,13 @@ module contact_newton
 contains
 
    !> Whether x fulfils the law within a tolerance though states go on changing, as they do where a
-   !! point lies between two. A system that cannot tell says no.
+   !! point lies between two. A system that cannot judge it says no.
    logical function obeys_law(self, x, tolerance)
       class(contact_system_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]
       real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
 
-      obeys_law = size(x) == 0 .and. size(self%state) == 0 .and. tolerance > 0.0_rk
+      obeys_law = .false.
    end function obeys_law
 
    !> Another start, from which the iteration converges. A system that has none leaves x.
@@ -115,14 +115,12 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       logical, intent(out) :: has_start
 
-      has_start = size(x) == 0 .and. size(self%state) == 0
+      has_start = .false.
    end subroutine restart
 
    !> Take back what `restart` may have changed in the derivatives. Here that is nothing.
    subroutine end_restart(self)
       class(contact_system_t), intent(inout) :: self
-
-      self%stress_scale = max(self%stress_scale, 0.0_rk)
    end subroutine end_restart
 
    !> Solve the system, from the x and the states that it has at the start.

@@ -109,16 +109,16 @@ contains
    contains
 
       !> Recovered less computed stress, xx yy xy [Pa].
-      pure function difference(field, recovered)
+      pure function difference(field, recovered) result(stress_error)
          real(rk), intent(in) :: field(:, :)  !< (2, n_nodes) displacement [m]
          type(recovery_t), intent(in) :: recovered
-         real(rk) :: difference(3)
+         real(rk) :: stress_error(3)
          real(rk) :: stress(2, 2)
 
          stress = model%elasticity%total_stress(matmul(field(:, model%mesh%cell_nodes(:, cell)), &
                                                        transpose(gradients)), 0.0_rk)
-         difference = recovered_stress(model%mesh, recovered, cell, area_coordinates) &
-                      - [stress(1, 1), stress(2, 2), stress(1, 2)]
+         stress_error = recovered_stress(model%mesh, recovered, cell, area_coordinates) &
+                        - [stress(1, 1), stress(2, 2), stress(1, 2)]
       end function difference
 
    end function product_in

@@ -4,7 +4,7 @@
 !! links close to a ring, so one jump follows from the others. Along a tree of links, from a root
 !! whose links belong to one fracture where there is such a node, every node moves with the node
 !! before it and the jump of the link between them. The two unknowns that a node loses become the
-!! jump. The link that closes the ring has no law of its own: its traction is that of the middle of
+!! jump. The link that closes the ring has no law: its traction is that of the middle of
 !! its cell (fine_contact).
 module fine_joints
    use base_kinds, only: ik, rk

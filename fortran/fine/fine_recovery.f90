@@ -15,7 +15,7 @@ module fine_recovery
    use fine_model, only: fine_model_t
    use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, &
                            samples_t, take_samples
-   use fine_tip_field, only: tip_field_t, tip_stress
+   use fine_tip_field, only: singular_stress, tip_field_t
    implicit none(type, external)
    private
 
@@ -27,7 +27,7 @@ module fine_recovery
       type(tip_field_t), allocatable :: tips(:)  !< (n_tips)
       integer(ik), allocatable :: tip_of_cell(:)  !< (n_cells) whose field is apart, else 0
       integer(ik), allocatable :: tip_of_vertex(:)  !< (n_vertices) whose field the fit leaves out
-      real(rk), allocatable :: beside(:, :)  !< (2, n_vertices) a point on its side of the crack [m]
+      real(rk), allocatable :: same_side(:, :)  !< (2, n_vertices) a point on its side [m]
       real(rk), allocatable :: coefficients(:, :, :)  !< (n_terms, xx yy xy, n_vertices) fits [Pa]
       real(rk), allocatable :: scale(:)  !< (n_vertices) their unit of length [m]
    end type recovery_t
@@ -115,7 +115,8 @@ contains
          end do
          if (recovery%tip_of_cell(cell) > 0) then
             here = matmul(corner, l)
-            stress = stress + tip_stress(recovery%tips(recovery%tip_of_cell(cell)), here, centre)
+            stress = stress + singular_stress(recovery%tips(recovery%tip_of_cell(cell)), here, &
+                                              centre)
          end if
       end associate
 
@@ -130,15 +131,15 @@ contains
          value = matmul(quadratic_terms((xy - fine%xy(:, vertex))/recovery%scale(vertex)), &
                         recovery%coefficients(:, :, vertex))
          if (recovery%tip_of_vertex(vertex) > 0 .and. recovery%tip_of_cell(cell) == 0) then
-            value = value + tip_stress(recovery%tips(recovery%tip_of_vertex(vertex)), xy, &
-                                       recovery%beside(:, vertex))
+            value = value + singular_stress(recovery%tips(recovery%tip_of_vertex(vertex)), xy, &
+                                            recovery%same_side(:, vertex))
          end if
       end function value_at
 
    end function recovered_stress
 
    !> A sample without the singular field that the vertex' fit leaves out. Around the tip itself
-   !! every element is on a side of its own.
+   !! every element lies on one side.
    pure function smooth_part(samples, recovery, vertex, k, cell) result(stress)
       type(samples_t), intent(in) :: samples
       type(recovery_t), intent(in) :: recovery
@@ -149,11 +150,11 @@ contains
       associate (tip => recovery%tip_of_vertex(vertex))
          if (tip == 0) return
          if (recovery%tip_of_cell(cell) == tip) then
-            stress = stress - tip_stress(recovery%tips(tip), samples%xy(:, k, cell), &
-                                         samples%centre(:, cell))
+            stress = stress - singular_stress(recovery%tips(tip), samples%xy(:, k, cell), &
+                                              samples%centre(:, cell))
          else
-            stress = stress - tip_stress(recovery%tips(tip), samples%xy(:, k, cell), &
-                                         recovery%beside(:, vertex))
+            stress = stress - singular_stress(recovery%tips(tip), samples%xy(:, k, cell), &
+                                              recovery%same_side(:, vertex))
          end if
       end associate
    end function smooth_part
@@ -164,16 +165,16 @@ contains
       type(fine_model_t), intent(in) :: model
       type(samples_t), intent(in) :: samples
       type(recovery_t), intent(inout) :: recovery
-      integer(ik), allocatable :: n_beside(:)
+      integer(ik), allocatable :: n_same_side(:)
       integer(ik) :: cell, i, k, tip, vertex
 
       associate (fine => model%mesh, fracture => model%mesh%fracture)
          allocate (recovery%tips(fracture%n_tips), recovery%scale(fine%n_vertices))
          allocate (recovery%coefficients(n_terms, 3, fine%n_vertices), source=0.0_rk)
-         allocate (recovery%beside(2, fine%n_vertices), source=0.0_rk)
+         allocate (recovery%same_side(2, fine%n_vertices), source=0.0_rk)
          allocate (recovery%tip_of_cell(fine%n_cells), recovery%tip_of_vertex(fine%n_vertices), &
                    source=0_ik)
-         allocate (n_beside(fine%n_vertices), source=0_ik)
+         allocate (n_same_side(fine%n_vertices), source=0_ik)
          do tip = 1, fracture%n_tips
             do i = samples%first(fracture%tip_node(tip)), &
                samples%first(fracture%tip_node(tip) + 1) - 1
@@ -182,15 +183,16 @@ contains
                do k = 1, 3
                   vertex = fine%cell_nodes(k, cell)
                   recovery%tip_of_vertex(vertex) = tip
-                  n_beside(vertex) = n_beside(vertex) + 1
-                  recovery%beside(:, vertex) = recovery%beside(:, vertex) + samples%centre(:, cell)
+                  n_same_side(vertex) = n_same_side(vertex) + 1
+                  recovery%same_side(:, vertex) = recovery%same_side(:, vertex) &
+                                                  + samples%centre(:, cell)
                end do
             end do
             call fit_tip(model, samples, tip, recovery%tips(tip))
          end do
          do vertex = 1, fine%n_vertices
-            if (n_beside(vertex) == 0) cycle
-            recovery%beside(:, vertex) = recovery%beside(:, vertex)/n_beside(vertex)
+            if (n_same_side(vertex) == 0) cycle
+            recovery%same_side(:, vertex) = recovery%same_side(:, vertex)/n_same_side(vertex)
          end do
       end associate
    end subroutine find_tips
@@ -225,7 +227,8 @@ contains
             do mode = 1, 2
                field%intensity = 0.0_rk
                field%intensity(mode) = unit
-               columns(:, mode) = tip_stress(field, samples%xy(:, k, cell), samples%centre(:, cell))
+               columns(:, mode) = singular_stress(field, samples%xy(:, k, cell), &
+                                                  samples%centre(:, cell))
             end do
             columns(1, 3) = 1.0_rk
             columns(2, 4) = 1.0_rk

@@ -9,7 +9,7 @@ module fine_tip_field
    implicit none(type, external)
    private
 
-   public :: auxiliary_field, auxiliary_field_t, root_of_place, tip_field_t, tip_stress
+   public :: auxiliary_field, auxiliary_field_t, root_of_place, singular_stress, tip_field_t
 
    real(rk), parameter :: pi = acos(-1.0_rk)
 
@@ -32,10 +32,10 @@ module fine_tip_field
 contains
 
    !> Stress (xx yy xy) of a tip's field at a point [Pa]. The polar angle is continued from that of
-   !! `beside`, a point on the same side of the crack.
-   pure function tip_stress(field, xy, beside) result(stress)
+   !! `same_side`, a point on the same side of the crack.
+   pure function singular_stress(field, xy, same_side) result(stress)
       type(tip_field_t), intent(in) :: field
-      real(rk), intent(in) :: xy(2), beside(2)  !< [m]
+      real(rk), intent(in) :: xy(2), same_side(2)  !< [m]
       real(rk) :: stress(3)
       real(rk) :: axes(2, 2), place(2), near(2), tensor(2, 2)
       type(auxiliary_field_t) :: unit
@@ -45,7 +45,7 @@ contains
       axes(1, :) = field%ahead
       axes(2, :) = [-field%ahead(2), field%ahead(1)]
       place = matmul(axes, xy - field%origin)
-      near = matmul(axes, beside - field%origin)
+      near = matmul(axes, same_side - field%origin)
       root_z = root_of_place(place, atan2(near(2), near(1)))
       tensor = 0.0_rk
       do mode = 1, 2
@@ -54,7 +54,7 @@ contains
       end do
       tensor = matmul(transpose(axes), matmul(tensor, axes))
       stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)]
-   end function tip_stress
+   end function singular_stress
 
    !> The root of z = x + i y on the branch where the polar angle is nearest to a given one.
    pure complex(rk) function root_of_place(place, reference) result(root_z)

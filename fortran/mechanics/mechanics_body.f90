@@ -48,7 +48,7 @@ module mechanics_body
       real(rk) :: smallest_angle = 0.0_rk  !< of the mesh [rad]
       type(before_t) :: before
       integer(ik) :: whole_meshes = 0  !< made of the whole body so far
-      integer(ik) :: patched_meshes = 0  !< made anew around tips only
+      integer(ik) :: patched_meshes = 0  !< meshed again around tips only
    contains
       procedure :: build
       procedure :: remember
@@ -86,7 +86,7 @@ contains
       self%before%contact = self%contact
    end subroutine remember
 
-   !> The body with fractures that have grown since `remember`: meshed anew around their ends, or as
+   !> The body with fractures that have grown since `remember`: new around their ends, or as
    !! a whole where that does not go, assembled and factorized. Contact is carried over.
    subroutine grow(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self

@@ -120,7 +120,7 @@ contains
       call copy_map(mesher_new%handle, mesh, map, error)
    end subroutine remesh
 
-   !> A mesh of a grown network for a body with rosettes, made anew only in patches around the ends
+   !> A mesh of a grown network for a body with rosettes, new only in patches around the ends
    !! that have grown; sizes and new rosettes are those of a new mesh. An error says that this does
    !! not go: make a new mesh then. The old mesher stays as it is.
    subroutine grow_mesh(mesher_old, network, end_radius, mesher_new, mesh, error)

@@ -78,7 +78,7 @@ contains
       inquire (file=trim(path)//"/.", exist=is_there)
       if (.not. is_there) then
          call raise_error(error, "", "cannot make the directory "//trim(path)// &
-            & ": check that you may write there and that no file has this name")
+                          ": check that you may write there and that no file has this name")
       end if
    end subroutine make_directory
 
@@ -122,7 +122,7 @@ contains
 
       self%path = path
       open (newunit=self%unit, file=path//".part", access="stream", form="unformatted", &
-         & action="write", status="replace", iostat=status, iomsg=message)
+            action="write", status="replace", iostat=status, iomsg=message)
       self%is_open = status == 0
       call keep_fault(self, status, message)
    end subroutine open_aside

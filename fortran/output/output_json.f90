@@ -35,7 +35,7 @@ module output_json
       procedure, private :: add_integers
       procedure, private :: add_texts
       generic :: add => add_real, add_integer, add_long, add_text, add_reals, add_integers, &
-         & add_texts
+         add_texts
       procedure :: text => json_text
    end type json_t
 

@@ -4,7 +4,7 @@ module output_network
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner, point_joint_t, &
-      & point_joint_x
+                         point_joint_x
    use output_files, only: write_text_file
    use output_json, only: json_t
    use base_texts, only: text_t
@@ -174,7 +174,7 @@ contains
          now(n)%fractures = fractures_at(self%mesh, point)
          do i = 1, size(self%joints)
             if (self%joints(i)%kind == now(n)%kind .and. &
-               & norm2(self%joints(i)%xy - now(n)%xy) <= same) now(n)%time = self%joints(i)%time
+                norm2(self%joints(i)%xy - now(n)%xy) <= same) now(n)%time = self%joints(i)%time
          end do
       end do
       call move_alloc(now, self%joints)

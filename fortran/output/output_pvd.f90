@@ -2,7 +2,7 @@
 module output_pvd
    use base_errors, only: error_t
    use base_kinds, only: rk
-   use base_number, only: real_text
+   use base_number, only: exact_text
    use output_files, only: write_text_file
    use output_text, only: newline, text_buffer_t
    implicit none(type, external)
@@ -38,8 +38,8 @@ contains
       real(rk), intent(in) :: time  !< [s]
       character(len=*), intent(in) :: file  !< path from the collection's directory
 
-      call self%entries%append('    <DataSet timestep="'//real_text(time)//'" part="0" file="'// &
-         & file//'"/>'//newline)
+      call self%entries%append('    <DataSet timestep="'//exact_text(time)//'" part="0" file="'// &
+                               file//'"/>'//newline)
       self%n_files = self%n_files + 1
    end subroutine add
 
@@ -49,9 +49,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%n_files == self%written) return
-      call write_text_file(self%path, '<?xml version="1.0"?>'//newline// &
-         & '<VTKFile type="Collection" version="1.0">'//newline//"  <Collection>"//newline// &
-         & self%entries%text()//"  </Collection>"//newline//"</VTKFile>"//newline, error)
+      call write_text_file(self%path, &
+                           '<?xml version="1.0"?>'//newline// &
+                           '<VTKFile type="Collection" version="1.0">'//newline// &
+                           "  <Collection>"//newline//self%entries%text()// &
+                           "  </Collection>"//newline//"</VTKFile>"//newline, error)
       if (.not. allocated(error)) self%written = self%n_files
    end subroutine flush_collection
 

@@ -55,9 +55,8 @@ contains
    end subroutine open_series
 
    !> The table was opened; otherwise rows and flushes are for nobody.
-   pure function is_open(self)
+   pure logical function is_open(self)
       class(series_t), intent(in) :: self
-      logical :: is_open
 
       is_open = allocated(self%path)
    end function is_open

@@ -39,7 +39,7 @@ contains
          stress(3, :) = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
          if (allocated(fields%pressure)) then
             stress(3, :) = stress(3, :) &
-               & - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
+                           - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
          end if
       end if
       stress(4, :) = fields%stress(3, :)

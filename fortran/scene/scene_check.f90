@@ -180,10 +180,10 @@ contains
          call refuse(error, sheet, record, "step", "is "//real_text(scene%time%step)// &
                      " but must be at most end, "//real_text(scene%time%end))
          return
-      else if (scene%time%smallest_factor > scene%time%growth_factor) then
+      else if (scene%time%smallest_factor > scene%time%share_after_growth) then
          call refuse(error, sheet, record, "smallest_factor", "is "// &
-                     real_text(scene%time%smallest_factor)// &
-                     " but must be at most growth_factor, "//real_text(scene%time%growth_factor))
+                     real_text(scene%time%smallest_factor)//" but must be at most "// &
+                     "growth_factor, "//real_text(scene%time%share_after_growth))
          return
       end if
       do i = 1, size(scene%injections)

@@ -198,7 +198,7 @@ contains
       case ("time")
          call exchange(record, "end", scene%time%end, reading)
          call exchange(record, "step", scene%time%step, reading)
-         call exchange(record, "growth_factor", scene%time%growth_factor, reading)
+         call exchange(record, "growth_factor", scene%time%share_after_growth, reading)
          call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
       case ("adaptive")
          call exchange(record, "enabled", scene%adaptive%enabled, reading)

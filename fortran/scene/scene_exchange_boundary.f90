@@ -30,7 +30,7 @@ contains
       call exchange_side(record, part%boundary_side_t, reading)
    end subroutine exchange_part
 
-   !> Without the side's name, which its place in scene_t%sides tells.
+   !> Without the side's name, which its place in scene_t%sides gives.
    pure subroutine exchange_side(record, side, reading)
       type(record_t), intent(inout) :: record
       type(boundary_side_t), intent(inout) :: side

@@ -132,7 +132,7 @@ module scene_types
    type :: time_t
       real(rk) :: end = 0.0_rk  !< [s]
       real(rk) :: step = 0.0_rk  !< regular step [s]
-      real(rk) :: growth_factor = 0.01_rk  !< steps after growth are this much shorter [-]
+      real(rk) :: share_after_growth = 0.01_rk  !< of the regular step, right after growth [-]
       real(rk) :: smallest_factor = 1.0e-6_rk  !< of the regular step; below it a run ends [-]
    end type time_t
 

@@ -8,9 +8,8 @@ module testing_files
 contains
 
    !> A file of this name is there.
-   function file_exists(path)
+   logical function file_exists(path)
       character(len=*), intent(in) :: path
-      logical :: file_exists
 
       inquire (file=path, exist=file_exists)
    end function file_exists
@@ -23,7 +22,7 @@ contains
 
       text = ""
       open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
-         & status="old", iostat=status)
+            status="old", iostat=status)
       if (status /= 0) return
       inquire (unit, size=n_bytes)
       if (n_bytes > 0) then

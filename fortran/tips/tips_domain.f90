@@ -12,7 +12,7 @@ module tips_domain
    private
 
    public :: domain_weight, element_rule, largest_radius, reference_angle, rosette_size
-   public :: rule_size, tip_stress
+   public :: rule_size, in_situ_stress
 
    integer(ik), parameter :: rule_t = 4, rule_w = 5, rule_size = rule_t*rule_w  !< points at most
 
@@ -56,7 +56,7 @@ contains
    end subroutine element_rule
 
    !> In-situ stress at the tip, in its axes [Pa].
-   pure function tip_stress(loads, frame) result(stress)
+   pure function in_situ_stress(loads, frame) result(stress)
       type(fine_loads_t), intent(in) :: loads
       type(tip_frame_t), intent(in) :: frame
       real(rk) :: stress(2, 2)
@@ -65,7 +65,7 @@ contains
          stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
       end associate
       stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
-   end function tip_stress
+   end function in_situ_stress
 
    !> How far a domain may reach [m].
    pure real(rk) function largest_radius(fine, frame)

@@ -16,7 +16,7 @@ module tips_energy
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
-   use tips_domain, only: domain_weight, element_rule, rule_size, tip_stress
+   use tips_domain, only: domain_weight, element_rule, in_situ_stress, rule_size
    use tips_faces, only: face_traction, traction_source
    use tips_interaction, only: initial_stress
    use tips_types, only: tip_frame_t
@@ -40,7 +40,7 @@ contains
       integer(ik) :: cell
 
       q = domain_weight(model%mesh, frame, radius, plateau)
-      reference_stress = tip_stress(loads, frame)
+      reference_stress = in_situ_stress(loads, frame)
       g = 0.0_rk
       do cell = 1, model%mesh%n_cells
          if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then

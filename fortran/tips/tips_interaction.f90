@@ -22,7 +22,7 @@ module tips_interaction
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place
-   use tips_domain, only: domain_weight, element_rule, reference_angle, rule_size, tip_stress
+   use tips_domain, only: domain_weight, element_rule, in_situ_stress, reference_angle, rule_size
    use tips_faces, only: face_traction, traction_source
    use tips_types, only: tip_frame_t
    implicit none(type, external)
@@ -45,7 +45,7 @@ contains
       integer(ik) :: cell
 
       q = domain_weight(model%mesh, frame, radius, plateau)
-      reference_stress = tip_stress(loads, frame)
+      reference_stress = in_situ_stress(loads, frame)
       integral = 0.0_rk
       do cell = 1, model%mesh%n_cells
          if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then

@@ -22,7 +22,6 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(jump_record_t), intent(out) :: last
-
       integer(ik) :: at, i, k, n
 
       n = 3*fine%fracture%n_cells
@@ -46,7 +45,6 @@ contains
       real(rk), intent(in) :: s  !< [m]
       real(rk), intent(out) :: jump(2)  !< x, y [m]
       logical, intent(out) :: found
-
       integer(ik) :: above, below
       real(rk) :: slack, t
 

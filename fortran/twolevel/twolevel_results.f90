@@ -98,10 +98,10 @@ contains
       xy(2, :) = simulation%scene%probes%y
       call locate(simulation%mesher, xy, cells, error)
       if (allocated(error)) return
-      call simulation%update_level()
+      call simulation%update_values()
       do i = 1, n
          associate (nodes => simulation%mesh%cell_nodes(:, cells(i)))
-            values(:, i) = matmul(simulation%level%nodal(:, nodes), &
+            values(:, i) = matmul(simulation%coarse_values%nodal(:, nodes), &
                                   barycentric(simulation%mesh%xy(:, nodes), xy(:, i)))
          end associate
       end do

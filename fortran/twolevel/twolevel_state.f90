@@ -17,7 +17,7 @@ module twolevel_state
    use twolevel_handover, only: hand_over
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_wells, only: rate, share_wells, transfer_shares
-   use twolevel_window, only: coarse_level_t
+   use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
@@ -38,8 +38,8 @@ module twolevel_state
       type(coarse_model_t) :: model
       type(state_t) :: state
       type(windows_t) :: windows
-      type(coarse_level_t) :: level
-      logical :: level_is_current = .false.
+      type(coarse_values_t) :: coarse_values
+      logical :: values_are_current = .false.
       logical :: undrained = .false.  !< the state is the undrained response to the load
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
@@ -50,7 +50,7 @@ module twolevel_state
       procedure :: mesh_levels
       procedure :: equilibrate
       procedure :: step
-      procedure :: update_level
+      procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
    end type two_levels_t
@@ -140,7 +140,7 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      self%level_is_current = .false.
+      self%values_are_current = .false.
       self%undrained = .true.
       call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, &
                                   timers, report, error)
@@ -158,7 +158,7 @@ contains
          injection = matmul(self%share, rate(self%scene%injections, self%state%time, dt))
          call self%model%advance(self%mesh, dt, self%state, timers, report, error)
          if (allocated(error) .or. .not. report%converged) return
-         self%level_is_current = .false.
+         self%values_are_current = .false.
          self%undrained = .false.
          self%injected = self%injected + dt*sum(injection)
       end associate
@@ -168,17 +168,17 @@ contains
    end subroutine step
 
    !> Coarse values at the mesh's nodes, for windows and probes.
-   subroutine update_level(self)
+   subroutine update_values(self)
       class(two_levels_t), intent(inout) :: self
 
-      if (self%level_is_current) return
-      if (allocated(self%level%nodal)) deallocate (self%level%nodal)
-      allocate (self%level%nodal(3, self%mesh%n_nodes))
+      if (self%values_are_current) return
+      if (allocated(self%coarse_values%nodal)) deallocate (self%coarse_values%nodal)
+      allocate (self%coarse_values%nodal(3, self%mesh%n_nodes))
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
-                        self%state%tractions, self%level%nodal)
-      self%level%dilation = self%model%cells%law%dilation
-      self%level_is_current = .true.
-   end subroutine update_level
+                        self%state%tractions, self%coarse_values%nodal)
+      self%coarse_values%dilation = self%model%cells%law%dilation
+      self%values_are_current = .true.
+   end subroutine update_values
 
    !> Stress intensity factors of all tips, in windows on the present network.
    subroutine evaluate(self, timers, error)
@@ -187,9 +187,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call timers%start(phase_tips)
-      call self%update_level()
+      call self%update_values()
       call self%windows%evaluate(self%scene, self%network, self%tip, self%mesher, self%mesh, &
-                                 self%level, self%state, self%undrained, error)
+                                 self%coarse_values, self%state, self%undrained, error)
       call timers%stop(phase_tips)
    end subroutine evaluate
 
@@ -244,7 +244,7 @@ contains
       self%model%cells = cells
       self%state = state
       self%prefilled = self%prefilled + prefilled
-      self%level_is_current = .false.
+      self%values_are_current = .false.
       call self%windows%coarse_changed()
    end subroutine transfer_levels
 

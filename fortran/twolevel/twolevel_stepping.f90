@@ -63,7 +63,7 @@ contains
             maxval(abs(pressure - self%pressure)) > settled*maxval(abs(pressure))
       end if
       self%pressure = pressure
-      self%next = merge(time%growth_factor*time%step, time%step, self%is_short)
+      self%next = merge(time%share_after_growth*time%step, time%step, self%is_short)
    end subroutine step_done
 
    !> Growth has added fracture cells.
@@ -72,7 +72,7 @@ contains
       type(time_t), intent(in) :: time
 
       self%is_short = .true.
-      self%next = time%growth_factor*time%step
+      self%next = time%share_after_growth*time%step
       if (allocated(self%pressure)) deallocate (self%pressure)
    end subroutine network_grew
 

@@ -25,7 +25,6 @@ contains
       type(fracture_cells_t), intent(in) :: before
       real(rk), intent(in) :: new_aperture  !< residual aperture of new cells [m]
       type(fracture_cells_t), intent(out) :: after
-
       integer(ik) :: i, old
 
       allocate (after%law(mesh%fracture%n_cells), after%residual_aperture(mesh%fracture%n_cells))
@@ -52,7 +51,6 @@ contains
       type(state_t), intent(in) :: before
       type(state_t), intent(out) :: after
       real(rk), intent(out) :: prefilled  !< [m2]
-
       integer(ik), parameter :: both(2) = [1_ik, 2_ik]  ! ends of a fracture cell
       integer(ik) :: c, i, k, n, old
       real(rk) :: area

@@ -30,16 +30,16 @@ module twolevel_window
    implicit none(type, external)
    private
 
-   public :: coarse_level_t, window_t
+   public :: coarse_values_t, window_t
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
 
-   !> What a window needs of the coarse level.
-   type :: coarse_level_t
-      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y, p at the coarse mesh's nodes
-      real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi)
-   end type coarse_level_t
+   !> What a window takes from the coarse level.
+   type :: coarse_values_t
+      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi) [-]
+   end type coarse_values_t
 
    !> One window.
    type :: window_t
@@ -74,7 +74,6 @@ contains
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture, end
       type(error_t), allocatable, intent(out) :: error
-
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       real(rk) :: tip(2), half
@@ -113,7 +112,6 @@ contains
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
       real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
-
       integer(ik) :: axis
 
       do axis = 1, 2
@@ -136,7 +134,6 @@ contains
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: undrained
       type(error_t), allocatable, intent(out) :: error
-
       type(elasticity_t) :: elasticity
       type(rock_t) :: rock
       real(rk) :: lame
@@ -160,7 +157,6 @@ contains
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
       type(error_t), allocatable, intent(out) :: error
-
       real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
       real(rk), allocatable :: inside(:, :)
       integer(ik) :: c, k, v
@@ -193,7 +189,6 @@ contains
    subroutine match_faces(self, coarse)
       class(window_t), intent(inout) :: self
       type(mesh_t), intent(in) :: coarse
-
       integer(ik) :: i, j
       real(rk) :: distance, s, shortest
 
@@ -216,15 +211,14 @@ contains
    end subroutine match_faces
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tip.
-   subroutine intensity(self, scene, coarse, level, state, result, error)
+   subroutine intensity(self, scene, coarse, values, state, result, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
-      type(coarse_level_t), intent(in) :: level
+      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(intensity_t), intent(out) :: result
       type(error_t), allocatable, intent(out) :: error
-
       type(face_conditions_t) :: conditions
       integer(ik) :: v
 
@@ -232,15 +226,15 @@ contains
          do v = 1, fine%n_nodes
             if (v > fine%n_vertices .and. .not. fine%on_boundary(v)) cycle
             associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               self%loads%boundary_displacement(:, v) = matmul(level%nodal(1:2, nodes), &
+               self%loads%boundary_displacement(:, v) = matmul(values%nodal(1:2, nodes), &
                                                                self%weight(:, v))
-               if (v <= fine%n_vertices) self%loads%pore_pressure(v) = dot_product(level%nodal(3, &
-                                                                          nodes), self%weight(:, v))
+               if (v > fine%n_vertices) cycle
+               self%loads%pore_pressure(v) = dot_product(values%nodal(3, nodes), self%weight(:, v))
             end associate
          end do
       end associate
       if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
-      call load_faces(self, scene%discretization%face_condition, coarse, level, state, conditions)
+      call load_faces(self, scene%discretization%face_condition, coarse, values, state, conditions)
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error)
          if (allocated(error)) return
@@ -252,14 +246,13 @@ contains
    end subroutine intensity
 
    !> Conditions and loads on the fracture faces.
-   subroutine load_faces(self, face_condition, coarse, level, state, conditions)
+   subroutine load_faces(self, face_condition, coarse, values, state, conditions)
       class(window_t), intent(inout) :: self
       character(len=*), intent(in) :: face_condition  !< "contact", "jump" or "traction"
       type(mesh_t), intent(in) :: coarse
-      type(coarse_level_t), intent(in) :: level
+      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(face_conditions_t), intent(out) :: conditions
-
       integer(ik) :: contact, i, j, end
 
       conditions = loaded_everywhere(self%model%mesh)
@@ -276,7 +269,7 @@ contains
          case ("contact")
             if (contact == state_slip) then
                conditions%condition(i) = face_slip
-               conditions%dilation(i) = sign(level%dilation(j), state%jump(2, end, j))
+               conditions%dilation(i) = sign(values%dilation(j), state%jump(2, end, j))
             else if (contact /= state_open) then
                conditions%condition(i) = face_jump
                call keep_jump(self, coarse, state, i, j)
@@ -296,7 +289,6 @@ contains
       type(mesh_t), intent(in) :: coarse
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-
       real(rk) :: jump(2)
       integer(ik) :: k
       logical :: found
@@ -320,7 +312,6 @@ contains
       type(mesh_t), intent(in) :: coarse
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-
       integer(ik) :: k
       real(rk) :: t
 

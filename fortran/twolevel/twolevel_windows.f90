@@ -8,7 +8,7 @@ module twolevel_windows
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use twolevel_window, only: coarse_level_t, window_t
+   use twolevel_window, only: coarse_values_t, window_t
    implicit none(type, external)
    private
 
@@ -43,14 +43,14 @@ contains
    end subroutine begin
 
    !> Intensities, drive and rosette radius of every tip, in the present state of the coarse level.
-   subroutine evaluate(self, scene, network, tips, mesher, mesh, level, state, undrained, error)
+   subroutine evaluate(self, scene, network, tips, mesher, mesh, values, state, undrained, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: mesh  !< the coarse one
-      type(coarse_level_t), intent(in) :: level
+      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
@@ -74,7 +74,7 @@ contains
                call window%set_rock(scene, undrained, error)
                if (allocated(error)) return
             end if
-            call window%intensity(scene, mesh, level, state, tip%intensity, error)
+            call window%intensity(scene, mesh, values, state, tip%intensity, error)
             if (allocated(error)) return
             tip%rosette_radius = window%mesh%fracture%tip_radius(window%tip)
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &

@@ -2,9 +2,9 @@
 program test_base_number
    use testing_checks, only: checks_t
    use base_kinds, only: ik, lk, rk
-   use base_number, only: brief_text, integer_text, real_text
-   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
-      & ieee_value
+   use base_number, only: brief_text, exact_text, integer_text
+   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -54,7 +54,7 @@ program test_base_number
    call checks%is_true(integer_text(-120_ik) == "-120", "integer -120")
    call checks%is_true(integer_text(huge(1_lk)) == "9223372036854775807", "largest integer")
    call checks%is_true(integer_text(-huge(1_lk) - 1_lk) == "-9223372036854775808", &
-      & "smallest integer")
+                       "smallest integer")
    call checks%finish()
 
 contains
@@ -63,7 +63,7 @@ contains
       real(rk), intent(in) :: x
       character(len=*), intent(in) :: expected
 
-      call checks%is_true(real_text(x) == expected, expected//" is written as "//real_text(x))
+      call checks%is_true(exact_text(x) == expected, expected//" is written as "//exact_text(x))
    end subroutine same_text
 
    !> Powers of two, whose neighbours are not at the same distance, down to the smallest subnormal.
@@ -79,7 +79,7 @@ contains
          else
             x = transfer(ishft(1_lk, i + 1074), x)  ! subnormal
          end if
-         text = real_text(x)
+         text = exact_text(x)
          read (text, *, iostat=status) back
          if (status /= 0 .or. transfer(back, 1_lk) /= transfer(x, 1_lk)) n_wrong = n_wrong + 1
       end do
@@ -104,7 +104,7 @@ contains
          if (mod(i, 4) == 0) x = scale(fraction(x), mod(i, 60) - 30)  ! sizes that occur
          if (.not. abs(x) <= huge(x)) cycle
          n_tried = n_tried + 1
-         text = real_text(x)
+         text = exact_text(x)
          read (text, *, iostat=status) back
          if (status /= 0 .or. transfer(back, bits) /= transfer(x, bits)) n_wrong = n_wrong + 1
          if (len(text) > 24) n_wrong = n_wrong + 1

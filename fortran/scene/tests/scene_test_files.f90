@@ -14,7 +14,7 @@ module scene_test_files
 
 contains
 
-   !> A file of the source tree, which CTest tells by the environment.
+   !> A file of the source tree, which CTest gives in the environment.
    function source_path(name) result(path)
       character(len=*), intent(in) :: name
       character(len=:), allocatable :: path
@@ -106,8 +106,8 @@ contains
       end do
       if (a%initial%fracture_pressure /= b%initial%fracture_pressure) return
       if (.not. same(a%initial%pressure, b%initial%pressure)) return
-      if (.not. same([a%time%end, a%time%step, a%time%growth_factor, a%time%smallest_factor], &
-                     [b%time%end, b%time%step, b%time%growth_factor, &
+      if (.not. same([a%time%end, a%time%step, a%time%share_after_growth, a%time%smallest_factor], &
+                     [b%time%end, b%time%step, b%time%share_after_growth, &
                       b%time%smallest_factor])) return
       if (.not. same_loading(a, b)) return
       if (.not. same_levels(a, b)) return

@@ -129,8 +129,8 @@ contains
       call read_scene(path, scene, error)
       call checks%no_error(error, "the smallest scene")
       if (allocated(error)) return
-      call exactly([scene%time%growth_factor, scene%time%smallest_factor], &
-                   [time%growth_factor, time%smallest_factor], "default times")
+      call exactly([scene%time%share_after_growth, scene%time%smallest_factor], &
+                   [time%share_after_growth, time%smallest_factor], "default times")
       call exactly([scene%discretization%fine_ratio, scene%discretization%newton_tolerance, &
                     scene%discretization%size_fracture, scene%discretization%window], &
                    [discretization%fine_ratio, discretization%newton_tolerance, &

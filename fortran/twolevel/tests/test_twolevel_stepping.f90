@@ -7,8 +7,8 @@ program test_twolevel_stepping
    use twolevel_wells, only: next_switch, rate
    implicit none(type, external)
 
-   type(time_t), parameter :: time = time_t(end=1.0e4_rk, step=100.0_rk, growth_factor=0.01_rk, &
-                                            smallest_factor=0.1_rk)
+   type(time_t), parameter :: time = time_t(end=1.0e4_rk, step=100.0_rk, &
+                                            share_after_growth=0.01_rk, smallest_factor=0.1_rk)
    real(rk), parameter :: nothing_new(0) = [real(rk) ::]
    type(checks_t) :: checks
 
