@@ -7,7 +7,7 @@
 module output_vtu
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_number, only: integer_text, real_text
+   use base_number, only: exact_text, integer_text
    use base_texts, only: text_t
    use output_files, only: whole_file_t
    use output_text, only: newline, text_buffer_t
@@ -221,7 +221,7 @@ contains
          & '" header_type="UInt64">')
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//real_text(self%time)//"</DataArray>"//legends(self)//"</FieldData>")
+         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//legends(self)//"</FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
          & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
