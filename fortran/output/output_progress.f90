@@ -1,5 +1,5 @@
-!> How far a run is: one line on a terminal, renewed in place, and now and then one for the log, which
-!! stderr shows too where it is no terminal.
+!> How far a run is: one line on a terminal, renewed in place, and now and then one for the log,
+!! which stderr shows too where it is no terminal.
 module output_progress
    use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text, integer_text

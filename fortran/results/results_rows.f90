@@ -26,7 +26,7 @@ module results_rows
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
-      real(rk) :: strain_energy = 0.0_rk  !< only in mechanics-only runs; per metre of thickness [J/m]
+      real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
    end type history_row_t
 
    !> A state at the probes, a row of probes.csv.

@@ -200,7 +200,8 @@ contains
       integer :: bracket, owner
 
       bracket = index(word//"(", "(")
-      likely = nearest_word(word(:bracket - 1), pack(parameters%name, parameters%group == groups(group)%name))
+      likely = nearest_word(word(:bracket - 1), &
+                            pack(parameters%name, parameters%group == groups(group)%name))
       message = "&"//trim(groups(group)%name)//": unknown name "//shortened(word)
       owner = findloc(parameters%name == lower_case(word), .true., dim=1)
       if (owner > 0) then

@@ -1,4 +1,4 @@
-!> Loads that fall: slip and its reversal at a closed crack with friction, and onsets on the way down.
+!> Loads that fall: slip and its reversal at a closed crack with friction, onsets on the way down.
 program test_mechanics_unloading
    use testing_checks, only: checks_t
    use base_errors, only: error_t

@@ -182,7 +182,8 @@ contains
       call row_has(folder//"/fractures.csv", 1, "load_factor,traction_t_pa,state", &
          & "1.0,1000000.0,stick")
       call lacks(folder//"/fractures.csv", "pressure_pa")
-      call row_has(folder//"/probes.csv", 1, "load_factor,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,A_sxy_pa", &
+      call row_has(folder//"/probes.csv", 1, "load_factor,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,"// &
+                   "A_sxy_pa", &
          & "1.0,0.001,-0.002,-10000000.0,-20000000.0,500000.0")
       call lacks(folder//"/probes.csv", "A_p_pa")
       call checks%is_true(.not. file_exists(folder//"/tips.csv"), "no intensities, no tips.csv")
