@@ -4,6 +4,8 @@
 
 #include <gmsh.h>
 
+#include <csignal>
+
 #include <unordered_map>
 
 namespace cpp_mesh {
@@ -30,6 +32,27 @@ Scaling scaling_of(const std::vector<int>& loop, const std::vector<Vec2>& xy) {
     }
     return {0.5 * (low + high), 1.0 / std::max(high.x - low.x, high.y - low.y)};
 }
+
+// Puts back, at the end of its scope, what the program does about signals: gmsh sets handlers of its
+// own when it starts, and a run that is told to stop would end without its last state.
+class KeptSignals {
+public:
+    KeptSignals() {
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            sigaction(numbers[k], nullptr, &actions_[k]);
+    }
+    ~KeptSignals() {
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            sigaction(numbers[k], &actions_[k], nullptr);
+    }
+    KeptSignals(const KeptSignals&) = delete;
+    KeptSignals& operator=(const KeptSignals&) = delete;
+
+private:
+    static constexpr std::array numbers = {SIGHUP, SIGINT,  SIGTERM, SIGSEGV,
+                                           SIGBUS, SIGABRT, SIGFPE,  SIGPIPE};
+    std::array<struct sigaction, numbers.size()> actions_;
+};
 
 // One gmsh model, removed at the end whatever happens.
 class Model {
@@ -192,7 +215,10 @@ std::shared_ptr<GmshSession> GmshSession::shared() {
 
 GmshSession::GmshSession() {
     const bool read_configuration = false, run = false;
-    gmsh::initialize(0, nullptr, read_configuration, run);
+    {
+        const KeptSignals signals;
+        gmsh::initialize(0, nullptr, read_configuration, run);
+    }
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::option::setNumber("General.NumThreads", 1);
     for (const char* dimension : {"1D", "2D", "3D"})

@@ -6,10 +6,10 @@
 // OpenBLAS' own; absent where another BLAS is linked.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
-static volatile sig_atomic_t interrupt_count = 0;
+static volatile sig_atomic_t interrupt_count = 0, first_interrupt = 0;
 
 static void note_interrupt(int number) {
-    (void)number;
+    if (interrupt_count == 0) first_interrupt = number;
     // A terminal's Ctrl-C arrives twice, once through the launcher; a third one ends the program at once.
     interrupt_count = interrupt_count + 1;
     if (interrupt_count >= 2) signal(number, SIG_DFL);
@@ -23,7 +23,8 @@ void app_catch_interrupts(void) {
     signal(SIGXFSZ, SIG_IGN);
 }
 
-int app_interrupted(void) { return interrupt_count > 0; }
+// The number of the first of them, or 0.
+int app_interrupted(void) { return first_interrupt; }
 
 // Keep freed memory: factorizations ask for the same large blocks again and again.
 void app_keep_heap(void) {

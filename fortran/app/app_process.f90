@@ -4,7 +4,7 @@ module app_process
    implicit none(type, external)
    private
 
-   public :: catch_interrupts, interrupted, keep_heap, use_one_blas_thread
+   public :: catch_interrupts, interrupt_status, interrupted, keep_heap, use_one_blas_thread
 
    interface
       !> From now on the first two interrupts are noted; a third one ends the program. A file that
@@ -36,5 +36,10 @@ contains
    logical function interrupted()
       interrupted = c_interrupted() /= 0
    end function interrupted
+
+   !> Exit status of a run that has been asked to stop: 128 and the number of the signal.
+   integer function interrupt_status() result(status)
+      status = 128 + c_interrupted()
+   end function interrupt_status
 
 end module app_process

@@ -1,6 +1,5 @@
 !> Writing of a scene as understood, every default written out.
 module scene_write
-   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
@@ -10,32 +9,23 @@ module scene_write
    use scene_types, only: scene_t
    use scene_values, only: value_t
    use scene_words, only: real_text
-   use, intrinsic :: iso_fortran_env, only: int64
    implicit none(type, external)
    private
 
-   public :: write_scene
+   public :: scene_text
 
 contains
 
-   !> Write a scene file. Reading it gives the same scene, bit for bit.
-   subroutine write_scene(path, scene, error)
-      character(len=*), intent(in) :: path
+   !> The text of a scene file. Reading it gives the same scene, bit for bit.
+   function scene_text(scene) result(text)
       type(scene_t), intent(in) :: scene  !< as read_scene gives it
-      type(error_t), allocatable, intent(out) :: error
-      character(len=256) :: reason
+      character(len=:), allocatable :: text
       type(sheet_t) :: sheet
-      integer :: unit, status, i, item
-      integer(int64) :: n_bytes, n_bytes_there
+      integer :: i, item, length
 
       call scene_to_sheet(scene, sheet)
-      n_bytes = 0_int64
-      reason = ""
-      open (newunit=unit, file=path, action="write", status="replace", iostat=status, iomsg=reason)
-      if (status /= 0) then
-         call raise_error(error, "", trim(path)//": cannot be written: "//trim(reason))
-         return
-      end if
+      allocate (character(len=4096) :: text)
+      length = 0
       call put("! The scene as understood, every default written out: running it again gives "// &
                "the same run.")
       call put("! SI units; docs/input.md tells what each name means.")
@@ -54,30 +44,22 @@ contains
          end do
          call put("/")
       end do
-      if (status == 0) then
-         close (unit, iostat=status, iomsg=reason)
-         inquire (file=path, size=n_bytes_there)
-         if (status == 0 .and. n_bytes_there /= n_bytes) then
-            status = 1  ! gfortran closes without a word what a full disk cut
-            reason = "not all bytes were taken, the disk may be full"
-         end if
-      else
-         close (unit, status="delete")
-      end if
-      if (status /= 0) call raise_error(error, "", trim(path)//": cannot be written: "// &
-                                        trim(reason))
+      text = text(:length)
 
    contains
 
-      !> One line, unless a line before it failed.
+      !> One line. The text grows by doubling: polylines may have 100,000 points.
       subroutine put(line)
          character(len=*), intent(in) :: line
-         integer :: status_now
+         character(len=:), allocatable :: longer
 
-         if (status /= 0) return
-         write (unit, "(a)", iostat=status_now, iomsg=reason) line
-         if (status_now /= 0) status = status_now
-         n_bytes = n_bytes + len(line, kind=int64) + 1_int64  ! and the line's end
+         if (length + len(line) + 1 > len(text)) then
+            allocate (character(len=2*(length + len(line) + 1)) :: longer)
+            longer(:length) = text(:length)
+            call move_alloc(longer, text)
+         end if
+         text(length + 1:length + len(line) + 1) = line//new_line("a")
+         length = length + len(line) + 1
       end subroutine put
 
       !> `name = value`, with the unit as a comment.
@@ -108,7 +90,7 @@ contains
          end if
       end subroutine put_value
 
-   end subroutine write_scene
+   end function scene_text
 
    !> A single value as a scene file gives it.
    pure function value_text(parameter, value) result(text)

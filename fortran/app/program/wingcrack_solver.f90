@@ -2,7 +2,7 @@
 program wingcrack_solver
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
-   use app_process, only: catch_interrupts, keep_heap, use_one_blas_thread
+   use app_process, only: catch_interrupts, interrupt_status, keep_heap, use_one_blas_thread
    use app_run, only: run_scene
    use app_version, only: version
    use base_errors, only: error_t
@@ -15,7 +15,7 @@ program wingcrack_solver
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    implicit none(type, external)
 
-   integer, parameter :: exit_failed = 1, exit_usage = 2, exit_interrupted = 130
+   integer, parameter :: exit_failed = 1, exit_usage = 2
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
                                   "--describe-input | --describe-output | "// &
@@ -79,7 +79,7 @@ contains
          call leave(error%message, exit_failed)
       end if
       if (was_interrupted) call leave("interrupted; the last state is in "//directory, &
-                                      exit_interrupted)
+                                      interrupt_status())
    end subroutine run
 
    subroutine check()
