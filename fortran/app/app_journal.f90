@@ -19,7 +19,7 @@ module app_journal
       type(progress_t) :: progress
       real(rk) :: fields_time = -huge(1.0_rk)  !< of the last written fields [s]
    contains
-      procedure :: open => open_journal
+      procedure :: begin => begin_journal
       procedure :: write_state
       procedure :: write_chronicle
       procedure :: write_fields
@@ -27,19 +27,15 @@ module app_journal
 
 contains
 
-   !> Open the files, and write the first network.
-   subroutine open_journal(self, directory, quiet, simulation, error)
+   !> The scene is meshed: note its network, and begin to tell how the run goes on.
+   subroutine begin_journal(self, quiet, simulation)
       class(journal_t), intent(inout) :: self
-      character(len=*), intent(in) :: directory
       logical, intent(in) :: quiet
       class(simulation_t), intent(in) :: simulation
-      type(error_t), allocatable, intent(out) :: error
 
-      call self%files%open(directory, simulation%scene, error, simulation%scene%has_fluid())
-      if (allocated(error)) return
       call self%progress%begin(quiet)
       call write_network(self, simulation)
-   end subroutine open_journal
+   end subroutine begin_journal
 
    subroutine write_network(self, simulation)
       class(journal_t), intent(inout) :: self

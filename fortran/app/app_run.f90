@@ -22,9 +22,10 @@ module app_run
 
 contains
 
-   !> Run a scene to its end. `refused`: it could not even begin, and nothing was written.
-   subroutine run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
+   !> Run a scene to its end. `refused`: the directory is a wrong choice, and nothing was written.
+   subroutine run_scene(scene, source, directory, version, quiet, refused, was_interrupted, error)
       type(scene_t), intent(in) :: scene
+      character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
       character(len=*), intent(in) :: directory, version
       logical, intent(in) :: quiet
       logical, intent(out) :: refused, was_interrupted
@@ -34,6 +35,7 @@ contains
       type(run_record_t) :: record
       type(timers_t) :: timers
       type(error_t), allocatable :: trouble
+      logical :: is_meshed
 
       was_interrupted = .false.
       if (scene%has_fluid()) then
@@ -42,21 +44,19 @@ contains
          allocate (mechanics_simulation_t :: simulation)
       end if
       call timers%begin()
-      call simulation%begin(scene, timers, error)
-      refused = allocated(error)
-      if (refused) return
       call timers%start(phase_output)
-      call journal%open(directory, quiet, simulation, error)
+      call journal%files%open(directory, scene, source, refused, error)
       call timers%stop(phase_output)
       if (allocated(error)) return
 
-      call march(simulation, journal, timers, error)
-      call journal%progress%clear()
-      call timers%start(phase_output)
-      call journal%write_chronicle(simulation)
-      call journal%write_fields(simulation, trouble)
-      call timers%stop(phase_output)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call simulation%begin(scene, timers, error)
+      is_meshed = .not. allocated(error)
+      if (is_meshed) then
+         call journal%begin(quiet, simulation)
+         call march(simulation, journal, timers, error)
+         call write_last_state(simulation, journal, timers, trouble)
+         if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      end if
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
       call simulation%tell_limits()
@@ -75,10 +75,28 @@ contains
       end if
       call journal%files%log(record%status//": "//record%reason//origin_text(error))
       call journal%files%close(record, timers, trouble)
-      if (.not. quiet) call show_warnings(record%warnings, output_unit)
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
-      if (.not. quiet) call say_closing(simulation, record, timers%wall_seconds(), directory)
+      if (quiet) return
+      call show_warnings(record%warnings, output_unit)
+      if (is_meshed) call say_closing(simulation, record, timers%wall_seconds(), directory)
    end subroutine run_scene
+
+   !> Write everything up to the last good state but run.json, which tells whether that went well.
+   subroutine write_last_state(simulation, journal, timers, error)
+      class(simulation_t), intent(inout) :: simulation
+      type(journal_t), intent(inout) :: journal
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: trouble
+
+      call journal%progress%clear()
+      call timers%start(phase_output)
+      call journal%write_chronicle(simulation)
+      call journal%write_fields(simulation, error)
+      call journal%files%flush(trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call timers%stop(phase_output)
+   end subroutine write_last_state
 
    !> Where an error comes from, for the log.
    pure function origin_text(error) result(text)
@@ -116,6 +134,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       do
+         if (interrupted()) return
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) then
             call timers%start(phase_output)
@@ -132,7 +151,6 @@ contains
          call journal%write_chronicle(simulation)
          call timers%stop(phase_output)
          if (simulation%is_over()) return
-         if (interrupted()) return
       end do
    end subroutine march
 

@@ -9,15 +9,16 @@ module output_run
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use results_rows, only: history_row_t, tip_row_t
-   use output_files, only: make_directory, remove_file, rename_file
+   use output_files, only: write_text_file
    use output_network, only: network_record_t
-   use output_record, only: run_record_t
+   use output_place, only: place_t
+   use output_record, only: run_record_t, status_failed
    use output_snapshots, only: snapshots_t
    use output_tables, only: tables_t
    use base_texts, only: add_text, text_t
    use output_text, only: newline, text_buffer_t
    use scene_types, only: scene_t
-   use scene_write, only: write_scene
+   use scene_write, only: scene_text
    implicit none(type, external)
    private
 
@@ -26,13 +27,9 @@ module output_run
    real(rk), parameter :: pause = 3.0_rk  !< between two writings of the tables [s]
    real(rk), parameter :: pause_per_cost = 200.0_rk  !< or times the last one's duration
 
-   character(len=*), parameter :: top_files(9) = [character(len=13) :: "run.json", "scene.nml", &
-      & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
-      & "run.log"]
-
    !> The files of a run, from `open` to `close`.
    type :: run_output_t
-      character(len=:), allocatable :: directory
+      type(place_t), private :: place
       type(tables_t), private :: tables
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
@@ -61,52 +58,50 @@ module output_run
 
 contains
 
-   !> Make the directory, remove an earlier run's files from it, and write scene.nml.
-   subroutine open_run(self, directory, scene, error, has_fluid)
+   !> Make the directory and write scene.nml; once that is on disk, remove an earlier run's files.
+   !! `refused`: the directory is a wrong choice, and nothing was touched.
+   subroutine open_run(self, directory, scene, source, refused, error)
       class(run_output_t), intent(out) :: self
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
+      character(len=*), intent(in) :: source  !< path of the scene that is run; empty: no file
+      logical, intent(out) :: refused
       type(error_t), allocatable, intent(out) :: error
-      logical, intent(in), optional :: has_fluid  !< .false.: no columns for pressure and fluid
+      character(len=:), allocatable :: text
 
-      character(len=:), allocatable :: scene_path
-      type(text_t), allocatable :: names(:)
-      logical :: was_there, fluid
-      integer :: i
-
-      fluid = .true.
-      if (present(has_fluid)) fluid = has_fluid
-      self%directory = trim(directory)
       self%writes_vtu = scene%output%vtu
       self%interval = scene%output%interval
       call system_clock(self%clock_begin)
-
-      call make_directory(self%directory, error)
+      text = scene_text(scene)
+      call self%place%claim(directory, source, text, refused, error)
       if (allocated(error)) return
-      do i = 1, size(top_files)
-         call remove_file(self%directory//"/"//trim(top_files(i)), was_there)
-         call remove_file(self%directory//"/"//trim(top_files(i))//".part", was_there)
-      end do
-      call self%snapshots%open(self%directory, scene, error)
-      if (allocated(error)) return
-      scene_path = self%directory//"/scene.nml"
-      call write_scene(scene_path//".part", scene, error)
-      if (allocated(error)) then
-         call remove_file(scene_path//".part", was_there)
-         return
-      end if
-      call rename_file(scene_path//".part", scene_path, error)
-      if (allocated(error)) return
-
-      call self%tables%open(self%directory, scene, fluid)
-      allocate (names(0))
-      if (allocated(scene%fractures)) then
-         do i = 1, size(scene%fractures)
-            call add_text(names, trim(scene%fractures(i)%name))
-         end do
-      end if
-      call self%network%open(self%directory//"/network.json", names, fluid)
+      associate (folder => self%place%directory)
+         if (self%place%has_scene) then
+            call self%log("the scene is the scene.nml of this folder")
+            call write_log(self, error)
+         else
+            call write_text_file(folder//"/scene.nml", text, error)
+         end if
+         if (allocated(error)) return
+         call self%place%clear(trim(merge("run.log", "       ", self%place%has_scene)))
+         call self%snapshots%open(folder, scene, error)
+         if (allocated(error)) return
+         call self%tables%open(folder, scene, scene%has_fluid())
+         call self%network%open(folder//"/network.json", fracture_names(scene), scene%has_fluid())
+      end associate
    end subroutine open_run
+
+   pure function fracture_names(scene) result(names)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable :: names(:)
+      integer :: i
+
+      allocate (names(0))
+      if (.not. allocated(scene%fractures)) return
+      do i = 1, size(scene%fractures)
+         call add_text(names, trim(scene%fractures(i)%name))
+      end do
+   end function fracture_names
 
    !> Add an accepted step to history.csv.
    subroutine history_row(self, row)
@@ -206,36 +201,59 @@ contains
       end if
    end subroutine tick
 
-   !> Write now what has gathered.
+   !> Write now what has gathered: every file that can be written, though another one failed.
    subroutine flush_run(self, error)
       class(run_output_t), intent(inout) :: self
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !< the first
+      type(error_t), allocatable :: trouble
       real(rk) :: begun
 
       begun = wall_time(self)
       call self%tables%flush(error)
-      if (.not. allocated(error)) call self%snapshots%flush(error)
-      if (.not. allocated(error)) call self%network%flush(error)
-      if (.not. allocated(error) .and. self%log_text%length > self%log_written) then
-         call self%log_text%write_file(self%directory//"/run.log", error)
-         if (.not. allocated(error)) self%log_written = self%log_text%length
-      end if
+      call self%snapshots%flush(trouble)
+      call keep_first(trouble, error)
+      call self%network%flush(trouble)
+      call keep_first(trouble, error)
+      call write_log(self, trouble)
+      call keep_first(trouble, error)
       self%last_flush = wall_time(self)
       self%flush_cost = self%last_flush - begun
    end subroutine flush_run
 
-   !> End the run, well or not: write everything, and run.json last, even if other files failed.
+   subroutine write_log(self, error)
+      class(run_output_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%log_text%length == self%log_written) return
+      call self%log_text%write_file(self%place%directory//"/run.log", error)
+      if (.not. allocated(error)) self%log_written = self%log_text%length
+   end subroutine write_log
+
+   !> End the run, well or not: write everything, and run.json last, which tells if other files
+   !! could not be written.
    subroutine close_run(self, record, timers, error)
       class(run_output_t), intent(inout) :: self
-      type(run_record_t), intent(in) :: record
+      type(run_record_t), intent(inout) :: record
       type(timers_t), intent(in) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: trouble
 
       call self%flush(error)
-      call record%write(self%directory//"/run.json", timers, trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      if (allocated(error) .and. record%status /= status_failed) then
+         record%status = status_failed
+         record%reason = error%message
+      end if
+      call record%write(self%place%directory//"/run.json", timers, trouble)
+      call keep_first(trouble, error)
+      call self%place%release()
    end subroutine close_run
+
+   !> Keep the first of two errors.
+   subroutine keep_first(trouble, error)
+      type(error_t), allocatable, intent(inout) :: trouble, error
+
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+   end subroutine keep_first
 
    !> Wall time since `open` [s].
    function wall_time(self)

@@ -221,16 +221,27 @@ contains
       end associate
    end subroutine event_row
 
-   !> Write all tables that have changed.
+   !> Write all tables that have changed, each of them though another one fails; the first error.
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
 
-      call self%history%flush(error)
-      if (.not. allocated(error)) call self%tips%flush(error)
-      if (.not. allocated(error)) call self%fractures%flush(error)
-      if (.not. allocated(error)) call self%probes%flush(error)
-      if (.not. allocated(error)) call self%events%flush(error)
+      call flush_one(self%history)
+      call flush_one(self%tips)
+      call flush_one(self%fractures)
+      call flush_one(self%probes)
+      call flush_one(self%events)
+
+   contains
+
+      subroutine flush_one(table)
+         type(series_t), intent(inout) :: table
+         type(error_t), allocatable :: trouble
+
+         call table%flush(trouble)
+         if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      end subroutine flush_one
+
    end subroutine flush_tables
 
    !> Open a table with the columns that the table of columns has for it.

@@ -73,9 +73,9 @@ contains
       call keep_heap()
       call use_one_blas_thread()
       call catch_interrupts()
-      call run_scene(scene, directory, version, quiet, refused, was_interrupted, error)
+      call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
       if (allocated(error)) then
-         if (refused) call leave(argument(2)//": "//error%message, exit_usage)
+         if (refused) call leave(error%message, exit_usage)
          call leave(error%message, exit_failed)
       end if
       if (was_interrupted) call leave("interrupted; the last state is in "//directory, &

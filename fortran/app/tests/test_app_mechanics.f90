@@ -53,7 +53,7 @@ contains
       real(rk) :: fields(7), tips(13), history(2)
 
       directory = "test_app_mechanics.out/broken"
-      call run_scene(strip(), directory, "0.0.0", .true., refused, was_interrupted, error)
+      call run_scene(strip(), "", directory, "0.0.0", .true., refused, was_interrupted, error)
       call checks%no_error(error, "the run")
       call checks%is_true(index(file_text(directory//"/run.json"), "has come loose") > 0, &
                           "the reason is on record")

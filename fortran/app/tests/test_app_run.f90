@@ -39,7 +39,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: refused, was_interrupted
 
-      call run_scene(scene, directory(scene), "0.0.0", .true., refused, was_interrupted, error)
+      call run_scene(scene, "", directory(scene), "0.0.0", .true., refused, was_interrupted, error)
       call checks%is_true(.not. refused, trim(scene%name)//": it begins")
       call checks%is_true(.not. was_interrupted, trim(scene%name)//": nobody interrupts it")
    end subroutine run

@@ -30,6 +30,7 @@ program test_output_run
    type(fracture_fields_t) :: fracture
    type(intersection_fields_t) :: intersections
    type(timers_t) :: timers
+   logical :: refused
 
    call make_scene()
    call make_mesh()
@@ -57,7 +58,7 @@ contains
       call write_text_file(folder//"/run.json", "old", error)
       call write_text_file(folder//"/history.csv.part", "ol", error)
 
-      call output%open(folder, scene, error)
+      call output%open(folder, scene, "", refused, error)
       call checks%no_error(error, "open")
       call checks%is_true(file_exists(folder//"/scene.nml"), "scene.nml is there from the start")
       call checks%is_true(.not. file_exists(folder//"/run.json"), "an earlier run.json is gone")
@@ -152,6 +153,7 @@ contains
       type(scene_t) :: dry_scene
 
       dry_scene = scene
+      dry_scene%fluid%viscosity = 0.0_rk
       dry_scene%output%vtu = .false.
       dry_scene%output%interval = 10.0_rk
       dry_scene%growth%intensities = .false.
@@ -159,7 +161,7 @@ contains
       deallocate (dry_matrix%pressure)
       dry_fracture = fracture
       deallocate (dry_fracture%pressure)
-      call output%open(folder, dry_scene, error, has_fluid=.false.)
+      call output%open(folder, dry_scene, "", refused, error)
       call checks%no_error(error, "open without fluid")
       call output%history_row(history_row_t(time=1.0_rk, strain_energy=0.25_rk))
       call output%tip_row(tip_row_t(time=1.0_rk))
@@ -195,7 +197,8 @@ contains
    subroutine refuse()
       type(run_output_t) :: output
 
-      call output%open(top//"/run/run.json", scene, error)
+      call output%open(top//"/run/run.json", scene, "", refused, error)
+      call checks%is_true(refused, "a file in the way is a wrong choice")
       call checks%fails_with(error, "run.json", "a file in the way of the directory is refused")
    end subroutine refuse
 
