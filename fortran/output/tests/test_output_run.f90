@@ -273,6 +273,7 @@ contains
       scene%material%permeability_yy = 2.0e-18_rk
       scene%time%end = 4.0_rk
       scene%time%step = 2.0_rk
+      scene%fluid%viscosity = 1.0e-3_rk
       scene%output%interval = 2.0_rk
       scene%growth%intensities = .true.
       allocate (scene%fractures(2), scene%injections(0), scene%probes(1))
