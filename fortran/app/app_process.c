@@ -1,10 +1,6 @@
 // What the program needs of the operating system and Fortran has no word for.
 #include <malloc.h>
 #include <signal.h>
-#include <stdlib.h>
-
-// OpenBLAS' own; absent where another BLAS is linked.
-extern void openblas_set_num_threads(int n) __attribute__((weak));
 
 static volatile sig_atomic_t interrupt_count = 0, first_interrupt = 0;
 
@@ -31,10 +27,4 @@ void app_keep_heap(void) {
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_TOP_PAD, 64 * 1024 * 1024);
-}
-
-// Dense blocks here are too small for threads, which would only wait for each other. A number of threads
-// that the user has asked for stays.
-void app_use_one_blas_thread(void) {
-    if (openblas_set_num_threads && !getenv("OPENBLAS_NUM_THREADS")) openblas_set_num_threads(1);
 }

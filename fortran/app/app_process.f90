@@ -4,7 +4,7 @@ module app_process
    implicit none(type, external)
    private
 
-   public :: catch_interrupts, interrupt_status, interrupted, keep_heap, use_one_blas_thread
+   public :: catch_interrupts, interrupt_status, interrupted, keep_heap
 
    interface
       !> From now on the first two interrupts are noted; a third one ends the program. A file that
@@ -17,11 +17,6 @@ module app_process
       subroutine keep_heap() bind(C, name="app_keep_heap")
          implicit none(type, external)
       end subroutine keep_heap
-
-      !> Unless OPENBLAS_NUM_THREADS asks for more.
-      subroutine use_one_blas_thread() bind(C, name="app_use_one_blas_thread")
-         implicit none(type, external)
-      end subroutine use_one_blas_thread
 
       function c_interrupted() result(answer) bind(C, name="app_interrupted")
          import :: c_int

@@ -2,7 +2,8 @@
 program wingcrack_solver
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
-   use app_process, only: catch_interrupts, interrupt_status, keep_heap, use_one_blas_thread
+   use app_memory, only: prepare_memory
+   use app_process, only: catch_interrupts, interrupt_status, keep_heap
    use app_run, only: run_scene
    use app_version, only: version
    use base_errors, only: error_t
@@ -70,8 +71,9 @@ contains
       call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
 
+      call prepare_memory(error)
+      if (allocated(error)) call leave(error%message, exit_failed)
       call keep_heap()
-      call use_one_blas_thread()
       call catch_interrupts()
       call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
       if (allocated(error)) then
