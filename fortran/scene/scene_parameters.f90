@@ -121,8 +121,8 @@ module scene_parameters
               "carries it from the start; without one it loads the body."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
               meaning="How the load changes: tractions, point loads and displacements are "// &
-              "those of the scene times a factor, which rises, or falls where to is less than from; "// &
-              "the first state, at from, is reached from nothing. Faces keep what they have "// &
+              "those of the scene times a factor, which rises, or falls where to is less than "// &
+              "from; the first state, at from, is reached from nothing. Faces keep what they have "// &
               "slipped until friction lets them slip back. With growth the factor at which the "// &
               "next tip grows is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
