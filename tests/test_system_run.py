@@ -184,7 +184,11 @@ def test_the_record_of_a_run(which: str, request: pytest.FixtureRequest) -> None
     assert record["cpu_s"] > 0
     assert record["wall_s"] > 0
     assert record["peak_memory_mb"] > 1
-    assert record["warnings"] == []
+    if which == "resting":
+        assert record["warnings"] == []
+    else:  # few cells and long steps, and the run says so
+        doubts = ("estimated error of a stress intensity factor", "K_eq over K_IC after growth")
+        assert all(warning.startswith(doubts) for warning in record["warnings"])
     assert record["newton_iterations"]["total"] >= sum(int(r["newton_iterations"]) for r in history)
     assert record["newton_iterations"]["max"] <= 30
     assert record["step_cuts"] == len(

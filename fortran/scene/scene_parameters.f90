@@ -98,8 +98,8 @@ module scene_parameters
               "displacement or the total traction is prescribed; what is not given is free of "// &
               "traction. The displacements must hold the body against translation and rotation."), &
       group_t("restraint", repeated=.true., scenes=in_mechanics, &
-              meaning="A point of the body held in place. It becomes a node of the mesh, and must not lie "// &
-              "on a fracture, unless at a tip: each face has nodes of its own."), &
+              meaning="A point of the body held in place. It becomes a node of the mesh, and "// &
+              "must not lie on a fracture, unless at a tip: each face has nodes of its own."), &
       group_t("point_load", repeated=.true., scenes=in_mechanics, &
               meaning="A force at a point of the body, per metre of thickness, times the load "// &
               "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &
@@ -120,11 +120,11 @@ module scene_parameters
               "which the load factor does not scale. An in-situ stress that changes with y "// &
               "carries it from the start; without one it loads the body."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
-              meaning="How the load changes: tractions, point loads and displacements are those "// &
-              "of the scene times a factor, which rises, or falls where to is less than from; "// &
-              "the first state, at from, is reached from nothing. Faces keep what they have "// &
-              "slipped until friction lets them slip back. With growth the factor at which the "// &
-              "next tip grows is found, and never stepped over."), &
+              meaning="How the load changes: tractions, point loads and displacements are "// &
+              "those of the scene times a factor, which rises, or falls where to is less than "// &
+              "from; the first state, at from, is reached from nothing. Faces keep what they "// &
+              "have slipped until friction lets them slip back. With growth the factor at which "// &
+              "the next tip grows is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
               "quarter-point elements around the fracture tips."), &

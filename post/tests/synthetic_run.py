@@ -23,7 +23,7 @@ FRICTION = 0.5
 TOUGHNESS = 0.7e6  # [Pa m^1/2]
 STEPS = 13
 HOUR = 3600.0
-GROWTH_STEP = 5  # the first step with a wing
+GROWTH_STEP = 5  # the first step with a wing: growth began at the end of the step before
 LAST_WING = 0.12  # [m]
 STATES = ("stick", "slip", "open")
 
@@ -102,7 +102,7 @@ def fracture_cells(step: int, size: float = 0.01) -> Cells:
     )
 
 
-def _square(cells: int) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+def square(cells: int) -> tuple[FloatArray, npt.NDArray[np.int64]]:
     """Triangles of a square, finer towards its middle."""
     line = np.linspace(-1.0, 1.0, cells + 1)
     line = BODY / 2 * (1.0 + 0.15 * line + 0.85 * line**3)
@@ -252,7 +252,7 @@ def _probes(fluid: bool) -> dict[str, list[object]]:
 def _write_fields(root: Path, cells_per_side: int, fluid: bool) -> None:
     import pyvista
 
-    points, triangles = _square(cells_per_side)
+    points, triangles = square(cells_per_side)
     centres = points[triangles].mean(axis=1)
     entries: dict[str, list[str]] = {"matrix": [], "fractures": []}
     for step, time in enumerate(times()):
@@ -304,7 +304,7 @@ def write_run(root: Path, *, cells_per_side: int = 12, fluid: bool = True) -> Pa
     _write_csv(root / "probes.csv", _probes(fluid))
     (root / "events.csv").write_text(
         "time_s,kind,fracture,x_m,y_m,detail\n"
-        f'{times()[GROWTH_STEP]},growth,1,1.0,1.0,"tip 1, 1 mm"\n',
+        f'{times()[GROWTH_STEP - 1]},growth,1,1.0,1.0,"tip 1, 1 mm"\n',
         encoding="utf-8",
     )
     (root / "scene.nml").write_text(

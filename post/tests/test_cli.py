@@ -8,8 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from wingcrack_post import style
 from wingcrack_post.cli import main
 
 POST = Path(__file__).resolve().parents[1]
@@ -47,6 +50,29 @@ def test_quiet_prints_nothing(own_run: Path, capsys: pytest.CaptureFixture[str])
     assert main(["plot", str(own_run), "--only", "probes", "--format", "png", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
     assert [p.name for p in (own_run / "figures").iterdir()] == ["probes.png"]
+
+
+def test_fonts_that_lack_are_nobodys_business(
+    own_run: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(style.RC, "font.sans-serif", ["No Such Font", "DejaVu Sans"])
+    assert main(["plot", str(own_run), "--only", "probes", "--format", "png", "--quiet"]) == 0
+    assert [record.getMessage() for record in caplog.records if "font" in record.name] == []
+
+
+def test_panels_are_laid_out_once_for_all_formats(
+    own_run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    layouts = []
+    execute = ConstrainedLayoutEngine.execute
+
+    def counted(engine: ConstrainedLayoutEngine, figure: Figure) -> object:
+        layouts.append(figure)
+        return execute(engine, figure)
+
+    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", counted)
+    assert main(["plot", str(own_run), "--only", "probes", "--quiet"]) == 0
+    assert len(layouts) == 1
 
 
 def test_mechanics_only_names_what_it_leaves_out(

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from synthetic_run import HOUR, STATES, fracture_cells, times
 from wingcrack_post import AbsentError, read_run, style
 from wingcrack_post.fields import FractureField
-from wingcrack_post.maps import Window, pressure_maps, zoom_window
+from wingcrack_post.frames import Window, zoom_window
+from wingcrack_post.maps import pressure_maps
 from wingcrack_post.units import MEGAPASCAL
 
 
@@ -118,3 +119,16 @@ def test_without_pressure_or_fields_there_is_no_map(dry_run: Path, own_run: Path
     (own_run / "matrix.pvd").unlink()
     with pytest.raises(AbsentError, match=r"no matrix\.pvd"):
         pressure_maps(read_run(own_run))
+
+
+def test_the_peak_is_shown_and_the_wells_stop_named(own_run: Path) -> None:
+    path = own_run / "history.csv"
+    header, *rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+    for row in rows[7:]:  # the well stops at the end of step 6, at 35 h
+        row[header.index("well_pressure_pa")] = "7e6"
+    text = "\n".join(",".join(row) for row in [header, *rows])
+    path.write_text(text + "\n", encoding="utf-8")
+    with (own_run / "scene.nml").open("a", encoding="utf-8") as scene:
+        scene.write(f"&injection end = {35 * HOUR} /\n")
+    titles = [axes.get_title(loc="left") for axes in _maps(pressure_maps(read_run(own_run)))]
+    assert [title[5:] for title in titles if "well" in title] == ["$t$ = 35 h, well stops"]

@@ -48,8 +48,8 @@ def test_wings_lead_outwards_with_their_times() -> None:
     assert flaw.initial[:, 0].tolist() == [1.0, 1.5]
     assert flaw.start[:, 0].tolist() == [1.0, 0.9, 0.8]
     assert flaw.end[:, 0].tolist() == [1.5, 1.6, 1.75]
-    assert flaw.start_s.tolist() == [2.0, 2.0]
-    assert flaw.end_s.tolist() == [1.0, 2.0]
+    assert flaw.start_steps.tolist() == [2.0, 2.0]
+    assert flaw.end_steps.tolist() == [1.0, 2.0]
 
 
 def test_the_initial_fracture_is_thick_and_growth_is_coloured_by_its_order(own_run: Path) -> None:
@@ -86,3 +86,44 @@ def test_nothing_to_draw_is_said(own_run: Path) -> None:
         drawn(own_run, {"fractures": []})
     with pytest.raises(AbsentError, match="no fractures"):
         drawn(own_run, {"fractures": [], "steps": [{"time_s": 0.0, "fractures": []}]})
+
+
+def test_nothing_grown_is_not_in_the_legend(own_run: Path) -> None:
+    figure = drawn(own_run, network((0.0, [1.0, 1.5], 0.0)))
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == ["at the start", "joint"]
+
+
+def test_the_unit_is_that_of_the_body(own_run: Path) -> None:
+    with (own_run / "scene.nml").open("a", encoding="utf-8") as scene:
+        scene.write("&domain x_min = 0.0, x_max = 2.0, y_min = 0.0, y_max = 2.0 /\n")
+    axes = map_of(drawn(own_run, network((0.0, [1.0, 1.1], 0.0))))
+    assert axes.get_xlabel() == "$x$ [m]"
+    assert axes.get_xlim()[1] < 1.2  # a close view
+
+
+def test_ticks_say_the_load_only_where_it_changes(dry_run: Path, tmp_path: Path) -> None:
+    for item in dry_run.iterdir():
+        (tmp_path / item.name).symlink_to(item)
+    for name in ("history.csv", "network.json"):
+        (tmp_path / name).unlink()
+    text = (dry_run / "history.csv").read_text(encoding="utf-8").replace("time_s", "load_factor")
+    (tmp_path / "history.csv").write_text(text, encoding="utf-8")
+    load = read_run(tmp_path).history.number("load_factor")
+    ends = [1.5 + 0.1 * k for k in range(21)]
+    moments = [0.0, *load[:2], *[float(load[2])] * 18]
+    content = network(*((moment, [1.0, *ends[: k + 1]], 0.0) for k, moment in enumerate(moments)))
+    for step in content["steps"]:
+        step["load_factor"] = step.pop("time_s")
+    figure = drawn(tmp_path, content)
+    ticks = [label.get_text() for label in figure.axes[1].get_yticklabels()]
+    assert ticks[0] == f"1 ({load[0]:.3g})"
+    assert sum("(" in tick for tick in ticks) == 2
+    assert figure.axes[1].get_ylabel() == ("increment of growth (load factor, constant from 3 on)")
+
+
+def test_growth_at_one_load_says_it_once(own_run: Path) -> None:
+    figure = drawn(own_run, network((0.0, [1.0, 1.5], 0.0), (18000.0, [1.0, 1.5, 1.6, 1.7], 0.0)))
+    assert figure.axes[1].get_ylabel() == "increment of growth (all at 5 h)"
+    ticks = [label.get_text() for label in figure.axes[1].get_yticklabels()]
+    assert ticks == ["1", "2"]

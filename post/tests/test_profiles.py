@@ -16,7 +16,7 @@ from synthetic_run import (
     wing_length,
 )
 from wingcrack_post import AbsentError, RunError, read_run
-from wingcrack_post.profiles import arc_length, fracture_profiles
+from wingcrack_post.profiles import arc_length, fracture_profiles, state_numbers
 
 LAST = STEPS - 1
 
@@ -129,3 +129,44 @@ def test_run_without_fractures(own_run: Path) -> None:
     (own_run / "fractures.csv").unlink()
     with pytest.raises(AbsentError, match=r"the run has no fractures\.csv"):
         list(fracture_profiles(read_run(own_run)))
+
+
+def _rewritten(run: Path, column: str, values: list[float]) -> None:
+    path = run / "fractures.csv"
+    header, *rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+    for row, value in zip(rows, values, strict=False):
+        row[header.index(column)] = repr(value)
+    text = "\n".join(",".join(row) for row in [header, *rows])
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def test_round_off_is_drawn_as_zero(own_run: Path) -> None:
+    noise = [(-1.0) ** k * 1.0e-6 for k in range(1000)]  # 1e-12 MPa beside tractions of 8 MPa
+    _rewritten(own_run, "traction_t_pa", noise)
+    ((_, figure),) = fracture_profiles(read_run(own_run))
+    axes = figure.axes[-1]
+    solid = [line for line in axes.lines if line.get_linestyle() == "-"]
+    assert solid
+    assert all(np.all(np.asarray(line.get_ydata()) == 0.0) for line in solid)
+    assert axes.get_ylim() == (-1.0, 1.0)
+    assert [text.get_text() for text in axes.texts] == ["zero"]
+
+
+def test_narrow_wings_are_seen_beside_a_wide_fracture(own_run: Path) -> None:
+    table = read_run(own_run).fractures
+    assert table is not None
+    s, time = table.number("s_m"), table.number("time_s")
+    wide = [1.0e-3 if t == time[0] or x > 0.1 else 4.0e-5 for t, x in zip(time, s, strict=True)]
+    _rewritten(own_run, "aperture_m", wide)
+    ((_, figure),) = fracture_profiles(read_run(own_run))
+    assert figure.axes[0].get_yscale() == "log"
+    assert figure.axes[0].get_ylabel() == r"aperture $a$ [µm]"
+    low, high = figure.axes[0].get_ylim()
+    assert low < 40.0
+    assert high > 1000.0
+
+
+def test_states_at_one_load_are_told_apart() -> None:
+    moments = np.array([1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0])
+    s = np.array([0.1, 0.3, 0.1, 0.3, -0.1, 0.1, 0.3])
+    assert state_numbers(moments, s).tolist() == [0, 0, 1, 1, 2, 2, 2]

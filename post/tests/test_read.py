@@ -120,11 +120,11 @@ def test_lines_are_no_matrix(wet_run: Path) -> None:
         read_matrix(wet_run / "fractures_0000.vtu")
 
 
-def test_series_is_sorted_by_time(tmp_path: Path) -> None:
+def test_series_keeps_its_order_as_loads_may_fall(tmp_path: Path) -> None:
     path = tmp_path / "matrix.pvd"
     path.write_text(
         '<VTKFile><Collection><DataSet timestep="2.0" file="b.vtu"/>'
         '<DataSet timestep="1.0" file="a.vtu"/></Collection></VTKFile>',
         encoding="utf-8",
     )
-    assert [snapshot.path.name for snapshot in read_series(path)] == ["a.vtu", "b.vtu"]
+    assert [snapshot.path.name for snapshot in read_series(path)] == ["b.vtu", "a.vtu"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,16 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
-from wingcrack_post import AbsentError, EnvironmentLacksError, RunError, read_run, style
+from synthetic_run import STEPS, times
+from wingcrack_post import (
+    AbsentError,
+    EnvironmentLacksError,
+    RunError,
+    read_run,
+    render,
+    style,
+    view,
+)
 from wingcrack_post.view import draw_view
 
 
@@ -31,6 +42,35 @@ def test_picture_shows_the_states_of_the_last_time(wet_run: Path, tmp_path: Path
 
 def test_mechanics_only_shows_stress(dry_run: Path, tmp_path: Path) -> None:
     assert _drawn(dry_run, tmp_path / "view.png").stat().st_size > 10_000
+
+
+def test_the_last_view_is_that_of_no_short_step(
+    wet_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def child(_directory: Path, aside: Path, place: int) -> subprocess.CompletedProcess[str]:
+        asked.append(place)
+        aside.write_bytes(b"")
+        return subprocess.CompletedProcess([], 0, "", "")
+
+    monkeypatch.setattr(view, "_call_child", child)
+    monkeypatch.setattr(view, "last_settled", lambda *_: 7)
+    draw_view(read_run(wet_run), tmp_path / "view.png")
+    draw_view(read_run(wet_run), tmp_path / "view.png", float(times()[3]))
+    assert asked == [7, 3]
+
+
+def test_singular_cells_do_not_colour_the_view(dry_run: Path, tmp_path: Path) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    run = Path(shutil.copytree(dry_run, tmp_path / "run"))
+    path = run / f"matrix_{STEPS - 1:04d}.vtu"
+    mesh = pyvista.read(path)
+    mesh.cell_data["stress"][40] = -733.0e6
+    mesh.save(path)
+    scenery = render._scenery(read_run(run), STEPS - 1)
+    assert scenery.limits == (-15.0, 15.0)
+    assert scenery.colours == "PuOr_r"
 
 
 def test_no_opengl_is_one_sentence(

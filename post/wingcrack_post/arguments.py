@@ -15,7 +15,7 @@ FORMATS = ("png", "pdf")
 _EPILOG = """\
 groups of figures (--only), written to DIR/figures:
   network    the fractures at the start and what has grown, coloured by its order
-  maps       pore pressure, or without a fluid stress, at several times, with the contact states
+  maps       pore pressure, or without a fluid stress, in up to six states, with the contact states
   fractures  opening, slip, aperture, pressure and tractions along each fracture
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
   probes     pressure, displacement and stress at the probe points
@@ -68,8 +68,8 @@ def _parser() -> argparse.ArgumentParser:
         default=(),
         metavar="T,...",
         help="times of maps and profiles: seconds, or with the unit s, min, h or d; the nearest"
-        " written times are drawn (default: the first, the start of growth, equally spaced"
-        " fracture lengths, the last)",
+        " written times are drawn (default: the first, the start of growth, the highest"
+        " well pressure, equally spaced fracture lengths, the last; no short steps after growth)",
     )
     plot.add_argument(
         "--only",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,6 +40,8 @@ def _plot(directory: Path, choices: _Choices) -> int:
     from wingcrack_post.figures import draw_figures
     from wingcrack_post.read import read_run
 
+    # what matplotlib says about fonts that this machine lacks helps nobody: it takes another
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     left_out: list[Outcome] = []
     drawn = False
     try:

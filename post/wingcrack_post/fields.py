@@ -65,7 +65,7 @@ class FractureField:
 
 
 def read_series(path: Path) -> tuple[Snapshot, ...]:
-    """List the files of a PVD collection by time; nothing where there is no such file."""
+    """List the files of a PVD collection as written; nothing where there is no such file."""
     if not path.exists():
         return ()
     try:
@@ -76,7 +76,7 @@ def read_series(path: Path) -> tuple[Snapshot, ...]:
         ]
     except (ElementTree.ParseError, KeyError, ValueError) as reason:
         raise RunError(f"{path}: the file is no valid PVD collection ({reason}).") from None
-    return tuple(sorted(found, key=lambda snapshot: snapshot.time_s))
+    return tuple(found)  # not sorted: a load factor may fall
 
 
 def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
@@ -86,7 +86,11 @@ def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
 
 def read_matrix(path: Path) -> MatrixField:
     """Read a file of the matrix series: triangles, of six-node ones the corners."""
-    mesh = read_grid(path)
+    return matrix_field(read_grid(path), path)
+
+
+def matrix_field(mesh: Any, path: Path) -> MatrixField:
+    """Take the rock out of a pyvista mesh; `path` is for error messages."""
     if mesh.n_cells > 0 and mesh.celltypes[0] == _QUADRATIC_TRIANGLE:
         triangles = _cells(mesh, path, _QUADRATIC_TRIANGLE, 6, "six-node triangles")[:, :3]
     else:

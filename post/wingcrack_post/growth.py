@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.fields import IntArray
 from wingcrack_post.table import FloatArray
 
 _SAME = 1.0e-9  # relative difference of arc lengths that are equal
@@ -28,8 +29,8 @@ class Growth:
         Vertices at the start of the run [m].
     start, end : (m, 2) arrays
         Wings at the polyline's start and end: the fracture's initial end, then outwards [m].
-    start_s, end_s : (m - 1,) arrays
-        Time at which each segment of the wings had grown [s].
+    start_steps, end_steps : (m - 1,) arrays
+        Step of the network, from 0, in which each segment of the wings was there first.
     """
 
     number: int
@@ -37,8 +38,8 @@ class Growth:
     initial: FloatArray
     start: FloatArray
     end: FloatArray
-    start_s: FloatArray
-    end_s: FloatArray
+    start_steps: IntArray
+    end_steps: IntArray
 
 
 def read_growth(network: Mapping[str, Any]) -> list[Growth]:
@@ -69,15 +70,15 @@ def _growth(last: Mapping[str, Any], first: Mapping[str, Any], steps: Sequence[A
     counts = []
     for step in steps:
         item = next(one for one in step["fractures"] if one["fracture"] == number)
-        counts.append((moment_of(step), *_wings(item, initial)))
+        counts.append(_wings(item, initial))
     return Growth(
         number=int(number),
         name=str(last.get("name") or f"fracture {number}"),
         initial=initial,
         start=points[: at_start + 1][::-1],
         end=points[len(points) - at_end - 1 :],
-        start_s=_times([(time, start) for time, start, _ in counts], at_start),
-        end_s=_times([(time, end) for time, _, end in counts], at_end),
+        start_steps=_steps([start for start, _ in counts], at_start),
+        end_steps=_steps([end for _, end in counts], at_end),
     )
 
 
@@ -98,9 +99,9 @@ def _wings(item: Mapping[str, Any], initial: FloatArray) -> tuple[int, int]:
     return before, len(points) - len(initial) - before
 
 
-def _times(counts: Sequence[tuple[float, int]], wanted: int) -> FloatArray:
-    """Time at which the k-th vertex was there for the first time [s]."""
+def _steps(counts: Sequence[int], wanted: int) -> IntArray:
+    """Step in which the k-th vertex was there for the first time."""
     return np.array(
-        [next(time for time, count in counts if count > k) for k in range(wanted)],
-        dtype=np.float64,
+        [next(step for step, count in enumerate(counts) if count > k) for k in range(wanted)],
+        dtype=np.int64,
     )

@@ -15,16 +15,13 @@ from matplotlib.ticker import MaxNLocator
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import STEP_LABEL, abscissa, has_load, tip_steps
+from wingcrack_post.marks import mark_moments
 from wingcrack_post.read import Run, needed
+from wingcrack_post.scales import jump_scale, run_length_unit, without_round_off
+from wingcrack_post.states import growth_start
 from wingcrack_post.table import BoolArray, FloatArray, Table
-from wingcrack_post.times import growth_start
-from wingcrack_post.units import (
-    INTENSITY,
-    MEGAPASCAL,
-    METRE,
-    area_unit,
-    displacement_unit,
-)
+from wingcrack_post.tabulated import intensities_table, state_table
+from wingcrack_post.units import MEGAPASCAL, area_unit, displacement_unit, intensity_unit
 
 _MODES = (
     ("mode I", r"$K_\mathrm{I}$", "k1_pa_sqrtm", "k1_dc_pa_sqrtm", "k1_error_pa_sqrtm"),
@@ -33,6 +30,8 @@ _MODES = (
 )
 _MOST_MARKERS = 25  # per line: more run into each other
 _LEGEND_COLUMNS = 4
+_LONG_LABEL = 34  # characters
+_EQUAL = 0.01  # tips whose curves differ by less, of the largest in the panel, share one line
 
 
 @style.styled
@@ -45,23 +44,28 @@ def intensities(run: Run) -> Figure:
         If the run has no tips.
     """
     table = needed(run.tips, "tips.csv", "stress intensity factors")
+    if run.history.rows == 1:
+        return intensities_table(run)
     time, label = abscissa(run, table.moments())
     if has_load(run) and growth_start(run) is not None:
         time, label = tip_steps(run, table), STEP_LABEL
-    tips = _tips(table)
+    tips = _groups(table, _tips(table))
+    unit = intensity_unit(*(table.number(column) for _, _, column, _, _ in _MODES))
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     handles = _tip_handles(run, tips, toughness)
-    legend_rows = -(-len(handles) // _LEGEND_COLUMNS)
+    longest = max(len(str(handle.get_label())) for handle in handles)
+    columns = _LEGEND_COLUMNS if longest <= _LONG_LABEL else _LEGEND_COLUMNS // 2
+    legend_rows = -(-len(handles) // columns)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.45 + 0.17 * legend_rows)
     panels = list(figure.subplots(1, len(_MODES)))
     for axes, (title, symbol, integral, correlation, error) in zip(panels, _MODES, strict=True):
         for index, (_, rows) in enumerate(tips):
             look = style.line_look(index)
             marker = style.lone_marker(int(rows.sum()))
-            values = INTENSITY.of(table.number(integral)[rows])
+            values = unit.of(table.number(integral)[rows])
             axes.plot(time[rows], values, marker=marker, **look)
             if error is not None and table.has(error):
-                spread = INTENSITY.of(table.number(error)[rows])
+                spread = unit.of(table.number(error)[rows])
                 axes.fill_between(
                     time[rows],
                     values - spread,
@@ -74,7 +78,7 @@ def intensities(run: Run) -> Figure:
                 every = max(1, int(rows.sum()) // _MOST_MARKERS)
                 axes.plot(
                     time[rows],
-                    INTENSITY.of(table.number(correlation)[rows]),
+                    unit.of(table.number(correlation)[rows]),
                     linestyle="none",
                     marker="o",
                     markerfacecolor="none",
@@ -82,11 +86,12 @@ def intensities(run: Run) -> Figure:
                     markeredgewidth=0.7,
                     markevery=every,
                 )
-        _finish(axes, title, f"{symbol} [{INTENSITY.name}]", label)
+        _finish(axes, title, f"{symbol} [{unit.name}]", label)
+        style.steady(axes, [unit.of(table.number(integral))])
     if toughness is not None:
-        panels[-1].axhline(float(INTENSITY.of(toughness)), color="#555555", linewidth=0.8, ls="--")
+        panels[-1].axhline(float(unit.of(toughness)), color="#555555", linewidth=0.8, ls="--")
     style.letter(panels)
-    style.outside_legend(figure, handles, _LEGEND_COLUMNS)
+    style.outside_legend(figure, handles, columns)
     return figure
 
 
@@ -94,38 +99,43 @@ def intensities(run: Run) -> Figure:
 def development(run: Run) -> Figure:
     """Fracture length, well pressure (with a fluid), largest slip and opening, and the states."""
     table = run.history
+    if table.rows == 1:
+        return state_table(run)
     time, label = abscissa(run, table.moments())
-    marker = style.lone_marker(time.size)
     fluid = table.has("well_pressure_pa")
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
     panels = list((figure.subplots(2, 2) if fluid else figure.subplots(1, 3)).flat)
     length, jumps, states = panels[0], panels[-2], panels[-1]
-    values = METRE.of(table.number("fracture_length_m"))
-    length.plot(time, values, color=style.CYCLE[0], marker=marker)
-    _finish(length, "fracture length", "total length [m]", label)
+    unit = run_length_unit(run)
+    values = unit.of(table.number("fracture_length_m"))
+    length.plot(time, values, color=style.CYCLE[0])
+    style.steady(length, [values])
+    _finish(length, "fracture length", f"total length [{unit.name}]", label)
     if fluid:
         values = MEGAPASCAL.of(table.number("well_pressure_pa"))
-        panels[1].plot(time, values, color=style.CYCLE[0], marker=marker)
+        panels[1].plot(time, values, color=style.CYCLE[0])
         _finish(panels[1], "well pressure", "pressure [MPa]", label)
-    slip, opening = table.number("max_slip_m"), table.number("max_opening_m")
+    slip, opening = (
+        without_round_off(table.number(name), jump_scale(run))
+        for name in ("max_slip_m", "max_opening_m")
+    )
     unit = displacement_unit(slip, opening)
     # the colours of the states that go with them
     for name, jump, colour, dashes in (
         ("slip", slip, style.STATE_COLOURS["slip"], "-"),
         ("opening", opening, style.STATE_COLOURS["open"], "--"),
     ):
-        jumps.plot(time, unit.of(jump), dashes, color=colour, label=name, marker=marker)
+        jumps.plot(time, unit.of(jump), dashes, color=colour, label=name)
     jumps.legend()
     _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", label)
     _draw_states(states, table, time)
     _finish(states, "contact state", "fracture cells [-]", label)
-    _mark_growth(run, length, panels)
+    style.outside_legend(figure, mark_moments(run, panels), 3)
     style.letter(panels)
     return figure
 
 
 def _draw_states(axes: Axes, table: Table, time: FloatArray) -> None:
-    marker = style.lone_marker(time.size)
     for state in style.STATES:
         # a state holds for the step that ends at its time
         axes.step(
@@ -133,31 +143,11 @@ def _draw_states(axes: Axes, table: Table, time: FloatArray) -> None:
             table.number(f"n_{state}"),
             where="pre",
             color=style.STATE_COLOURS[state],
-            marker=marker,
             label=state,
         )
     axes.set_ylim(bottom=0.0)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend()
-
-
-def _mark_growth(run: Run, first: Axes, panels: Sequence[Axes]) -> None:
-    moment = growth_start(run)
-    if moment is None:
-        return
-    start = float(abscissa(run, np.array([moment]))[0][0])
-    for axes in panels:
-        axes.axvline(start, color="#999999", linewidth=0.7, linestyle=":")
-    first.annotate(
-        "first growth",
-        (start, 0.97),
-        xycoords=("data", "axes fraction"),
-        rotation=90,
-        va="top",
-        ha="right",
-        fontsize=6.5,
-        color="#555555",
-    )
 
 
 @style.styled
@@ -172,6 +162,8 @@ def balance(run: Run) -> Figure:
     table = run.history
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
+    if table.rows == 1:
+        raise AbsentError("the run has one state, so nothing has flowed yet")
     time, below = abscissa(run, table.moments())
     volume = table.number("fracture_volume_m2")
     series: list[tuple[str, FloatArray]] = [
@@ -182,21 +174,19 @@ def balance(run: Run) -> Figure:
     if table.has("prefilled_m2") and np.any(table.number("prefilled_m2") != 0.0):
         series.append(("prefilled new cells", table.number("prefilled_m2")))
     unit = area_unit(*(values for _, values in series))
-    marker = style.lone_marker(time.size)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.6)
     volumes, errors = figure.subplots(1, 2)
     for index, (label, values) in enumerate(series):
         dashes = style.LINE_STYLES[index % len(style.LINE_STYLES)]
-        volumes.plot(
-            time, unit.of(values), dashes, color=style.CYCLE[index], label=label, marker=marker
-        )
+        volumes.plot(time, unit.of(values), dashes, color=style.CYCLE[index], label=label)
     volumes.legend()
     _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", below)
     error = np.abs(table.number("mass_error_relative"))
     # zero cannot stand on a logarithmic axis; such steps are exact to round-off
     shown = np.maximum(error, np.finfo(float).eps)
-    errors.semilogy(time, shown, color=style.CYCLE[0], marker=marker)
+    errors.semilogy(time, shown, color=style.CYCLE[0])
     _finish(errors, "mass conservation", "relative mass error [-]", below)
+    style.outside_legend(figure, mark_moments(run, [volumes, errors]), 3)
     style.letter([volumes, errors])
     return figure
 
@@ -207,19 +197,48 @@ def _tips(table: Table) -> list[tuple[str, BoolArray]]:
     return [(str(name), names == name) for name in names[np.sort(first_rows)]]
 
 
+def _groups(
+    table: Table, tips: Sequence[tuple[str, BoolArray]]
+) -> list[tuple[list[str], BoolArray]]:
+    """Tips whose intensities are the same, as symmetry has it: one line for all, named so.
+
+    Gives the names of each group and the rows of its first tip.
+    """
+    columns = [table.number(column) for _, _, column, _, _ in _MODES]
+    largest = [float(np.nanmax(np.abs(values), initial=0.0)) for values in columns]
+    moments = table.moments()
+    groups: list[tuple[list[str], BoolArray]] = []
+    for name, rows in tips:
+        for names, first in groups:
+            if np.array_equal(moments[first], moments[rows]) and all(
+                np.all(np.abs(values[first] - values[rows]) <= _EQUAL * bound)
+                for values, bound in zip(columns, largest, strict=True)
+            ):
+                names.append(name)
+                break
+        else:
+            groups.append(([name], rows))
+    return groups
+
+
+def _group_label(run: Run, table: Table, names: Sequence[str]) -> str:
+    """Call tips by number and fracture."""
+    tips, fractures = table.text("tip"), table.text("fracture")
+    owners: dict[str, list[str]] = {}
+    for name in names:
+        owner = run.fracture_name(str(fractures[np.argmax(tips == name)]))
+        owners.setdefault(owner, []).append(name)
+    parts = [f"{', '.join(mine)} ({owner})" for owner, mine in owners.items()]
+    return f"{'tip' if len(names) == 1 else 'tips'} {', '.join(parts)}"
+
+
 def _tip_handles(
-    run: Run, tips: Sequence[tuple[str, BoolArray]], toughness: float | None
+    run: Run, tips: Sequence[tuple[list[str], BoolArray]], toughness: float | None
 ) -> list[Artist]:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
-    fractures = table.text("fracture")
     handles: list[Artist] = [
-        Line2D(
-            [],
-            [],
-            **style.line_look(index),
-            label=f"tip {name} ({run.fracture_name(str(fractures[rows][0]))})",
-        )
-        for index, (name, rows) in enumerate(tips)
+        Line2D([], [], **style.line_look(index), label=_group_label(run, table, names))
+        for index, (names, _) in enumerate(tips)
     ]
     handles.append(Line2D([], [], color="#555555", label="lines: interaction integral"))
     handles.append(

@@ -9,9 +9,10 @@ from matplotlib.ticker import MaxNLocator
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.read import Run
+from wingcrack_post.scales import run_length_unit
+from wingcrack_post.states import growth_start
 from wingcrack_post.table import FloatArray, Table
-from wingcrack_post.times import growth_start
-from wingcrack_post.units import length_unit, time_unit
+from wingcrack_post.units import time_unit
 
 LOAD_LABEL = "load factor [-]"
 STEP_LABEL = "step [-]"
@@ -22,17 +23,17 @@ def has_load(run: Run) -> bool:
     return run.history.has("load_factor")
 
 
-def abscissa(run: Run, time_s: FloatArray) -> tuple[FloatArray, str]:
+def abscissa(run: Run, moments: FloatArray) -> tuple[FloatArray, str]:
     """Give what stands below curves: time in a unit that reads well, or the load factor."""
     if has_load(run):
-        return time_s, LOAD_LABEL
+        return moments, LOAD_LABEL
     clock = time_unit(float(run.history.moments()[-1]))
-    return clock.of(time_s), f"time [{clock.name}]"
+    return clock.of(moments), f"time [{clock.name}]"
 
 
-def moment_label(run: Run, time_s: float) -> str:
+def moment_label(run: Run, moment: float) -> str:
     """How a title calls a moment of the run."""
-    value, label = abscissa(run, np.array([time_s]))
+    value, label = abscissa(run, np.array([moment]))
     if has_load(run):
         return f"load factor {value[0]:.4g}"
     return f"$t$ = {value[0]:.4g} {label[6:-1]}"
@@ -63,7 +64,7 @@ def load_figure(run: Run) -> Figure:
         raise AbsentError("nothing has grown")
     load = run.history.number("load_factor")
     length = run.history.number("fracture_length_m")
-    unit = length_unit(length)
+    unit = run_length_unit(run)
     steps = np.arange(1, load.size + 1)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.5)
     against, rising, growing = figure.subplots(1, 3)

@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
@@ -79,21 +79,22 @@ def draw_network(
         For the outline of the body.
     """
     box = _box(growths, scene)
-    unit = length_unit(box[1] - box[0], box[3] - box[2])
+    # that of the body, as in all other maps, not of the part in view
+    unit = length_unit(box if scene is None or scene.outline is None else scene.outline)
     if scene is not None and scene.outline is not None:
         x, y = unit.of(scene.outline).T
         axes.plot(x, y, color="#888888", linewidth=0.8, zorder=1)
-    times = sorted({moment_of(step) for step in network["steps"][1:]})
     order = _order(growths)
     norm = Normalize(1, max([2, *order.values()]))
     colours = style.time_colours()
     for item in growths:
         axes.plot(*unit.of(item.initial).T, color=INITIAL, lw=THICK, zorder=3)
-        for points, moments, wing in ((item.start, item.start_s, 0), (item.end, item.end_s, 1)):
+        wings = ((item.start, item.start_steps), (item.end, item.end_steps))
+        for wing, (points, steps) in enumerate(wings):
             if len(points) < 2:
                 continue
             pieces = unit.of(np.stack((points[:-1], points[1:]), axis=1))
-            numbers = [order[item.number, wing, k] for k in range(len(moments))]
+            numbers = [order[item.number, wing, k] for k in range(len(steps))]
             lines = LineCollection(
                 list(pieces),
                 colors=[colours(norm(number)) for number in numbers],
@@ -112,23 +113,23 @@ def draw_network(
     axes.set_xlabel(f"$x$ [{unit.name}]")
     axes.set_ylabel(f"$y$ [{unit.name}]")
     axes.locator_params(nbins=5)
-    if times:
-        _colour_bar(axes, norm, order, growths, history)
-    _legend(axes, bool(network.get("joints")))
+    if order:
+        _colour_bar(axes, norm, order, growths, network, history)
+    _legend(axes, has_growth=bool(order), has_joints=bool(network.get("joints")))
 
 
 def _order(growths: Sequence[Growth]) -> dict[tuple[int, int, int], int]:
     """Number of the increment, from 1, that made each segment (fracture, wing, segment).
 
-    At one load several increments may follow each other: the k-th segments of all wings that grew
-    at the same load belong to the k-th of them.
+    In one step several increments may follow each other: the k-th segments of all wings that grew
+    in it belong to the k-th of them.
     """
-    keyed: dict[tuple[int, int, int], tuple[float, int]] = {}
+    keyed: dict[tuple[int, int, int], tuple[int, int]] = {}
     for item in growths:
-        for wing, moments in enumerate((item.start_s, item.end_s)):
-            for k, moment in enumerate(moments):
-                first = int(np.searchsorted(moments, moment))
-                keyed[item.number, wing, k] = (float(moment), k - first)
+        for wing, steps in enumerate((item.start_steps, item.end_steps)):
+            for k, step in enumerate(steps):
+                first = int(np.searchsorted(steps, step))
+                keyed[item.number, wing, k] = (int(step), k - first)
     ranks = {key: rank for rank, key in enumerate(sorted(set(keyed.values())), start=1)}
     return {piece: ranks[key] for piece, key in keyed.items()}
 
@@ -138,41 +139,56 @@ def _colour_bar(
     norm: Normalize,
     order: Mapping[tuple[int, int, int], int],
     growths: Sequence[Growth],
+    network: Mapping[str, Any],
     history: Table,
 ) -> None:
+    when = [moment_of(step) for step in network["steps"]]
     moments: dict[int, float] = {}
     for item in growths:
-        for wing, times in enumerate((item.start_s, item.end_s)):
-            moments |= {order[item.number, wing, k]: float(t) for k, t in enumerate(times)}
-    if not moments:
-        return
-    time = history.moments()
-    if history.has("load_factor"):
-        loads, label = history.number("load_factor"), "increment of growth (load factor)"
-        unit = Unit("", 1.0)
-    else:
-        unit = time_unit(float(time[-1]))
-        loads, label = time, f"increment of growth (time [{unit.name}])"
-
-    def text(value: float, _position: int) -> str:
-        moment = moments.get(round(value))
-        if moment is None:
-            return f"{value:g}"
-        return f"{value:g} ({float(unit.of(np.interp(moment, time, loads))):.3g})"
-
+        for wing, steps in enumerate((item.start_steps, item.end_steps)):
+            moments |= {order[item.number, wing, k]: when[step] for k, step in enumerate(steps)}
+    unit, what = Unit("", 1.0), "load factor"
+    if not history.has("load_factor"):
+        unit = time_unit(float(history.moments()[-1]))
+        what = f"time [{unit.name}]"
+    values = {number: float(unit.of(moment)) for number, moment in moments.items()}
     bar = axes.figure.colorbar(
         ScalarMappable(norm, style.time_colours()), ax=axes, aspect=30, pad=0.03, shrink=0.9
     )
-    bar.set_label(label)
-    bar.ax.yaxis.set_major_locator(MaxNLocator(6, integer=True))
-    bar.ax.yaxis.set_major_formatter(FuncFormatter(text))
+    places = MaxNLocator(6, integer=True).tick_values(1, max(values))
+    ticks = [1, *(round(place) for place in places if 1 < place <= max(values))]
+    bar.set_ticks(ticks, labels=_tick_labels(ticks, values))
+    bar.set_label(f"increment of growth ({what}{_constant_from(values)})")
+    if len(set(values.values())) == 1:
+        single = f"{what} {values[1]:.3g}" if unit.name == "" else f"{values[1]:.3g} {unit.name}"
+        bar.set_ticks(ticks, labels=[f"{tick}" for tick in ticks])
+        bar.set_label(f"increment of growth (all at {single})")
 
 
-def _legend(axes: Axes, has_joints: bool) -> None:
-    handles = [
-        Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start"),
-        Line2D([], [], color=style.time_colours()(0.5), linewidth=THIN, label="grown"),
-    ]
+def _tick_labels(ticks: Sequence[int], values: Mapping[int, float]) -> list[str]:
+    """Number of the increment, with the load or time where it differs from the tick before."""
+    labels, before = [], ""
+    for tick in ticks:
+        text = f"{values[tick]:.3g}" if tick in values else ""
+        labels.append(f"{tick} ({text})" if text and text != before else f"{tick}")
+        before = text or before
+    return labels
+
+
+def _constant_from(values: Mapping[int, float]) -> str:
+    """Say from which increment on the value stays, where growth went on by itself."""
+    numbers = sorted(values)
+    changed = [number for number in numbers if values[number] != values[numbers[-1]]]
+    if not changed or numbers[-1] - changed[-1] < 3:
+        return ""
+    return f", constant from {changed[-1] + 1} on"
+
+
+def _legend(axes: Axes, *, has_growth: bool, has_joints: bool) -> None:
+    handles = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
+    if has_growth:
+        colour = style.time_colours()(0.5)
+        handles.append(Line2D([], [], color=colour, linewidth=THIN, label="grown"))
     if has_joints:
         look: dict[str, Any] = {"mfc": "white", "mec": "#D55E00", "mew": 0.9, "ms": 4}
         handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matplotlib.figure import Figure
@@ -10,9 +11,11 @@ from matplotlib.lines import Line2D
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import abscissa
+from wingcrack_post.marks import mark_moments
 from wingcrack_post.read import Run, needed
 from wingcrack_post.table import Table
-from wingcrack_post.units import MEGAPASCAL, displacement_unit
+from wingcrack_post.tabulated import table_figure
+from wingcrack_post.units import MEGAPASCAL, displacement_unit, stress_unit
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,8 @@ def probe_histories(run: Run) -> Figure:
     if not names:
         raise AbsentError("probes.csv has no probe points")
     quantities = [q for q in _QUANTITIES if any(table.has(names[0] + end) for end, _ in q.parts)]
+    if table.rows == 1:
+        return _values_table(table, names, quantities)
     time, below = abscissa(run, table.moments())
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
     panels = list(figure.subplots(1, len(quantities), squeeze=False).flat)
@@ -77,14 +82,30 @@ def probe_histories(run: Run) -> Figure:
                     unit.of(table.number(name + end)),
                     linestyle=style.LINE_STYLES[part],
                     color=style.CYCLE[index % len(style.CYCLE)],
-                    marker=style.lone_marker(time.size),
                 )
         axes.set_title(quantity.title)
         axes.set_ylabel(f"{quantity.label} [{unit.name}]")
         axes.set_xlabel(below)
     style.letter(panels)
-    style.outside_legend(figure, _handles(names, quantities), 6)
+    handles = [*_handles(names, quantities), *mark_moments(run, panels)]
+    style.outside_legend(figure, handles, 6 if len(handles) <= 6 else 4)
     return figure
+
+
+def _values_table(table: Table, names: Sequence[str], quantities: Sequence[_Quantity]) -> Figure:
+    """All values of a run of one state."""
+    head, units = ["probe"], []
+    for quantity in quantities:
+        columns = [name + end for name in names for end, _ in quantity.parts]
+        fitting = stress_unit if quantity.stress else displacement_unit
+        unit = fitting(*(table.number(column) for column in columns))
+        head += [f"{symbol} [{unit.name}]" for _, symbol in quantity.parts]
+        units += [(end, unit) for end, _ in quantity.parts]
+    rows = [
+        [name, *(f"{float(unit.of(table.number(name + end))[0]):.5g}" for end, unit in units)]
+        for name in names
+    ]
+    return table_figure("values at the probe points", head, rows)
 
 
 def _handles(names: list[str], quantities: list[_Quantity]) -> list[Line2D]:

@@ -4,20 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter
 
 from wingcrack_post import style
 from wingcrack_post.load import moment_label
 from wingcrack_post.read import Run, needed
+from wingcrack_post.scales import (
+    jump_scale,
+    run_length_unit,
+    traction_scale,
+    without_round_off,
+)
+from wingcrack_post.states import select_states
 from wingcrack_post.table import BoolArray, FloatArray, Table
-from wingcrack_post.times import select_times
-from wingcrack_post.units import MEGAPASCAL, displacement_unit
+from wingcrack_post.units import Unit, displacement_unit, stress_unit
 
 DEFAULT_COUNT = 8
+_DASHED: dict[str, Any] = {"linestyle": (0, (3, 2)), "linewidth": 0.8}
+_FAR = 10.0  # largest over smallest aperture from which their axis is logarithmic
 
 
 @dataclass(frozen=True)
@@ -56,6 +66,16 @@ def fracture_profiles(run: Run, wanted_s: Sequence[float] = ()) -> Iterator[tupl
         yield str(label), _profile(run, table, str(label), labels == label, wanted_s)
 
 
+def state_numbers(moments: FloatArray, s: FloatArray) -> FloatArray:
+    """Number of the written state of each row of one fracture, from 0.
+
+    A new state begins where the moment changes, and where the arc length starts again: several
+    states can share a load factor.
+    """
+    begins = (np.diff(moments) != 0.0) | (np.diff(s) <= 0.0)
+    return np.concatenate(([0.0], np.cumsum(begins)))
+
+
 def arc_length(time: FloatArray, s: FloatArray, xy: FloatArray) -> FloatArray:
     """Arc length with an origin that stays in place when the fracture grows at its start.
 
@@ -89,39 +109,59 @@ def _arc_length_at(point: FloatArray, s: FloatArray, xy: FloatArray) -> float:
 def _profile(
     run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
 ) -> Figure:
-    time = table.moments()[mine]
+    moments, s = table.moments()[mine], table.number("s_m")[mine]
     xy = np.column_stack((table.number("x_m")[mine], table.number("y_m")[mine]))
-    s = arc_length(time, table.number("s_m")[mine], xy)
+    states = state_numbers(moments, s)
+    s = arc_length(states, s, xy)
     panels = list(_PANELS)
     if table.has("pressure_pa", "aperture_m"):
         panels = [_FLUID_PANELS[0], *_PANELS[:2], _FLUID_PANELS[1], *_PANELS[2:]]
     columns = len(panels) // 2
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
     axes = list(figure.subplots(2, columns, sharex=True).flat)
-    times = select_times(run, time, DEFAULT_COUNT, wanted_s)
-    colours = style.ordered_colours(len(times))
-    initial = s[time == time[0]]
+    written = moments[np.searchsorted(states, np.unique(states))]
+    chosen = select_states(run, written, DEFAULT_COUNT, wanted_s)
+    colours = style.ordered_colours(len(chosen))
+    length = run_length_unit(run)
+    initial = length.of(s[states == 0.0])
+    lines = [np.flatnonzero(states == state) for state in chosen]
+    lines = [rows[np.argsort(s[rows])] for rows in lines]
+    place = length.of(s)
     for panel, axis in zip(panels, axes, strict=True):
-        values = table.number(panel.column)[mine]
-        unit = MEGAPASCAL if panel.stress else displacement_unit(values)
-        for moment, colour in zip(times, colours, strict=True):
-            rows = np.flatnonzero(time == moment)
-            rows = rows[np.argsort(s[rows])]
+        scale = traction_scale(run) if panel.stress else jump_scale(run)
+        values = without_round_off(table.number(panel.column)[mine], scale)
+        shown = [values[rows] for rows in lines]
+        unit = stress_unit(*shown) if panel.stress else _jump_unit(panel, axis, shown)
+        for rows, colour in zip(lines, colours, strict=True):
             marker = style.lone_marker(rows.size)
-            axis.plot(s[rows], unit.of(values[rows]), color=colour, marker=marker)
+            axis.plot(place[rows], unit.of(values[rows]), color=colour, marker=marker)
         axis.set_title(panel.title)
         axis.set_ylabel(f"{panel.label} [{unit.name}]")
+        style.steady(axis, [unit.of(value) for value in shown])
         _mark_initial_ends(axis, initial)
     friction = _friction(run, label)
     if friction is not None:
-        _draw_bound(axes[-1], table, mine, s, times, colours, friction)
+        bound = _bound(run, table, mine, friction)
+        for rows, colour in zip(lines, colours, strict=True):
+            axes[-1].plot(place[rows], unit.of(bound[rows]), color=colour, **_DASHED)
     for axis in axes[columns:]:
-        axis.set_xlabel("distance along the fracture [m]")
+        axis.set_xlabel(f"distance along the fracture [{length.name}]")
     style.letter(axes)
     figure.suptitle(run.fracture_name(label), fontsize=9)
-    names = [moment_label(run, moment) for moment in times]
+    names = [moment_label(run, float(written[state])) for state in chosen]
     style.outside_legend(figure, _time_handles(names, colours, friction), 4)
     return figure
+
+
+def _jump_unit(panel: _Panel, axis: Axes, shown: Sequence[FloatArray]) -> Unit:
+    """Unit of a jump; apertures of new wings beside much wider ones get a logarithmic axis."""
+    values = np.concatenate(shown)
+    smallest = float(np.nanmin(values))
+    if panel.column != "aperture_m" or not 0.0 < _FAR * smallest < float(np.nanmax(values)):
+        return displacement_unit(values)
+    axis.set_yscale("log")
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    return displacement_unit(smallest)
 
 
 def _mark_initial_ends(axis: Axes, initial_s: FloatArray) -> None:
@@ -139,27 +179,13 @@ def _friction(run: Run, label: str) -> float | None:
     return law.friction if law and law.friction else None
 
 
-def _draw_bound(
-    axis: Axes,
-    table: Table,
-    mine: BoolArray,
-    s: FloatArray,
-    times: Sequence[float],
-    colours: Sequence[tuple[float, float, float, float]],
-    friction: float,
-) -> None:
-    """Dash mu_s |f_n| on the side of zero where the tangential traction is."""
-    time = table.moments()[mine]
-    normal = table.number("traction_n_pa")[mine]
-    tangential = table.number("traction_t_pa")[mine]
+def _bound(run: Run, table: Table, mine: BoolArray, friction: float) -> FloatArray:
+    """Friction bound mu_s |f_n| on the side of zero where the tangential traction is [Pa]."""
+    scale = traction_scale(run)
+    normal = without_round_off(table.number("traction_n_pa")[mine], scale)
+    tangential = without_round_off(table.number("traction_t_pa")[mine], scale)
     side = -1.0 if np.nansum(tangential) < 0.0 else 1.0
-    bound = side * friction * np.maximum(0.0, -normal)
-    for moment, colour in zip(times, colours, strict=True):
-        rows = np.flatnonzero(time == moment)
-        rows = rows[np.argsort(s[rows])]
-        axis.plot(
-            s[rows], MEGAPASCAL.of(bound[rows]), color=colour, linestyle=(0, (3, 2)), linewidth=0.8
-        )
+    return np.asarray(side * friction * np.maximum(0.0, -normal))
 
 
 def _time_handles(
@@ -173,7 +199,5 @@ def _time_handles(
     ]
     if friction is not None:
         bound = rf"friction bound $\mu_s |f_n|$, $\mu_s$ = {friction:g}"
-        handles.append(
-            Line2D([], [], color="#555555", linestyle=(0, (3, 2)), linewidth=0.8, label=bound)
-        )
+        handles.append(Line2D([], [], color="#555555", label=bound, **_DASHED))
     return handles

@@ -12,12 +12,20 @@ import numpy as np
 
 from wingcrack_post import style
 from wingcrack_post.errors import EnvironmentLacksError, RunError
-from wingcrack_post.fields import cell_values, fracture_field, load_pyvista, nearest, read_grid
+from wingcrack_post.fields import (
+    cell_values,
+    fracture_field,
+    load_pyvista,
+    matrix_field,
+    nearest,
+    read_grid,
+)
+from wingcrack_post.frames import Window, extent, usual_limit, zoom_window
 from wingcrack_post.load import moment_label
-from wingcrack_post.maps import Window, zoom_window
 from wingcrack_post.read import Run, read_run
+from wingcrack_post.stress import MEAN_COLOURS, mean_stress
 from wingcrack_post.table import FloatArray
-from wingcrack_post.units import MEGAPASCAL
+from wingcrack_post.units import MEGAPASCAL, stress_unit
 from wingcrack_post.view import BAD_INPUT, LACKING
 
 WARP_SHARE = 0.03  # the largest displacement is drawn as this share of the body's width
@@ -41,17 +49,20 @@ class _Scenery:
     body: Any  # pyvista mesh, moved by the displacements
     lines: Any  # pyvista mesh of the fractures, moved likewise; None without fractures
     quantity: str  # what colours the body, with its unit
+    colours: str  # colour map
+    limits: tuple[float, float] | None  # of the colours; None for all values
     factor: float  # how much larger than in truth displacements are drawn
     views: Sequence[Window]
 
 
-def render(run: Run, target: Path, time_s: float) -> None:
+def render(run: Run, target: Path, place: int) -> None:
     """Make the picture in this process, which has to have OpenGL.
 
-    On the left the whole body, on the right (where the fractures are small) what is near them.
+    `place` is that of the written state, from 0. On the left the whole body, on the right (where
+    the fractures are small) what is near them.
     """
     pyvista = load_pyvista()
-    scenery = _scenery(run, time_s)
+    scenery = _scenery(run, place)
     panels = len(scenery.views)
     plotter = pyvista.Plotter(
         off_screen=True,
@@ -64,7 +75,7 @@ def render(run: Run, target: Path, time_s: float) -> None:
         _draw_panel(plotter, scenery, panel)
     plotter.subplot(0, 0)
     plotter.add_text(
-        f"{run.name}, {moment_label(run, time_s).replace('$', '')}, "
+        f"{run.name}, {moment_label(run, run.matrix[place].time_s).replace('$', '')}, "
         f"displacements x {scenery.factor:.3g}",
         position=(0.06, 0.95),
         viewport=True,
@@ -75,28 +86,35 @@ def render(run: Run, target: Path, time_s: float) -> None:
     plotter.close()
 
 
-def _scenery(run: Run, time_s: float) -> _Scenery:
-    path = nearest(run.matrix, time_s).path
+def _scenery(run: Run, place: int) -> _Scenery:
+    snapshot = run.matrix[place]
+    path = snapshot.path
     matrix = read_grid(path)
     body, factor = deformed(matrix, path)
     if "pressure" in matrix.cell_data:
         quantity, values = "pore pressure [MPa]", cell_values(matrix, path, "pressure")
+        unit, colours, limits = MEGAPASCAL, style.FIELD_COLOURS, None
     else:
-        stress = cell_values(matrix, path, "stress")
-        quantity, values = "mean in-plane stress [MPa]", stress[:, :2].mean(axis=1)
-    body.cell_data[_VALUE] = MEGAPASCAL.of(values)
+        cell_values(matrix, path, "stress")  # a run without it is refused by name
+        field = matrix_field(matrix, path)
+        values = mean_stress(field)
+        limit = usual_limit(field, values, extent([field])) or 1.0
+        unit, colours = stress_unit(limit), MEAN_COLOURS
+        quantity = f"mean in-plane stress [{unit.name}]"
+        limits = (-float(unit.of(limit)), float(unit.of(limit)))
+    body.cell_data[_VALUE] = unit.of(values)
     x_min, x_max, y_min, y_max = body.bounds[:4]
     whole = Window(x_min, x_max, y_min, y_max)
     if not run.fracture_fields:
-        return _Scenery(body, None, quantity, factor, [whole])
-    path = nearest(run.fracture_fields, time_s).path
+        return _Scenery(body, None, quantity, colours, limits, factor, [whole])
+    path = nearest(run.fracture_fields, snapshot.time_s).path
     lines = read_grid(path)
     if lines.n_cells == 0:
-        return _Scenery(body, None, quantity, factor, [whole])
+        return _Scenery(body, None, quantity, colours, limits, factor, [whole])
     lines.points = lines.points + factor * displacement_at(lines.points, matrix, body)
     zoom = zoom_window(whole, [fracture_field(lines, path)])
     views = [whole] if zoom is None else [whole, zoom]
-    return _Scenery(body, lines, quantity, factor, views)
+    return _Scenery(body, lines, quantity, colours, limits, factor, views)
 
 
 def deformed(matrix: Any, path: Path) -> tuple[Any, float]:
@@ -132,7 +150,8 @@ def _draw_panel(plotter: Any, scenery: _Scenery, panel: int) -> None:
     plotter.add_mesh(
         scenery.body.copy(),
         scalars=_VALUE,
-        cmap=style.FIELD_COLOURS,
+        cmap=scenery.colours,
+        clim=scenery.limits,
         show_edges=panel > 0,
         edge_color="white",
         edge_opacity=0.15,
@@ -178,10 +197,10 @@ def _aim(plotter: Any, view: Window) -> None:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Draw one view: directory of the run, picture, time in seconds."""
-    directory, target, time = arguments
+    """Draw one view: directory of the run, picture, place of the written state."""
+    directory, target, place = arguments
     try:
-        render(read_run(directory), Path(target), float(time))
+        render(read_run(directory), Path(target), int(place))
     except RunError as reason:
         print(reason, file=sys.stderr)
         return BAD_INPUT

@@ -1,4 +1,4 @@
-"""The few values of ``scene.nml`` that figures show beside the results: toughness and friction."""
+"""The few values of ``scene.nml`` that figures show or use beside the results."""
 
 from __future__ import annotations
 
@@ -25,6 +25,14 @@ class FractureLaw:
 
 
 @dataclass(frozen=True)
+class Well:
+    """When one injection starts and, unless it lasts to the end of the run, when it stops [s]."""
+
+    start_s: float
+    stop_s: float | None
+
+
+@dataclass(frozen=True)
 class Scene:
     """What figures use of a scene.
 
@@ -37,6 +45,15 @@ class Scene:
         In the order of the file, which is the order of the numbers in the results.
     outline : (n, 2) array or None
         Closed line around the body [m]; None if the scene does not tell it.
+    young_pa : float or None
+        Young's modulus [Pa].
+    step_s : float or None
+        Regular time step [s]; None without a fluid.
+    wells : tuple of Well
+        Injections.
+    load_pa, load_name : float or None, str
+        Stress that stands for the load, at load factor 1 [Pa], and how it is called; None where
+        the scene has no load of a kind for which there is one.
     """
 
     name: str
@@ -44,6 +61,11 @@ class Scene:
     toughness_pa_sqrtm: float | None
     fractures: tuple[FractureLaw, ...]
     outline: FloatArray | None = None
+    young_pa: float | None = None
+    step_s: float | None = None
+    wells: tuple[Well, ...] = ()
+    load_pa: float | None = None
+    load_name: str = ""
 
     def fracture(self, label: str) -> FractureLaw | None:
         """The law of a fracture known by its name or by its number from 1."""
@@ -86,21 +108,58 @@ def read_scene(path: Path) -> Scene | None:
         return None
     except (OSError, UnicodeDecodeError) as reason:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
-    toughness: float | None = None
-    name = title = ""
-    outline: FloatArray | None = None
-    fractures = []
-    for group, values in read_groups(text):
-        if group == "scene":
-            name, title = _text(values, "name"), _text(values, "title")
-        elif group == "domain":
-            outline = _outline(path, values)
-        elif group == "material":
-            toughness = _number(path, group, values, "toughness")
-        elif group == "fracture":
-            friction = _number(path, group, values, "friction")
-            fractures.append(FractureLaw(_text(values, "name"), friction))
-    return Scene(name, title, toughness, tuple(fractures), outline)
+    groups = read_groups(text)
+    first: dict[str, dict[str, list[str]]] = {}
+    for group, values in groups:
+        first.setdefault(group, values)
+
+    def number(group: str, key: str) -> float | None:
+        return _number(path, group, first.get(group, {}), key)
+
+    laws = [
+        FractureLaw(_text(values, "name"), _number(path, group, values, "friction"))
+        for group, values in groups
+        if group == "fracture"
+    ]
+    wells = [
+        Well(
+            _number(path, group, values, "start") or 0.0,
+            _number(path, group, values, "end"),
+        )
+        for group, values in groups
+        if group == "injection"
+    ]
+    load, load_name = _load(path, groups)
+    return Scene(
+        name=_text(first.get("scene", {}), "name"),
+        title=_text(first.get("scene", {}), "title"),
+        toughness_pa_sqrtm=number("material", "toughness"),
+        fractures=tuple(laws),
+        outline=_outline(path, first["domain"]) if "domain" in first else None,
+        young_pa=number("material", "young"),
+        step_s=number("time", "step"),
+        wells=tuple(wells),
+        load_pa=load,
+        load_name=load_name,
+    )
+
+
+def _load(path: Path, groups: list[tuple[str, dict[str, list[str]]]]) -> tuple[float | None, str]:
+    """Stress that stands for the load [Pa]: P / (pi R) of a disc, else the largest traction."""
+
+    def largest(group: str, *keys: str) -> float:
+        found = [_number(path, name, v, key) for name, v in groups if name == group for key in keys]
+        return max((abs(value) for value in found if value is not None), default=0.0)
+
+    force, radius = largest("point_load", "x_force", "y_force"), largest("domain", "radius")
+    if force > 0.0:
+        return (force / (np.pi * radius), r"$P/(\pi R)$") if radius > 0.0 else (None, "")
+    sides = ("x_traction", "y_traction", "normal_traction", "shear_traction")
+    traction = largest("side", *sides)
+    if traction > 0.0:
+        return traction, "largest traction on a side"
+    pressure = largest("fracture", "face_pressure")
+    return (pressure, "largest pressure on faces") if pressure > 0.0 else (None, "")
 
 
 def _outline(path: Path, values: dict[str, list[str]]) -> FloatArray | None:

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any, Literal, ParamSpec, TypeVar
 
 import matplotlib
+import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
@@ -27,11 +29,14 @@ LINE_STYLES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files
 STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
 
+STEADY = 1.0e-6  # share of the values below which their differences say nothing
+
 FIELD_COLOURS = "cividis"
 FORMATS = ("png", "pdf")
 
 RC: dict[Any, Any] = {
     "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,  # a tick says its whole value
     "axes.grid": True,
     "axes.labelsize": 8,
     "axes.linewidth": 0.6,
@@ -48,7 +53,8 @@ RC: dict[Any, Any] = {
     "grid.color": "#DDDDDD",
     "grid.linewidth": 0.4,
     "legend.fontsize": 7,
-    "legend.frameon": False,
+    "legend.edgecolor": "none",
+    "legend.framealpha": 0.8,
     "legend.handlelength": 1.8,
     "lines.linewidth": 1.2,
     "lines.markersize": 3,
@@ -82,10 +88,13 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def line_look(index: int) -> dict[str, Any]:
-    """Colour and dash pattern of the line with this number: 28 that differ."""
+    """Colour and dash pattern of the line with this number: 28 that differ.
+
+    Neighbours differ in both, so that a line on top of another one lets it be seen.
+    """
     return {
         "color": CYCLE[index % len(CYCLE)],
-        "linestyle": LINE_STYLES[index // len(CYCLE) % len(LINE_STYLES)],
+        "linestyle": LINE_STYLES[index % len(LINE_STYLES)],
     }
 
 
@@ -113,6 +122,20 @@ def letter(axes: Sequence[Axes]) -> None:
         axis.set_title(f"({chr(ord('a') + index)})  {title}".rstrip(), loc="left")
 
 
+def steady(axes: Axes, values: Sequence[npt.ArrayLike]) -> None:
+    """Limits for curves that are zero, or that differ by round-off only: not those of the noise."""
+    found = np.concatenate([np.ravel(np.asarray(value, dtype=float)) for value in values])
+    found = found[np.isfinite(found)]
+    if found.size == 0:
+        return
+    largest = float(np.abs(found).max())
+    if largest == 0.0:
+        axes.set_ylim(-1.0, 1.0)
+        axes.text(0.5, 0.6, "zero", transform=axes.transAxes, ha="center", color="#555555")
+    elif float(np.ptp(found)) <= STEADY * largest:
+        axes.set_ylim(*sorted((0.9 * found[0], 1.1 * found[0])))
+
+
 def state_handles(line_width: float = 2.0) -> list[Line2D]:
     """Entries of the legend that tells stick, slip and open."""
     return [
@@ -122,7 +145,9 @@ def state_handles(line_width: float = 2.0) -> list[Line2D]:
 
 
 def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
-    """Legend below all panels."""
+    """Legend below all panels; none without entries."""
+    if not handles:
+        return
     figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
 
 
@@ -133,16 +158,23 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     A file appears whole (written aside, then renamed) and holds no date, so that the same run
     gives the same bytes.
     """
-    written = []
     stem.parent.mkdir(parents=True, exist_ok=True)
-    for form in formats:
-        target = stem.with_name(f"{stem.name}.{form}")
-        aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
-        metadata = {"CreationDate": None} if form == "pdf" else {"Software": None}
-        try:
-            figure.savefig(aside, format=form, metadata=metadata)
-            aside.replace(target)
-        finally:
-            aside.unlink(missing_ok=True)
-        written.append(target)
-    return written
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)  # once for all formats: with an engine left, each is drawn twice
+    with matplotlib.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+        return [_written(figure, stem, form) for form in formats]
+
+
+def _written(figure: Figure, stem: Path, form: str) -> Path:
+    """Write a figure that is laid out in one format."""
+    target = stem.with_name(f"{stem.name}.{form}")
+    aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
+    metadata = {"CreationDate": None} if form == "pdf" else {"Software": None}
+    try:
+        figure.savefig(aside, format=form, metadata=metadata)
+        aside.replace(target)
+    finally:
+        aside.unlink(missing_ok=True)
+    return target

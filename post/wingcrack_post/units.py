@@ -25,10 +25,9 @@ class Unit:
 
 METRE = Unit("m", 1.0)
 MEGAPASCAL = Unit("MPa", 1e6)
-INTENSITY = Unit(r"MPa$\,\sqrt{\mathrm{m}}$", 1e6)
 
 _SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9))
-_STRESSES = (Unit("GPa", 1e9), MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
+_STRESSES = (MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
 _AREAS = (Unit("m²", 1.0), Unit("cm²", 1e-4), Unit("mm²", 1e-6))
 _TIMES = tuple(Unit(name, SECONDS[name]) for name in ("h", "min", "s"))
 
@@ -39,7 +38,7 @@ def time_unit(end_s: float) -> Unit:
 
 
 def length_unit(*values: npt.ArrayLike) -> Unit:
-    """Unit of the axes of a map: metres, for bodies below half a metre millimetres."""
+    """Unit of the axes of a map: metres; millimetres if no coordinate reaches half a metre."""
     largest = max(float(np.max(np.abs(np.asarray(value, dtype=float)))) for value in values)
     return METRE if largest >= 0.5 else _SMALL_LENGTHS[1]
 
@@ -54,6 +53,12 @@ def stress_unit(*values: npt.ArrayLike) -> Unit:
     return _fitting(_STRESSES, values)
 
 
+def intensity_unit(*values: npt.ArrayLike) -> Unit:
+    """Unit in which the largest stress intensity is at least one tenth."""
+    stress = _fitting(_STRESSES, values)
+    return Unit(rf"{stress.name}$\,\sqrt{{\mathrm{{m}}}}$", stress.size)
+
+
 def area_unit(*values: npt.ArrayLike) -> Unit:
     """Unit for volumes per metre of thickness."""
     return _fitting(_AREAS, values)
@@ -63,5 +68,5 @@ def _fitting(units: tuple[Unit, ...], values: tuple[npt.ArrayLike, ...]) -> Unit
     finite = [np.abs(a[np.isfinite(a)]) for a in (np.asarray(v, dtype=float) for v in values)]
     largest = max((float(a.max()) for a in finite if a.size), default=0.0)
     if largest == 0.0:
-        return units[1]
+        return MEGAPASCAL if MEGAPASCAL in units else units[1]
     return next((unit for unit in units if largest >= 0.1 * unit.size), units[-1])

@@ -14,6 +14,7 @@ from pathlib import Path
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.fields import nearest
 from wingcrack_post.read import Run
+from wingcrack_post.states import last_settled
 
 SECONDS_ALLOWED = 300
 BAD_INPUT, LACKING = 2, 3  # exit status of the child, as the command line's own
@@ -21,7 +22,9 @@ _UNEXPECTED = 1  # what Python gives for an exception that nobody catches
 
 
 def draw_view(run: Run, target: Path, time_s: float | None = None) -> Path:
-    """Draw the body at the written time nearest to `time_s` (default: the last) into `target`.
+    """Draw the body at the written time nearest to `time_s` into `target`.
+
+    Without a time it is the last written one that is in no short step after growth.
 
     Raises
     ------
@@ -36,9 +39,12 @@ def draw_view(run: Run, target: Path, time_s: float | None = None) -> Path:
         raise AbsentError("the run has no matrix.pvd (VTU output off, or no step written yet)")
     target.parent.mkdir(parents=True, exist_ok=True)
     aside = target.with_name(f".{target.stem}.{os.getpid()}.png")
-    moment = run.matrix[-1].time_s if time_s is None else nearest(run.matrix, time_s).time_s
+    if time_s is None:
+        place = last_settled(run, [snapshot.time_s for snapshot in run.matrix])
+    else:
+        place = run.matrix.index(nearest(run.matrix, time_s))
     try:
-        done = _call_child(run.directory, aside, moment)
+        done = _call_child(run.directory, aside, place)
         said = (done.stderr.strip().splitlines() or ["it gave no reason"])[-1]
         if done.returncode == BAD_INPUT:
             raise RunError(said)
@@ -58,7 +64,7 @@ def draw_view(run: Run, target: Path, time_s: float | None = None) -> Path:
     return target
 
 
-def _call_child(directory: Path, aside: Path, moment: float) -> subprocess.CompletedProcess[str]:
+def _call_child(directory: Path, aside: Path, place: int) -> subprocess.CompletedProcess[str]:
     package_root = str(Path(__file__).resolve().parents[1])
     paths = [package_root, *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {
@@ -70,7 +76,7 @@ def _call_child(directory: Path, aside: Path, moment: float) -> subprocess.Compl
     # -P: no module comes from the folder where the user happens to be
     command = [sys.executable, "-P", "-m", "wingcrack_post.render"]
     return subprocess.run(
-        [*command, str(directory), str(aside), repr(moment)],
+        [*command, str(directory), str(aside), str(place)],
         env=environment,
         capture_output=True,
         text=True,

@@ -127,8 +127,8 @@ contains
                   "restraint lies outside the body at (1.5, 1.5); put it inside or on the "// &
                   "boundary"//doc)
       call refuse(7, "&point_load x=0.5 y=0.50001 y_force=1 /", ":7: &point_load: the point "// &
-                  "load lies within 1e-05 m of fracture 'g' (line 5) at (0.5, 0.50001); move it "// &
-                  "farther away"//doc)
+                  "load lies within 1e-05 m of fracture 'g' (line 5) at (0.5, 0.50001); move "// &
+                  "it farther away"//doc)
       call refuse(7, "&point_load x=0.5 y=0.5 y_force=1 /", ":7: &point_load: the point load "// &
                   "lies on fracture 'g' (line 5) at (0.5, 0.5), where it would act on one of "// &
                   "its two faces only; move it off the fracture"//doc)

@@ -46,9 +46,10 @@ contains
    end function square
 
    !> A crack under a constant pressure p and a shear f tau slips as an open one does under the
-   !! excess tau - mu p: d = 4 (tau - mu p)/E' sqrt(a**2 - x**2) (Westergaard). While the load falls,
-   !! its faces hold what they have slipped until the shear on them has turned round, by twice the
-   !! friction; then they slip back as an open crack does under what the load has fallen beyond that.
+   !! excess tau - mu p: d = 4 (tau - mu p)/E' sqrt(a**2 - x**2) (Westergaard). While the load
+   !! falls, its faces hold what they have slipped until the shear on them has turned round, by
+   !! twice the friction; then they slip back as an open crack does under what the load has fallen
+   !! beyond that.
    subroutine check_reversal()
       real(rk), parameter :: excess = shear - friction*pressure
       real(rk), parameter :: finite_body = 0.02_rk  ! the crack has a tenth of its width
