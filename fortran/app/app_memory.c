@@ -1,91 +1,97 @@
-// Memory of the process, judged before anybody asks for it: OpenBLAS repeats a request that is refused
-// for ever, and other libraries end without a word.
+// Memory of the process. A request that is refused must not be fatal without a word, nor be repeated
+// for ever, as OpenBLAS does.
+#include <malloc.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-// What OpenBLAS takes for each of its threads when it is loaded.
-static const int64_t bytes_per_thread = (int64_t)144 << 20;
+static _Noreturn void leave(const char* sentence) {
+    const size_t length = strlen(sentence);
+    _exit(write(STDERR_FILENO, sentence, length) == (ssize_t)length ? 1 : 2);
+}
 
-static const char threads_name[] = "OPENBLAS_NUM_THREADS=";
-static const char too_little[] = "wingcrack: there is not enough memory to start: allow this process at least 1 GB "
-                                 "(ulimit -v)\n";
-
-// The system would give so many bytes of address space.
-int app_has_address_space(int64_t n_bytes) {
+// End the program unless the system would give so many bytes of address space. Other threads may be at
+// work, so nothing is tidied up.
+static void require_address_space(int64_t n_bytes) {
     void* const place =
         mmap(NULL, (size_t)n_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (place == MAP_FAILED) return 0;
+    if (place == MAP_FAILED)
+        leave("wingcrack: there is not enough memory for a run: allow this process at least 1 GB (ulimit -v), or "
+              "fewer --threads\n");
     munmap(place, (size_t)n_bytes);
-    return 1;
 }
 
-// Bytes that the machine has free for this process, its limit (ulimit -v) included; -1: unknown.
-int64_t app_available_memory(void) {
-    int64_t available = -1;
-    FILE* const file = fopen("/proc/meminfo", "r");
-    if (file != NULL) {
-        char line[200];
-        long long kilobytes;
-        while (fgets(line, sizeof line, file) != NULL)
-            if (sscanf(line, "MemAvailable: %lld kB", &kilobytes) == 1) available = (int64_t)kilobytes * 1024;
-        fclose(file);
-    }
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-        (available < 0 || (int64_t)limit.rlim_cur < available))
-        available = (int64_t)limit.rlim_cur;
-    return available;
+// All memory of the machine [byte].
+double app_machine_memory(void) { return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE); }
+
+// OpenBLAS' own; absent where another BLAS is linked.
+extern void openblas_set_num_threads(int n) __attribute__((weak));
+
+// LAPACK. Called once, so that OpenBLAS takes the buffer that it keeps and uses from then on.
+extern void dgesv_(const int* n, const int* n_rhs, double* a, const int* lda, int* pivots, double* b, const int* ldb,
+                   int* info);
+
+// What OpenBLAS takes for each thread beside the first: a buffer, a stack and a heap.
+static const int64_t bytes_per_thread = (int64_t)208 << 20;
+
+// What the smallest run takes beyond what the libraries have: a buffer of OpenBLAS, the heap's head room,
+// gmsh.
+static const int64_t bytes_of_run = (int64_t)256 << 20;
+
+static int wanted_threads = 1;
+
+// End the program if there is no memory for the smallest run. Else let OpenBLAS take its buffers. Dense
+// blocks here are too small for threads, which would only wait for each other: there is one, unless the
+// user has asked for more. Keep freed memory: factorizations ask for the same large blocks again and again.
+void app_prepare_memory(void) {
+    const int n = 1;
+    double matrix = 1.0, solution = 1.0;
+    int pivot, info;
+    require_address_space(bytes_of_run + bytes_per_thread * (wanted_threads - 1));
+    if (openblas_set_num_threads) openblas_set_num_threads(wanted_threads);
+    dgesv_(&n, &n, &matrix, &n, &pivot, &solution, &n, &info);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_TOP_PAD, 64 * 1024 * 1024);
 }
 
-// BLAS. Called once, so that OpenBLAS takes the buffer that it keeps and uses from then on.
-extern void dgemm_(const char*, const char*, const int*, const int*, const int*, const double*, const double*,
-                   const int*, const double*, const int*, const double*, double*, const int*, size_t, size_t);
-
-void app_take_blas_buffer(void) {
-    enum { n = 64 };
-    static double a[n * n], b[n * n], c[n * n];
-    const int size = n;
-    const double one = 1.0, zero = 0.0;
-    dgemm_("N", "N", &size, &size, &size, &one, a, &size, b, &size, &zero, c, &size, 1, 1);
-}
-
-// Begin again with one thread for BLAS: dense blocks here are too small for threads, which would only
-// wait for each other. OpenBLAS looks at the environment when it is loaded, so it is set before.
-static void begin_with_one_thread(char** argv, char** environment) {
-    char path[4096];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (length <= 0) return;
-    path[length] = '\0';
+// Called by the loader before the libraries' own beginnings. OpenBLAS, and another one within gmsh, start
+// as many threads as OPENBLAS_NUM_THREADS says, or else as there are processors, and look for memory for
+// them for ever; so they begin with one each. Without that name the program begins again with it.
+static void before_libraries(int argc, char** argv, char** environment) {
+    static const char name[] = "OPENBLAS_NUM_THREADS=";
+    static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
     size_t n = 0;
-    while (environment[n] != NULL) ++n;
-    char one_thread[] = "OPENBLAS_NUM_THREADS=1";
-    char** const longer = malloc((n + 2) * sizeof *longer);
-    if (longer == NULL) return;
+    (void)argc;
+    for (; environment[n] != NULL; ++n) {
+        if (strncmp(environment[n], name, strlen(name)) != 0) continue;
+        const long given = atol(environment[n] + strlen(name)), most = sysconf(_SC_NPROCESSORS_ONLN);
+        wanted_threads = (int)(given > most ? most : given > 1 ? given : 1);
+        environment[n] = one_thread;
+        return;
+    }
+    char* longer[n + 2];
     memcpy(longer, environment, n * sizeof *longer);
     longer[n] = one_thread;
     longer[n + 1] = NULL;
-    execve(path, argv, longer);
-    free(longer); // still here: with as many threads as OpenBLAS likes
+    execve("/proc/self/exe", argv, longer); // returns only if that fails: then with as many as they like
 }
-
-// Before any library begins: how many threads has BLAS, and is there memory for them? A number that the
-// user has asked for stays.
-static void before_libraries(int argc, char** argv, char** environment) {
-    (void)argc;
-    const char* threads = NULL;
-    for (char** entry = environment; *entry != NULL; ++entry)
-        if (strncmp(*entry, threads_name, strlen(threads_name)) == 0) threads = *entry + strlen(threads_name);
-    if (threads == NULL) begin_with_one_thread(argv, environment);
-    const int n = threads == NULL ? 1 : atoi(threads);
-    if (app_has_address_space(bytes_per_thread * (n > 1 ? n : 1))) return;
-    if (write(STDERR_FILENO, too_little, strlen(too_little)) < 0) _exit(1);
-    _exit(1);
-}
-
-// The loader calls what stands here before the libraries' own beginnings.
 __attribute__((section(".preinit_array"), used)) static void (*begin)(int, char**, char**) = before_libraries;
+
+// What the linker puts in the place of malloc and its kin in our own code (CMakeLists.txt): Fortran's
+// temporary arrays are used without a look whether there are any.
+extern void* __real_malloc(size_t n);
+extern void* __real_calloc(size_t n, size_t size);
+extern void* __real_realloc(void* old, size_t n);
+
+static void* given(void* place, size_t n) {
+    if (place == NULL && n > 0)
+        leave("wingcrack: there is not enough memory: give larger cells, or a machine with more of it\n");
+    return place;
+}
+
+void* __wrap_malloc(size_t n) { return given(__real_malloc(n), n); }
+void* __wrap_calloc(size_t n, size_t size) { return given(__real_calloc(n, size), n * size); }
+void* __wrap_realloc(void* old, size_t n) { return given(__real_realloc(old, n), n); }

@@ -1,9 +1,9 @@
 !> Run a scene from start to end, whichever way it is simulated.
 module app_run
    use app_journal, only: journal_t
-   use app_process, only: interrupted
+   use app_interrupts, only: interrupted
    use app_warnings, only: show_warnings
-   use base_errors, only: error_t
+   use base_errors, only: error_t, keep_first
    use base_kinds, only: rk
    use base_texts, only: text_t
    use base_timers, only: phase_output, timers_t
@@ -44,18 +44,22 @@ contains
          allocate (mechanics_simulation_t :: simulation)
       end if
       call timers%begin()
-      call timers%start(phase_output)
-      call journal%files%open(directory, scene, source, refused, error)
-      call timers%stop(phase_output)
+      call journal%files%open(directory, source, refused, error)
       if (allocated(error)) return
 
       call simulation%begin(scene, timers, error)
       is_meshed = .not. allocated(error)
-      if (is_meshed) then
+      if (is_meshed .or. .not. journal%files%keeps_earlier_run) then
+         call timers%start(phase_output)
+         call journal%files%begin(scene, trouble)
+         call timers%stop(phase_output)
+         call keep_first(trouble, error)
+      end if
+      if (.not. allocated(error)) then
          call journal%begin(quiet, simulation)
          call march(simulation, journal, timers, error)
          call write_last_state(simulation, journal, timers, trouble)
-         if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+         call keep_first(trouble, error)
       end if
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
@@ -75,7 +79,7 @@ contains
       end if
       call journal%files%log(record%status//": "//record%reason//origin_text(error))
       call journal%files%close(record, timers, trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call keep_first(trouble, error)
       if (quiet) return
       call show_warnings(record%warnings, output_unit)
       if (is_meshed) call say_closing(simulation, record, timers%wall_seconds(), directory)
@@ -94,7 +98,7 @@ contains
       call journal%write_chronicle(simulation)
       call journal%write_fields(simulation, error)
       call journal%files%flush(trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call keep_first(trouble, error)
       call timers%stop(phase_output)
    end subroutine write_last_state
 

@@ -3,7 +3,7 @@ module base_errors
    implicit none(type, external)
    private
 
-   public :: error_t, raise_error
+   public :: error_t, keep_first, raise_error
 
    !> A reason why the work could not be done; unallocated means success.
    type :: error_t
@@ -23,5 +23,17 @@ contains
       error%message = message
       error%origin = origin
    end subroutine raise_error
+
+   !> Of two errors the first counts.
+   pure subroutine keep_first(trouble, error)
+      type(error_t), allocatable, intent(inout) :: trouble  !< the later one; gone afterwards
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (allocated(error)) then
+         if (allocated(trouble)) deallocate (trouble)
+      else
+         call move_alloc(trouble, error)
+      end if
+   end subroutine keep_first
 
 end module base_errors

@@ -1,9 +1,11 @@
-!> The folder of a run: nothing in it is touched before it is sure that this run may have it.
+!> The folder of a run. Nothing in it is touched before it is sure that this run may have it, and
+!! what an earlier run has left there stays until this one has something to put in its place.
 module output_place
    use base_errors, only: error_t, raise_error
-   use base_paths, only: hold_folder, hold_is_taken, path_folder, path_kind, path_nothing, &
-                         release_folder, same_file
+   use base_kinds, only: ik
+   use base_number, only: integer_text
    use output_files, only: make_directory, remove_file
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    implicit none(type, external)
    private
 
@@ -12,66 +14,111 @@ module output_place
    character(len=*), parameter :: top_files(9) = [character(len=13) :: "scene.nml", "run.json", &
       & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
       & "run.log"]
-   integer, parameter :: scene_file = 1  !< in top_files
+
+   integer(c_int), parameter :: is_held = -1  !< by another run; as in output_place.c
+   integer(c_int), parameter :: no_hold = -2
 
    !> The folder, held against other runs from `claim` to `release` or the end of the process.
    type :: place_t
       character(len=:), allocatable :: directory
-      logical :: has_scene = .false.  !< the scene that is run is its scene.nml, as it would be
-      integer, private :: hold = -2
+      integer(c_int), private :: hold = no_hold
    contains
       procedure :: claim
+      procedure :: has_results
       procedure :: clear
       procedure :: release
    end type place_t
 
+   interface
+      function c_same_file(a, b) result(answer) bind(C, name="output_same_file")
+         import :: c_char, c_int
+         implicit none(type, external)
+         ! allow(C071)
+         character(kind=c_char), intent(in) :: a(*)
+         ! allow(C071)
+         character(kind=c_char), intent(in) :: b(*)
+         integer(c_int) :: answer
+      end function c_same_file
+
+      function c_hold_folder(path, holder) result(hold) bind(C, name="output_hold_folder")
+         import :: c_char, c_int
+         implicit none(type, external)
+         ! allow(C071)
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), intent(out) :: holder
+         integer(c_int) :: hold
+      end function c_hold_folder
+
+      subroutine c_release_folder(hold) bind(C, name="output_release_folder")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value, intent(in) :: hold
+      end subroutine c_release_folder
+   end interface
+
 contains
 
-   !> Make the folder and hold it. `refused`: the folder is a wrong choice, and nothing was made.
-   subroutine claim(self, directory, source, scene_text, refused, error)
+   !> Make the folder and hold it. `refused`: the folder is a wrong choice, and nothing was written.
+   subroutine claim(self, directory, source, refused, error)
       class(place_t), intent(out) :: self
       character(len=*), intent(in) :: directory
       character(len=*), intent(in) :: source  !< path of the scene that is run; empty: no file
-      character(len=*), intent(in) :: scene_text  !< of the scene.nml to be written
       logical, intent(out) :: refused
       type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: holder
       integer :: i
 
       self%directory = trim(directory)
-      refused = .true.
-      if (all(path_kind(self%directory) /= [path_nothing, path_folder])) then
-         call raise_error(error, "", self%directory//" is no folder: name another one with --out")
-         return
-      end if
+      refused = .false.
       do i = 1, size(top_files)
          if (source == "") exit
-         if (.not. same_file(source, self%directory//"/"//trim(top_files(i)))) cycle
-         self%has_scene = i == scene_file .and. has_text(source, scene_text)
-         if (self%has_scene) cycle
-         call raise_error(error, "", "the run would write its own "//trim(top_files(i))// &
-                          " over the scene "//source//": name another folder with --out")
-         return
+         refused = c_same_file(source//c_null_char, path_in(self, top_files(i))//c_null_char) /= 0
+         if (refused) then
+            call raise_error(error, "", "the run would replace "//source//" by its own "// &
+                             trim(top_files(i))//": name another folder than "//self%directory// &
+                             " with --out")
+            return
+         end if
       end do
-      refused = .false.
       call make_directory(self%directory, error)
       if (allocated(error)) return
-      self%hold = hold_folder(self%directory)
-      refused = self%hold == hold_is_taken
-      if (refused) call raise_error(error, "", "another run writes into "//self%directory// &
-                                    ": wait for its end or name another folder with --out")
+      self%hold = c_hold_folder(self%directory//c_null_char, holder)
+      refused = self%hold == is_held
+      if (refused) call raise_error(error, "", "another run"//process_text(holder)// &
+                                    " writes into "//self%directory// &
+                                    ": wait for its end, or name another folder with --out")
    end subroutine claim
 
-   !> Remove an earlier run's files, but those that this run has begun with.
-   subroutine clear(self, kept)
+   !> Which process, where that is known.
+   pure function process_text(process) result(text)
+      integer(c_int), intent(in) :: process
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (process > 0) text = " (process "//integer_text(int(process, ik))//")"
+   end function process_text
+
+   !> A run has left files here.
+   function has_results(self)
       class(place_t), intent(in) :: self
-      character(len=*), intent(in) :: kept  !< besides scene.nml
+      logical :: has_results
+      integer :: i
+
+      do i = 1, size(top_files)
+         inquire (file=path_in(self, top_files(i)), exist=has_results)
+         if (has_results) return
+      end do
+   end function has_results
+
+   !> Remove what an earlier run has left, but scene.nml, which this one has written.
+   subroutine clear(self)
+      class(place_t), intent(in) :: self
       logical :: was_there
       integer :: i
 
       do i = 1, size(top_files)
-         call remove_file(self%directory//"/"//trim(top_files(i))//".part", was_there)
-         if (i == scene_file .or. top_files(i) == kept) cycle
-         call remove_file(self%directory//"/"//trim(top_files(i)), was_there)
+         call remove_file(path_in(self, top_files(i))//".part", was_there)
+         if (top_files(i) /= "scene.nml") call remove_file(path_in(self, top_files(i)), was_there)
       end do
    end subroutine clear
 
@@ -79,26 +126,16 @@ contains
    subroutine release(self)
       class(place_t), intent(inout) :: self
 
-      call release_folder(self%hold)
+      if (self%hold >= 0_c_int) call c_release_folder(self%hold)
+      self%hold = no_hold
    end subroutine release
 
-   !> A file holds a text and nothing else.
-   function has_text(path, text)
-      character(len=*), intent(in) :: path, text
-      logical :: has_text
-      character(len=len(text)) :: there
-      integer :: n_bytes, status, unit
+   pure function path_in(place, name) result(path)
+      class(place_t), intent(in) :: place
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: path
 
-      has_text = .false.
-      open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
-            status="old", iostat=status)
-      if (status /= 0) return
-      inquire (unit, size=n_bytes)
-      if (n_bytes == len(text)) then
-         read (unit, iostat=status) there
-         has_text = status == 0 .and. there == text
-      end if
-      close (unit)
-   end function has_text
+      path = place%directory//"/"//trim(name)
+   end function path_in
 
 end module output_place

@@ -3,7 +3,7 @@
 !! Tables, collections, network and log gather in memory and are written when `tick` finds it time:
 !! every three seconds, and so seldom that writing takes less than half a percent of the wall time.
 module output_run
-   use base_errors, only: error_t
+   use base_errors, only: error_t, keep_first
    use base_kinds, only: ik, lk, rk
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
@@ -30,6 +30,7 @@ module output_run
    !> The files of a run, from `open` to `close`.
    type :: run_output_t
       type(place_t), private :: place
+      logical :: keeps_earlier_run = .false.  !< files of it are there, and `begin` has not come
       type(tables_t), private :: tables
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
@@ -43,6 +44,7 @@ module output_run
       real(rk), private :: flush_cost = 0.0_rk  !< wall time of the last writing [s]
    contains
       procedure :: open => open_run
+      procedure :: begin => begin_run
       procedure :: history_row
       procedure :: tip_row
       procedure :: probe_row
@@ -58,38 +60,39 @@ module output_run
 
 contains
 
-   !> Make the directory and write scene.nml; once that is on disk, remove an earlier run's files.
-   !! `refused`: the directory is a wrong choice, and nothing was touched.
-   subroutine open_run(self, directory, scene, source, refused, error)
+   !> Take a folder for the run; in it everything stays as it is until `begin`. `refused`: the folder
+   !! is a wrong choice.
+   subroutine open_run(self, directory, source, refused, error)
       class(run_output_t), intent(out) :: self
       character(len=*), intent(in) :: directory
-      type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene that is run; empty: no file
       logical, intent(out) :: refused
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: text
 
-      self%writes_vtu = scene%output%vtu
-      self%interval = scene%output%interval
       call system_clock(self%clock_begin)
-      text = scene_text(scene)
-      call self%place%claim(directory, source, text, refused, error)
-      if (allocated(error)) return
+      call self%place%claim(directory, source, refused, error)
+      if (.not. allocated(error)) self%keeps_earlier_run = self%place%has_results()
+   end subroutine open_run
+
+   !> The run has a first state to write: write scene.nml, and once that is on disk, remove an
+   !! earlier run's files.
+   subroutine begin_run(self, scene, error)
+      class(run_output_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+
       associate (folder => self%place%directory)
-         if (self%place%has_scene) then
-            call self%log("the scene is the scene.nml of this folder")
-            call write_log(self, error)
-         else
-            call write_text_file(folder//"/scene.nml", text, error)
-         end if
+         call write_text_file(folder//"/scene.nml", scene_text(scene), error)
          if (allocated(error)) return
-         call self%place%clear(trim(merge("run.log", "       ", self%place%has_scene)))
-         call self%snapshots%open(folder, scene, error)
-         if (allocated(error)) return
+         self%keeps_earlier_run = .false.
+         call self%place%clear()
+         self%writes_vtu = scene%output%vtu
+         self%interval = scene%output%interval
          call self%tables%open(folder, scene, scene%has_fluid())
          call self%network%open(folder//"/network.json", fracture_names(scene), scene%has_fluid())
+         call self%snapshots%open(folder, scene, error)
       end associate
-   end subroutine open_run
+   end subroutine begin_run
 
    pure function fracture_names(scene) result(names)
       type(scene_t), intent(in) :: scene
@@ -230,7 +233,7 @@ contains
    end subroutine write_log
 
    !> End the run, well or not: write everything, and run.json last, which tells if other files
-   !! could not be written.
+   !! could not be written. A run that never began leaves those of an earlier one.
    subroutine close_run(self, record, timers, error)
       class(run_output_t), intent(inout) :: self
       type(run_record_t), intent(inout) :: record
@@ -238,22 +241,17 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: trouble
 
-      call self%flush(error)
-      if (allocated(error) .and. record%status /= status_failed) then
-         record%status = status_failed
-         record%reason = error%message
+      if (.not. self%keeps_earlier_run) then
+         call self%flush(error)
+         if (allocated(error) .and. record%status /= status_failed) then
+            record%status = status_failed
+            record%reason = error%message
+         end if
+         call record%write(self%place%directory//"/run.json", timers, trouble)
+         call keep_first(trouble, error)
       end if
-      call record%write(self%place%directory//"/run.json", timers, trouble)
-      call keep_first(trouble, error)
       call self%place%release()
    end subroutine close_run
-
-   !> Keep the first of two errors.
-   subroutine keep_first(trouble, error)
-      type(error_t), allocatable, intent(inout) :: trouble, error
-
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
-   end subroutine keep_first
 
    !> Wall time since `open` [s].
    function wall_time(self)

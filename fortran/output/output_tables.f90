@@ -1,6 +1,6 @@
 !> The CSV tables of a run: where the value of each column of output_columns comes from.
 module output_tables
-   use base_errors, only: error_t
+   use base_errors, only: error_t, keep_first
    use base_kinds, only: ik, rk
    use base_texts, only: text_t
    use contact_states, only: state_name
@@ -239,7 +239,7 @@ contains
          type(error_t), allocatable :: trouble
 
          call table%flush(trouble)
-         if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+         call keep_first(trouble, error)
       end subroutine flush_one
 
    end subroutine flush_tables

@@ -3,7 +3,6 @@ module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
-   use base_paths, only: path_device, path_folder, path_kind, path_nothing, path_pipe
    use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
                                need_disc, need_friction, need_growth, &
                                need_polygon, need_rectangle, need_slip, need_tips, parameters
@@ -54,18 +53,13 @@ contains
       character(len=256) :: reason
       integer(lk) :: n_bytes
       integer :: unit, status
+      logical :: exists
 
-      select case (path_kind(path))
-      case (path_nothing)
+      inquire (file=path, exist=exists)
+      if (.not. exists) then
          call raise_error(error, "", path//": there is no such scene file")
-      case (path_folder)
-         call raise_error(error, "", path//": is a folder; name the scene file in it")
-      case (path_pipe)
-         call raise_error(error, "", path//": is a pipe; write the scene to a file and name that")
-      case (path_device)
-         call raise_error(error, "", path//": is a device, not a scene file")
-      end select
-      if (allocated(error)) return
+         return
+      end if
       reason = ""
       open (newunit=unit, file=path, action="read", status="old", access="stream", &
             form="unformatted", iostat=status, iomsg=reason)

@@ -2,9 +2,10 @@
 program wingcrack_solver
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
-   use app_memory, only: prepare_memory
-   use app_process, only: catch_interrupts, interrupt_status, keep_heap
+   use app_interrupts, only: catch_interrupts, interrupt_status
+   use app_memory, only: machine_memory, prepare_memory
    use app_run, only: run_scene
+   use app_size, only: check_size
    use app_version, only: version
    use base_errors, only: error_t
    use simulation_describe, only: describe_limits
@@ -68,13 +69,10 @@ contains
          end select
          i = i + 1
       end do
+      call catch_interrupts()
+      call prepare_memory()
       call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
-
-      call prepare_memory(error)
-      if (allocated(error)) call leave(error%message, exit_failed)
-      call keep_heap()
-      call catch_interrupts()
       call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
       if (allocated(error)) then
          if (refused) call leave(error%message, exit_usage)
@@ -100,6 +98,7 @@ contains
       type(error_t), allocatable :: error
 
       call read_scene(argument(2), scene, error, sheet)
+      if (.not. allocated(error)) call check_size(sheet, scene, machine_memory(), error)
       if (.not. allocated(error)) call check_geometry(sheet, scene, error)
       if (allocated(error)) call leave(error%message, exit_usage)
    end subroutine read_judged

@@ -1,27 +1,22 @@
-!> Interrupts and memory of the process.
-module app_process
+!> Signals that ask the program to end.
+module app_interrupts
    use, intrinsic :: iso_c_binding, only: c_int
    implicit none(type, external)
    private
 
-   public :: catch_interrupts, interrupt_status, interrupted, keep_heap
+   public :: catch_interrupts, interrupt_status, interrupted
 
    interface
-      !> From now on the first two interrupts are noted; a third one ends the program. A file that
-      !! grows beyond the user's limit is an error of writing.
+      !> From now on the first SIGINT or SIGTERM is noted, and a second one ends the program at
+      !! once. A file that grows beyond the user's limit is an error of writing.
       subroutine catch_interrupts() bind(C, name="app_catch_interrupts")
          implicit none(type, external)
       end subroutine catch_interrupts
 
-      !> Keep freed memory for the next factorization.
-      subroutine keep_heap() bind(C, name="app_keep_heap")
-         implicit none(type, external)
-      end subroutine keep_heap
-
-      function c_interrupted() result(answer) bind(C, name="app_interrupted")
+      function c_interrupted() result(number) bind(C, name="app_interrupted")
          import :: c_int
          implicit none(type, external)
-         integer(c_int) :: answer
+         integer(c_int) :: number
       end function c_interrupted
    end interface
 
@@ -37,4 +32,4 @@ contains
       status = 128 + c_interrupted()
    end function interrupt_status
 
-end module app_process
+end module app_interrupts

@@ -1,0 +1,181 @@
+!> How large a scene is, before anything is meshed, and whether a machine can hold it. All numbers
+!! are real: a scene that is far too large has more of everything than an integer counts.
+module app_size
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text
+   use base_plane, only: polygon_area
+   use growth_network, only: network_of_scene, total_length
+   use mechanics_outline, only: outline_of_scene, outline_t
+   use mechanics_results, only: touches
+   use scene_sheet, only: refuse, sheet_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: check_size, size_of_scene, estimate_t
+
+   !> Numbers of things at the start of a run, estimated.
+   type :: estimate_t
+      real(rk) :: steps = 0.0_rk  !< regular ones
+      real(rk) :: cells = 0.0_rk
+      real(rk) :: fracture_cells = 0.0_rk
+      real(rk) :: unknowns = 0.0_rk  !< of the body
+      ! At least so much memory [byte]
+      real(rk) :: bytes_of_cells = 0.0_rk  !< mesh, matrix and its factors
+      real(rk) :: bytes_of_contact = 0.0_rk  !< the full matrix on the fractures
+      real(rk) :: bytes_of_tables = 0.0_rk  !< which gather in memory
+   end type estimate_t
+
+   real(rk), parameter :: byte_per_cell = 8.0e3_rk  !< measured: 10e3 to 14e3 at 3e4 cells
+   real(rk), parameter :: byte_per_value = 20.0_rk  !< of a table
+   real(rk), parameter :: values_per_step = 15.0_rk  !< of history.csv
+   real(rk), parameter :: values_per_probe = 6.0_rk
+   real(rk), parameter :: values_per_fracture_cell = 10.0_rk
+   !> Matrices are numbered with integers of 32 bits, and have up to 200 entries per cell.
+   real(rk), parameter :: most_cells = real(huge(1_ik), rk)/200.0_rk
+   real(rk), parameter :: most_fracture_cells = 1.0e6_rk
+   real(rk), parameter :: most_steps = real(huge(1_ik), rk)
+
+contains
+
+   !> Estimate the size of a scene.
+   function size_of_scene(scene) result(estimate)
+      type(scene_t), intent(in) :: scene
+      type(estimate_t) :: estimate
+      real(rk) :: length, touching_cells, written
+
+      length = total_length(network_of_scene(scene))
+     if (length > 0.0_rk) estimate%fracture_cells = anint(length/scene%discretization%size_fracture)
+      estimate%cells = anint(number_of_cells(scene, length))
+      estimate%steps = real(scene%load%steps, rk)
+      estimate%unknowns = 4.0_rk*estimate%cells  ! two for each node of six-node triangles
+      written = estimate%steps
+      touching_cells = 0.0_rk
+      if (any(touches(scene%fractures))) touching_cells = estimate%fracture_cells
+      if (scene%has_fluid()) then
+         estimate%steps = aint(scene%time%end/scene%time%step*(1.0_rk - 1.0e-9_rk)) + 1.0_rk
+         estimate%unknowns = 3.0_rk*estimate%cells
+         written = estimate%steps
+         if (scene%output%interval > 0.0_rk) &
+            written = min(written, scene%time%end/scene%output%interval)
+      end if
+      estimate%bytes_of_cells = byte_per_cell*estimate%cells
+      estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
+      estimate%bytes_of_tables = byte_per_value*( &
+                               (values_per_step + values_per_probe*probes(scene))*estimate%steps + &
+                                 values_per_fracture_cell*estimate%fracture_cells*written)
+   end function size_of_scene
+
+   pure real(rk) function probes(scene)
+      type(scene_t), intent(in) :: scene
+
+      probes = 0.0_rk
+      if (allocated(scene%probes)) probes = real(size(scene%probes), rk)
+   end function probes
+
+   !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
+   !! from the fractures, up to half of that of the farthest point (size_field.cpp); the part of the
+   !! body up to a distance d is taken as 2 L d + pi d**2 for fractures of length L altogether.
+   function number_of_cells(scene, length) result(n)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: length  !< of all fractures [m]
+      real(rk) :: n
+      integer, parameter :: layers = 400
+      real(rk), parameter :: cells_per_square = 4.0_rk/sqrt(3.0_rk)  ! equilateral triangles
+      real(rk), parameter :: pi = acos(-1.0_rk)
+      type(outline_t) :: outline
+      real(rk) :: area, inner, outer, farthest, slope, d, nearest
+      integer :: i
+
+      if (scene%domain%shape == "disc") then
+         area = pi*scene%domain%radius**2
+      else
+         outline = outline_of_scene(scene)
+         area = abs(polygon_area(outline%corners))
+      end if
+      associate (body => scene%domain, far => scene%discretization%size_boundary, &
+                 near => scene%discretization%size_fracture)
+         n = cells_per_square*area/far**2
+         if (.not. (length > 0.0_rk .and. near < far)) return
+         farthest = 0.5_rk*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
+         slope = (far - near)/(0.5_rk*farthest)
+         n = 0.0_rk
+         inner = 0.0_rk
+         nearest = 1.0e-2_rk*near  ! layers grow geometrically from there to the farthest
+         do i = 1, layers
+            d = nearest*(farthest/nearest)**(real(i, rk)/layers)
+            outer = min(2.0_rk*length*d + pi*d**2, area)
+            if (i == layers) outer = area
+            n = n + cells_per_square*(outer - inner)/min(far, near + slope*d)**2
+            inner = outer
+         end do
+      end associate
+   end function number_of_cells
+
+   !> Refuse a scene that is too large for the machine, or for this program on any machine.
+   subroutine check_size(sheet, scene, memory, error)
+      type(sheet_t), intent(in) :: sheet  !< where the scene comes from
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: memory  !< of the machine [byte]
+      type(error_t), allocatable, intent(out) :: error
+      type(estimate_t) :: estimate
+      character(len=:), allocatable :: steps, needed
+      real(rk) :: bytes
+      integer :: of_mesh, of_steps  ! groups
+
+      of_mesh = sheet%find("coarse") + sheet%find("fe")  ! a scene has one of them
+      of_steps = sheet%find("load")
+      steps = "steps"
+      if (scene%has_fluid()) then
+         of_steps = sheet%find("time")
+         steps = "step"
+      end if
+      estimate = size_of_scene(scene)
+      bytes = estimate%bytes_of_cells + estimate%bytes_of_contact + estimate%bytes_of_tables
+     needed = " need at least "//number(bytes*1.0e-9_rk)//" GB of memory, and this machine has "// &
+               number(memory*1.0e-9_rk)
+      if (estimate%steps > most_steps) then
+         call reject(of_steps, steps, "asks for about "//number(estimate%steps)// &
+                     " steps, and a run counts up to "//number(most_steps)//": ask for fewer")
+      else if (estimate%cells > most_cells) then
+         call reject(of_mesh, "", "the sizes ask for about "//number(estimate%cells)// &
+                     " cells, and a run numbers up to "//number(most_cells)//": give larger ones")
+      else if (estimate%fracture_cells > most_fracture_cells) then
+        call reject(of_mesh, "size_fracture", "asks for about "//number(estimate%fracture_cells)// &
+                     " fracture cells, and a run has up to "//number(most_fracture_cells)// &
+                     ": give a larger one")
+      else if (bytes <= memory) then
+         return
+   else if (estimate%bytes_of_tables > max(estimate%bytes_of_cells, estimate%bytes_of_contact)) then
+         call reject(of_steps, steps, "asks for about "//number(estimate%steps)// &
+                     " steps; their tables"//needed//": ask for fewer steps, or write fields "// &
+                     "more seldom (interval of &output)")
+      else if (estimate%bytes_of_contact > estimate%bytes_of_cells) then
+        call reject(of_mesh, "size_fracture", "asks for about "//number(estimate%fracture_cells)// &
+                     " fracture cells, which"//needed//": give a larger one")
+      else
+         call reject(of_mesh, "", "the sizes ask for about "//number(estimate%cells)// &
+                     " cells and "//number(estimate%unknowns)//" unknowns, which"//needed// &
+                     ": give larger ones")
+      end if
+
+   contains
+
+      subroutine reject(group, name, reason)
+         integer, intent(in) :: group
+         character(len=*), intent(in) :: name, reason
+
+         call refuse(error, sheet, group, name, reason)
+      end subroutine reject
+
+   end subroutine check_size
+
+   pure function number(x) result(text)
+      real(rk), intent(in) :: x
+      character(len=:), allocatable :: text
+
+      text = brief_text(x, 3)
+   end function number
+
+end module app_size
