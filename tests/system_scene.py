@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
+SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 
 # Scene C1 of Paper C (Dang 2023) on some 450 cells, with steps of one hour: a fracture 0.1 m long
 # at 45 degrees in a body of 2 m x 2 m under 20 MPa and 10 MPa.

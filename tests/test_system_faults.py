@@ -161,6 +161,43 @@ def test_check_and_run_judge_a_network_alike(fault: str, tmp_path: Path) -> None
     assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
 
 
+# What is too large for any machine, with the number of it.
+SIZES = {
+    "steps": (
+        ("end = 18000.0, step = 3600.0", "end = 1.0e12, step = 1.0e-3"),
+        "&time: step asks for about 1000000000000000 steps, and a run counts up to 2150000000",
+    ),
+    "tables": (
+        ("end = 18000.0, step = 3600.0", "end = 2.0e9, step = 1.0"),
+        "&time: step asks for about 2000000000 steps; their tables need at least",
+    ),
+    "cells": (
+        (
+            "size_fracture = 0.02, size_boundary = 0.25",
+            "size_fracture = 1e-6, size_boundary = 1e-6",
+        ),
+        "&coarse: the sizes ask for about 9240000000000 cells, and a run numbers up to 10700000",
+    ),
+    "cells at the fracture": (
+        ("size_fracture = 0.02", "size_fracture = 1e-9"),
+        "&coarse: the sizes ask for about",
+    ),
+}
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_scene_that_is_too_large_is_refused_with_the_number(size: str, tmp_path: Path) -> None:
+    change, words = SIZES[size]
+    (tmp_path / "large.nml").write_text(varied(change))
+    checked = call(tmp_path, "check", "large.nml")
+    ran = call(tmp_path, "run", "large.nml", "--out", "out")
+    assert checked.stderr == ran.stderr
+    assert words in checked.stderr
+    assert checked.stderr.startswith("wingcrack: large.nml:")
+    assert (checked.returncode, ran.returncode, checked.stdout, ran.stdout) == (2, 2, "", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["large.nml"]
+
+
 def test_growth_needs_the_toughness(tmp_path: Path) -> None:
     scene = varied(("toughness = 0.3e6", ""), ("intensities = .true.", "enabled = .true."))
     (tmp_path / "faulty.nml").write_text(scene)

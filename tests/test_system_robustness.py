@@ -9,11 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from system_scene import GROWING, TOP, call, numbers, record, rows, start
+from system_scene import GROWING, SCENE, SOLVER, TOP, call, numbers, record, rows, start
 
 pytestmark = pytest.mark.usefixtures("program")
-
-SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 
 # Two halves of a plate that nothing but contact holds together: pressed first, then drawn apart.
 HALVES = """\
@@ -94,12 +92,65 @@ def test_a_full_disk_is_told_and_leaves_no_half_file(
     out = tmp_path / "out"
     assert not list(out.rglob("*.part"))
     if limit == 1000:
-        assert not [path for path in out.rglob("*") if path.is_file()]
+        left = {path.name for path in out.rglob("*") if path.is_file()}
+        assert left <= {"run.log", "run.json"}
+        assert "run.json" not in left or record(out)["status"] == "failed"
     else:
         assert record(out)["status"] == "failed"
         assert f"wingcrack: {record(out)['reason']}" == reason
         assert (out / "scene.nml").read_text().rstrip().endswith("/")
         assert not list(out.rglob("*.vtu"))
+
+
+def test_a_run_with_a_table_that_is_not_whole_has_failed(tmp_path: Path) -> None:
+    """The limit lets all files pass but fractures.csv, whose last rows come at the very end."""
+    (tmp_path / "scene.nml").write_text(GROWING + "&output vtu = .false. /\n")
+    done = subprocess.run(
+        [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
+        cwd=tmp_path,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (3200, 3200)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    out = tmp_path / "out"
+    told = record(out)
+    assert told["status"] == "failed"
+    assert str(told["reason"]).startswith("cannot write out/fractures.csv: ")
+    assert done.stderr == f"wingcrack: {told['reason']}\n"
+    assert told["steps"] == len(rows(out / "history.csv")) - 1
+    assert not (out / "fractures.csv").exists()
+    assert not list(out.rglob("*.part"))
+    assert rows(out / "tips.csv")
+    assert rows(out / "events.csv")
+
+
+# Two levels on some 450 cells need little; the body of 30,000 cells does not fit in any of these.
+@pytest.mark.parametrize("scene", ["small", "large"])
+@pytest.mark.parametrize(
+    "kilobytes", [150000, 200000, 250000, 300000, 360000, 400000, 450000, 600000]
+)
+def test_too_little_memory_is_told(scene: str, kilobytes: int, tmp_path: Path) -> None:
+    text = SCENE if scene == "small" else SCENE.replace("boundary = 0.25", "boundary = 0.02")
+    (tmp_path / "scene.nml").write_text(text)
+
+    def limit_memory() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (kilobytes * 1024, kilobytes * 1024))
+
+    done = subprocess.run(
+        [TOP / "wingcrack", "run", "scene.nml", "--out", "out", "--quiet", "--no-plot"],
+        cwd=tmp_path,
+        preexec_fn=limit_memory,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    if scene == "small" and kilobytes > 300000 and done.returncode == 0:
+        return
+    assert done.returncode == 1
+    assert "not enough memory" in done.stderr.splitlines()[-1]
 
 
 @pytest.mark.parametrize("scene", [HALVES, GROWING], ids=["mechanics", "two levels"])

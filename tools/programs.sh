@@ -8,6 +8,9 @@ solve() {
     status=$?
     if ((status == 127)); then
         lacking=$(ldd "$solver" 2>/dev/null | sed -n 's/^[[:space:]]*\(.*\) => not found$/\1/p')
+        if [[ -z $lacking ]]; then
+            fail 1 'there is not enough memory to start: allow this process at least 1 GB (ulimit -v)'
+        fi
         fail "$exit_environment" "the solver cannot start without ${lacking//$'\n'/, };" \
             "remove the folders $venv and $root/build and call again, which installs and builds anew"
     fi
@@ -36,17 +39,24 @@ understand() {
     if (($? == exit_usage)); then exit "$exit_usage"; fi
 }
 
+# A signal ends the launcher with the status that is promised for it.
+end_on_signals() {
+    trap 'exit 130' INT
+    trap 'exit 143' TERM
+}
+
 # Run a command beside this shell so that a signal sent to the launcher alone reaches it too, and
 # return its exit status. The subshell undoes bash's habit of shielding such a command from ctrl-C.
 supervise() {
-    local status='' waited signalled
+    local status='' waited signalled='' child=''
+    trap 'forward INT' INT
+    trap 'forward TERM' TERM
     (
-        trap - INT QUIT
+        trap - INT TERM QUIT
         exec "$@"
     ) <&0 &
-    local child=$!
-    trap 'signalled=1; kill -INT "$child" 2>/dev/null' INT
-    trap 'signalled=1; kill -TERM "$child" 2>/dev/null' TERM
+    child=$!
+    if [[ -n $signalled ]]; then forward "$signalled"; fi # it came before there was a child
     while :; do
         signalled=
         wait "$child"
@@ -55,6 +65,12 @@ supervise() {
         if [[ -z $status ]] || ((waited != 127)); then status=$waited; fi
         if [[ -z $signalled ]]; then break; fi
     done
-    trap - INT TERM
+    end_on_signals
     return "$status"
+}
+
+# forward SIGNAL: hand a signal on to the command that `supervise` runs.
+forward() {
+    signalled=$1
+    if [[ -n $child ]]; then kill "-$1" "$child" 2>/dev/null; fi
 }

@@ -37,7 +37,9 @@ with_lock() {
         say 'waiting for another call to finish the set-up'
         flock "$lock"
     fi
+    trap - TERM # long work is left at once
     "$@"
+    end_on_signals
     exec {lock}>&-
 }
 

@@ -4,8 +4,8 @@
 
 #include <gmsh.h>
 
+#include <array>
 #include <csignal>
-
 #include <unordered_map>
 
 namespace cpp_mesh {
@@ -33,17 +33,21 @@ Scaling scaling_of(const std::vector<int>& loop, const std::vector<Vec2>& xy) {
     return {0.5 * (low + high), 1.0 / std::max(high.x - low.x, high.y - low.y)};
 }
 
-// Puts back, at the end of its scope, what the program does about signals: gmsh sets handlers of its
-// own when it starts, and a run that is told to stop would end without its last state.
+// Keeps what the program does about signals: gmsh sets handlers of its own when it starts, and a run
+// that is told to stop would end without its last state. Signals wait until those are gone.
 class KeptSignals {
 public:
     KeptSignals() {
+        sigset_t all;
+        sigfillset(&all);
+        pthread_sigmask(SIG_BLOCK, &all, &mask_);
         for (std::size_t k = 0; k < numbers.size(); ++k)
             sigaction(numbers[k], nullptr, &actions_[k]);
     }
     ~KeptSignals() {
         for (std::size_t k = 0; k < numbers.size(); ++k)
             sigaction(numbers[k], &actions_[k], nullptr);
+        pthread_sigmask(SIG_SETMASK, &mask_, nullptr);
     }
     KeptSignals(const KeptSignals&) = delete;
     KeptSignals& operator=(const KeptSignals&) = delete;
@@ -52,6 +56,7 @@ private:
     static constexpr std::array numbers = {SIGHUP, SIGINT,  SIGTERM, SIGSEGV,
                                            SIGBUS, SIGABRT, SIGFPE,  SIGPIPE};
     std::array<struct sigaction, numbers.size()> actions_;
+    sigset_t mask_;
 };
 
 // One gmsh model, removed at the end whatever happens.
@@ -216,7 +221,7 @@ std::shared_ptr<GmshSession> GmshSession::shared() {
 GmshSession::GmshSession() {
     const bool read_configuration = false, run = false;
     {
-        const KeptSignals signals;
+        const KeptSignals kept;
         gmsh::initialize(0, nullptr, read_configuration, run);
     }
     gmsh::option::setNumber("General.Terminal", 0);

@@ -15,9 +15,9 @@ module app_memory
          real(c_double) :: n_bytes
       end function machine_memory
 
-      !> End the program if there is no memory for the smallest run. Else let BLAS take the buffer that
-      !! it would later ask for again and again in vain, with one thread unless OPENBLAS_NUM_THREADS
-      !! wants more; and keep freed memory for the next factorization.
+      !> End the program if there is no memory for the smallest run. Else let BLAS take the buffer
+      !! that it would later ask for again and again in vain, with one thread unless
+      !! OPENBLAS_NUM_THREADS wants more; and keep freed memory for the next factorization.
       subroutine prepare_memory() bind(C, name="app_prepare_memory")
          implicit none(type, external)
       end subroutine prepare_memory

@@ -43,10 +43,11 @@ contains
    function size_of_scene(scene) result(estimate)
       type(scene_t), intent(in) :: scene
       type(estimate_t) :: estimate
-      real(rk) :: length, touching_cells, written
+      real(rk) :: length, touching_cells, values, written
 
       length = total_length(network_of_scene(scene))
-     if (length > 0.0_rk) estimate%fracture_cells = anint(length/scene%discretization%size_fracture)
+      if (length > 0.0_rk) estimate%fracture_cells = &
+         anint(length/scene%discretization%size_fracture)
       estimate%cells = anint(number_of_cells(scene, length))
       estimate%steps = real(scene%load%steps, rk)
       estimate%unknowns = 4.0_rk*estimate%cells  ! two for each node of six-node triangles
@@ -62,17 +63,10 @@ contains
       end if
       estimate%bytes_of_cells = byte_per_cell*estimate%cells
       estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
-      estimate%bytes_of_tables = byte_per_value*( &
-                               (values_per_step + values_per_probe*probes(scene))*estimate%steps + &
-                                 values_per_fracture_cell*estimate%fracture_cells*written)
+      values = (values_per_step + values_per_probe*real(size(scene%probes), rk))*estimate%steps
+      values = values + values_per_fracture_cell*estimate%fracture_cells*written
+      estimate%bytes_of_tables = byte_per_value*values
    end function size_of_scene
-
-   pure real(rk) function probes(scene)
-      type(scene_t), intent(in) :: scene
-
-      probes = 0.0_rk
-      if (allocated(scene%probes)) probes = real(size(scene%probes), rk)
-   end function probes
 
    !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
    !! from the fractures, up to half of that of the farthest point (size_field.cpp); the part of the
@@ -119,55 +113,57 @@ contains
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: memory  !< of the machine [byte]
       type(error_t), allocatable, intent(out) :: error
-      type(estimate_t) :: estimate
-      character(len=:), allocatable :: steps, needed
+      type(estimate_t) :: size
+      character(len=:), allocatable :: steps, cells, fracture_cells, needed
       real(rk) :: bytes
-      integer :: of_mesh, of_steps  ! groups
 
-      of_mesh = sheet%find("coarse") + sheet%find("fe")  ! a scene has one of them
-      of_steps = sheet%find("load")
-      steps = "steps"
-      if (scene%has_fluid()) then
-         of_steps = sheet%find("time")
-         steps = "step"
-      end if
-      estimate = size_of_scene(scene)
-      bytes = estimate%bytes_of_cells + estimate%bytes_of_contact + estimate%bytes_of_tables
-     needed = " need at least "//number(bytes*1.0e-9_rk)//" GB of memory, and this machine has "// &
-               number(memory*1.0e-9_rk)
-      if (estimate%steps > most_steps) then
-         call reject(of_steps, steps, "asks for about "//number(estimate%steps)// &
-                     " steps, and a run counts up to "//number(most_steps)//": ask for fewer")
-      else if (estimate%cells > most_cells) then
-         call reject(of_mesh, "", "the sizes ask for about "//number(estimate%cells)// &
-                     " cells, and a run numbers up to "//number(most_cells)//": give larger ones")
-      else if (estimate%fracture_cells > most_fracture_cells) then
-        call reject(of_mesh, "size_fracture", "asks for about "//number(estimate%fracture_cells)// &
-                     " fracture cells, and a run has up to "//number(most_fracture_cells)// &
-                     ": give a larger one")
+      size = size_of_scene(scene)
+      bytes = size%bytes_of_cells + size%bytes_of_contact + size%bytes_of_tables
+      steps = "asks for about "//number(size%steps)//" steps"
+      cells = "the sizes ask for about "//number(size%cells)//" cells"
+      fracture_cells = "asks for about "//number(size%fracture_cells)//" fracture cells"
+      needed = " need at least "//number(bytes*1.0e-9_rk)//" GB of memory, and this machine "// &
+               "has "//number(memory*1.0e-9_rk)
+      if (size%steps > most_steps) then
+         call refuse_steps(steps//", and a run counts up to "//number(most_steps)// &
+                           ": ask for fewer")
+      else if (size%cells > most_cells) then
+         call refuse_mesh("", cells//", and a run numbers up to "//number(most_cells)// &
+                          ": give larger ones")
+      else if (size%fracture_cells > most_fracture_cells) then
+         call refuse_mesh("size_fracture", fracture_cells//", and a run has up to "// &
+                          number(most_fracture_cells)//": give a larger one")
       else if (bytes <= memory) then
          return
-   else if (estimate%bytes_of_tables > max(estimate%bytes_of_cells, estimate%bytes_of_contact)) then
-         call reject(of_steps, steps, "asks for about "//number(estimate%steps)// &
-                     " steps; their tables"//needed//": ask for fewer steps, or write fields "// &
-                     "more seldom (interval of &output)")
-      else if (estimate%bytes_of_contact > estimate%bytes_of_cells) then
-        call reject(of_mesh, "size_fracture", "asks for about "//number(estimate%fracture_cells)// &
-                     " fracture cells, which"//needed//": give a larger one")
+      else if (2.0_rk*size%bytes_of_tables > bytes) then
+         call refuse_steps(steps//"; their tables"//needed//": ask for fewer steps, or write "// &
+                           "fields more seldom (interval of &output)")
+      else if (size%bytes_of_contact > size%bytes_of_cells) then
+         call refuse_mesh("size_fracture", fracture_cells//", which"//needed// &
+                          ": give a larger one")
       else
-         call reject(of_mesh, "", "the sizes ask for about "//number(estimate%cells)// &
-                     " cells and "//number(estimate%unknowns)//" unknowns, which"//needed// &
-                     ": give larger ones")
+         call refuse_mesh("", cells//" and "//number(size%unknowns)//" unknowns, which"//needed// &
+                          ": give larger ones")
       end if
 
    contains
 
-      subroutine reject(group, name, reason)
-         integer, intent(in) :: group
+      subroutine refuse_steps(reason)
+         character(len=*), intent(in) :: reason
+
+         if (scene%has_fluid()) then
+            call refuse(error, sheet, sheet%find("time"), "step", reason)
+         else
+            call refuse(error, sheet, sheet%find("load"), "steps", reason)
+         end if
+      end subroutine refuse_steps
+
+      subroutine refuse_mesh(name, reason)
          character(len=*), intent(in) :: name, reason
 
-         call refuse(error, sheet, group, name, reason)
-      end subroutine reject
+         ! A scene has one of the two groups.
+         call refuse(error, sheet, sheet%find("coarse") + sheet%find("fe"), name, reason)
+      end subroutine refuse_mesh
 
    end subroutine check_size
 

@@ -30,12 +30,12 @@ module output_run
    !> The files of a run, from `open` to `close`.
    type :: run_output_t
       type(place_t), private :: place
-      logical :: keeps_earlier_run = .false.  !< files of it are there, and `begin` has not come
+      logical :: keeps_earlier_run = .false.  !< it has left files, and `begin` has not come
       type(tables_t), private :: tables
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
       type(text_buffer_t), private :: log_text
-      integer, private :: log_written = 0  !< characters of the log on disk
+      integer(lk), private :: log_written = 0_lk  !< characters of the log on disk
       logical, private :: writes_vtu = .true.
       real(rk), private :: interval = 0.0_rk  !< between written fields [s]
       real(rk), private :: next_fields = 0.0_rk  !< when fields are due [s]
@@ -60,8 +60,8 @@ module output_run
 
 contains
 
-   !> Take a folder for the run; in it everything stays as it is until `begin`. `refused`: the folder
-   !! is a wrong choice.
+   !> Take a folder for the run; in it everything stays as it is until `begin`. `refused`: the
+   !! folder is a wrong choice.
    subroutine open_run(self, directory, source, refused, error)
       class(run_output_t), intent(out) :: self
       character(len=*), intent(in) :: directory

@@ -20,7 +20,7 @@ module output_series
       logical, allocatable, private :: is_written(:)  !< (columns)
       integer, private :: column = 0  !< values in the row so far
       character(len=:), allocatable, private :: fault  !< the first row with a wrong value
-      integer, private :: written = -1  !< characters in the file
+      integer(lk), private :: written = -1_lk  !< characters in the file
    contains
       procedure :: open => open_series
       procedure, private :: put_real

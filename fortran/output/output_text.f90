@@ -1,7 +1,7 @@
 !> Text that grows: a buffer with room to spare.
 module output_text
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: lk, rk
    use base_number, only: format_real, number_width
    use output_files, only: write_text_file
    implicit none(type, external)
@@ -13,7 +13,7 @@ module output_text
 
    !> A long text, built piece by piece.
    type :: text_buffer_t
-      integer :: length = 0  !< characters used
+      integer(lk) :: length = 0_lk  !< characters used
       character(len=:), allocatable, private :: storage
    contains
       procedure :: append
@@ -30,15 +30,17 @@ contains
       class(text_buffer_t), intent(inout) :: self
       character(len=*), intent(in) :: piece
       character(len=:), allocatable :: larger
+      integer(lk) :: length  ! afterwards
 
+      length = self%length + len(piece, kind=lk)
       if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
-      if (self%length + len(piece) > len(self%storage)) then
-         allocate (character(len=2*(self%length + len(piece))) :: larger)
+      if (length > len(self%storage, kind=lk)) then
+         allocate (character(len=2_lk*length) :: larger)
          larger(1:self%length) = self%storage(1:self%length)
          call move_alloc(larger, self%storage)
       end if
-      self%storage(self%length + 1:self%length + len(piece)) = piece
-      self%length = self%length + len(piece)
+      self%storage(self%length + 1:length) = piece
+      self%length = length
    end subroutine append
 
    !> Add a number at the end, with the digits that it needs.
