@@ -95,7 +95,7 @@ def test_results_stay_until_there_are_new_ones(fault: str, tmp_path: Path) -> No
 def test_a_second_run_into_a_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "small.nml").write_text(SCENE)
     (tmp_path / "long.nml").write_text(varied(("end = 18000.0", "end = 1.0e9")))
-    first = [SOLVER, "run", "long.nml", "--out", "out", "--quiet"]
+    first: list[str | Path] = [SOLVER, "run", "long.nml", "--out", "out", "--quiet"]
     with subprocess.Popen(first, cwd=tmp_path, stderr=subprocess.DEVNULL) as process:
         deadline = time.monotonic() + 60
         while not (tmp_path / "out" / "scene.nml").exists():

@@ -88,7 +88,7 @@ def test_a_second_signal_ends_at_once(sent: signal.Signals, tmp_path: Path) -> N
 def test_the_same_wish_may_arrive_twice(tmp_path: Path) -> None:
     """A terminal's ctrl-C comes directly and through the launcher."""
     out = tmp_path / "out"
-    command = [SOLVER, "run", GROWING_WINGS, "--out", "out", "--quiet"]
+    command: list[str | Path] = [SOLVER, "run", GROWING_WINGS, "--out", "out", "--quiet"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
         wait_for(out / "scene.nml", process)
         process.send_signal(signal.SIGINT)

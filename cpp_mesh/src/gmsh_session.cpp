@@ -33,8 +33,8 @@ Scaling scaling_of(const std::vector<int>& loop, const std::vector<Vec2>& xy) {
     return {0.5 * (low + high), 1.0 / std::max(high.x - low.x, high.y - low.y)};
 }
 
-// Keeps what the program does about signals: gmsh sets handlers of its own when it starts, and a run
-// that is told to stop would end without its last state. Signals wait until those are gone.
+// Keeps what the program does about signals: gmsh sets handlers of its own when it starts, and a
+// run that is told to stop would end without its last state. Signals wait until those are gone.
 class KeptSignals {
 public:
     KeptSignals() {

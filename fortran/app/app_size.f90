@@ -46,8 +46,9 @@ contains
       real(rk) :: length, touching_cells, values, written
 
       length = total_length(network_of_scene(scene))
-      if (length > 0.0_rk) estimate%fracture_cells = &
-         anint(length/scene%discretization%size_fracture)
+      if (length > 0.0_rk) then
+         estimate%fracture_cells = anint(length/scene%discretization%size_fracture)
+      end if
       estimate%cells = anint(number_of_cells(scene, length))
       estimate%steps = real(scene%load%steps, rk)
       estimate%unknowns = 4.0_rk*estimate%cells  ! two for each node of six-node triangles
@@ -58,8 +59,9 @@ contains
          estimate%steps = aint(scene%time%end/scene%time%step*(1.0_rk - 1.0e-9_rk)) + 1.0_rk
          estimate%unknowns = 3.0_rk*estimate%cells
          written = estimate%steps
-         if (scene%output%interval > 0.0_rk) &
+         if (scene%output%interval > 0.0_rk) then
             written = min(written, scene%time%end/scene%output%interval)
+         end if
       end if
       estimate%bytes_of_cells = byte_per_cell*estimate%cells
       estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
@@ -70,7 +72,7 @@ contains
 
    !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
    !! from the fractures, up to half of that of the farthest point (size_field.cpp); the part of the
-   !! body up to a distance d is taken as 2 L d + pi d**2 for fractures of length L altogether.
+   !! body up to a distance d is taken as 2 L d + n pi d**2 for n fractures of length L altogether.
    function number_of_cells(scene, length) result(n)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: length  !< of all fractures [m]
@@ -99,7 +101,7 @@ contains
          nearest = 1.0e-2_rk*near  ! layers grow geometrically from there to the farthest
          do i = 1, layers
             d = nearest*(farthest/nearest)**(real(i, rk)/layers)
-            outer = min(2.0_rk*length*d + pi*d**2, area)
+            outer = min(2.0_rk*length*d + size(scene%fractures)*pi*d**2, area)
             if (i == layers) outer = area
             n = n + cells_per_square*(outer - inner)/min(far, near + slope*d)**2
             inner = outer
