@@ -163,15 +163,19 @@ contains
       end do
    end subroutine scene_to_sheet
 
-   !> Leave out what a scene of this kind, or a group with this choice, must not give.
+   !> Leave out what a scene of this kind or a group with this choice must not give, and halves of
+   !! pairs.
    pure subroutine drop_foreign(record, has_fluid)
       type(record_t), intent(inout) :: record
       logical, intent(in) :: has_fluid
       integer :: item
 
       do item = lbound(record%values, 1), ubound(record%values, 1)
-         if (applies(parameters(item)%scenes, has_fluid) .and. record%suits(item)) cycle
-         record%values(item)%is_set = .false.
+         associate (rule => parameters(item), value => record%values(item))
+            value%is_set = value%is_set .and. applies(rule%scenes, has_fluid) &
+                           .and. record%suits(item)
+            if (rule%with /= "") value%is_set = value%is_set .and. record%is_set(rule%with)
+         end associate
       end do
    end subroutine drop_foreign
 

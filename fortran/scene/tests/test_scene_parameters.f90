@@ -86,7 +86,7 @@ contains
       end if
       if (item%at_most /= "") then
          other = index_of(item%group, item%at_most)
-        call checks%is_true(item%kind == kind_real .and. parameters(other)%kind == kind_real .and. &
+         call checks%is_true(all([item%kind, parameters(other)%kind] == kind_real) .and. &
                              item%unit == parameters(other)%unit, name//" and its bound")
       end if
    end subroutine check_others
