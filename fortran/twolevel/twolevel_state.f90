@@ -77,7 +77,7 @@ contains
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, scene, timers, error)
       if (allocated(error)) return
-      call new_state(self%mesh, self%model%cells, scene%initial%pressure, self%model, self%state)
+      call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
       allocate (self%grown(0))
