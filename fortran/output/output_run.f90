@@ -8,7 +8,7 @@ module output_run
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use output_files, only: write_text_file
    use output_network, only: network_record_t
    use output_place, only: place_t
@@ -88,7 +88,7 @@ contains
          call self%place%clear()
          self%writes_vtu = scene%output%vtu
          self%interval = scene%output%interval
-         call self%tables%open(folder, scene, scene%has_fluid())
+         call self%tables%open(folder, scene)
          call self%network%open(folder//"/network.json", fracture_names(scene), scene%has_fluid())
          call self%snapshots%open(folder, scene, error)
       end associate
@@ -123,14 +123,12 @@ contains
    end subroutine tip_row
 
    !> Add the state at all probes to probes.csv.
-   subroutine probe_row(self, time, displacement, stress, pressure)
+   subroutine probe_row(self, time, row)
       class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      real(rk), intent(in) :: displacement(:, :)  !< (2, n_probes) [m]
-      real(rk), intent(in) :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
-      real(rk), intent(in), optional :: pressure(:)  !< (n_probes) [Pa]
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      type(probe_row_t), intent(in) :: row
 
-      call self%tables%probe_row(time, displacement, stress, pressure)
+      call self%tables%probe_row(time, row)
    end subroutine probe_row
 
    !> Add an event to events.csv.
