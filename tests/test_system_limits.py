@@ -35,6 +35,7 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
     assert bound.startswith("forward error bound 0.003503 above 1e-06 at 3600 s; in 5 states, ")
     assert mass.startswith("mass error ")
     assert "2 warnings:" in terminal
+    assert terminal.count("warning") == 1
     assert bound in terminal
     log = (tmp_path / "out" / "run.log").read_text()
     assert log.count("warning: forward error bound") == 1

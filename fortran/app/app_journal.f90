@@ -2,6 +2,7 @@
 module app_journal
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use mesh_types, only: mesh_t, network_t
    use output_progress, only: progress_t, progress_values_t
    use output_run, only: run_output_t
@@ -17,7 +18,8 @@ module app_journal
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
-      real(rk) :: fields_time = -huge(1.0_rk)  !< of the last written fields [s]
+      logical :: has_written = .true.  !< the fields of the last accepted state
+      integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
    contains
       procedure :: open => open_journal
       procedure :: write_state
@@ -59,21 +61,17 @@ contains
       type(history_row_t) :: row
       type(probe_row_t) :: probes
       character(len=:), allocatable :: log_line
-      logical :: has_fluid
 
-      has_fluid = simulation%scene%has_fluid()
+      self%has_written = .false.
       row = simulation%history()
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
          if (allocated(error)) return
          call self%files%probe_row(row%time, probes)
       end if
-      ! Only a scene in time has an interval between its fields.
-      if (simulation%shows_state .and. (self%files%fields_due(row%time) .or. .not. has_fluid)) then
-         call self%write_fields(simulation, error)
-         if (allocated(error)) return
-      end if
       call self%files%history_row(row)
+      call write_due_fields(self, simulation, row%time, error)
+      if (allocated(error)) return
       call self%files%tick(error)
       call self%progress%show(progress_values_t( &
                               share=simulation%share_done(), time=row%time, &
@@ -82,7 +80,7 @@ contains
                               fracture_length=row%fracture_length, &
                               has_well=size(simulation%scene%injections) > 0, &
                               well_pressure=row%well_pressure, &
-                              keq_over_kic=simulation%keq_over_kic(), is_load=.not. has_fluid), &
+                              keq_over_kic=simulation%keq_over_kic(), is_load=.not. simulation%scene%has_fluid()), &
                               log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
@@ -115,21 +113,50 @@ contains
       end associate
    end subroutine write_chronicle
 
-   !> Fields of the last good state, unless those of its time have been written.
-   subroutine write_fields(self, simulation, error)
+   !> Fields where they are due: at the end of an interval, or without a fluid of a step of the
+   !! load; and at every increment of growth, with VTU files for as many as the scene wants.
+   subroutine write_due_fields(self, simulation, time, error)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: time  !< of the state [s], or its load factor
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: words
+      logical :: is_due
+
+      is_due = .not. simulation%shows_growth
+      if (simulation%scene%has_fluid()) is_due = self%files%fields_due(time)
+      if (is_due) then
+         call self%write_fields(simulation, error)
+      else if (simulation%shows_growth) then
+         associate (limit => simulation%scene%output%growth_states)
+            if (self%n_growth == limit .and. simulation%scene%output%vtu) then
+               words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
+                       "files of further increments of growth are left out"
+               call self%files%log(words)
+               call simulation%summary%warn(words)
+            end if
+            call self%write_fields(simulation, error, only_rows=self%n_growth >= limit)
+         end associate
+         self%n_growth = self%n_growth + 1
+      end if
+   end subroutine write_due_fields
+
+   !> Fields of the last accepted state, unless they have been written.
+   subroutine write_fields(self, simulation, error, only_rows)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: only_rows  !< no VTU files
       type(snapshot_t), allocatable :: fields
       type(intersection_fields_t) :: none
 
+      if (self%has_written) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
-      if (.not. fields%time > self%fields_time) return
       allocate (none%point(0), none%pressure(0))
       call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, none, &
-                                   error)
-      self%fields_time = fields%time
+                                   error, only_rows)
+      self%has_written = .true.
    end subroutine write_fields
 
 end module app_journal

@@ -161,9 +161,9 @@ contains
       fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
    end function fields_due
 
-   !> Write the fields at a time: VTU files where the scene wants them, and the rows of
-   !! fractures.csv.
-   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error)
+   !> Write the fields of the state that the last row of history.csv has: VTU files where the scene
+   !! wants them, and the rows of fractures.csv.
+   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error, only_rows)
       class(run_output_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
       type(mesh_t), intent(in) :: mesh
@@ -171,10 +171,15 @@ contains
       type(fracture_fields_t), intent(in) :: fracture
       type(intersection_fields_t), intent(in) :: intersections  !< may be empty
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: only_rows  !< no VTU files
+      logical :: writes_vtu
 
       call self%tables%fracture_rows(time, mesh%fracture, fracture)
-      if (self%writes_vtu) then
-         call self%snapshots%write(time, mesh, matrix, fracture, intersections, error)
+      writes_vtu = self%writes_vtu
+      if (present(only_rows)) writes_vtu = writes_vtu .and. .not. only_rows
+      if (writes_vtu) then
+         call self%snapshots%write(time, int(self%tables%history%n_rows, ik), mesh, matrix, &
+                                   fracture, intersections, error)
       end if
       if (self%interval > 0.0_rk) then
          self%next_fields = self%interval*(aint(time/self%interval + 1.0e-6_rk) + 1.0_rk)
