@@ -18,7 +18,7 @@ module app_journal
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
-      logical :: has_written = .true.  !< the fields of the last accepted state
+      logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
       integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
    contains
       procedure :: open => open_journal
@@ -62,7 +62,8 @@ contains
       type(probe_row_t) :: probes
       character(len=:), allocatable :: log_line
 
-      self%has_written = .false.
+      self%owes_rows = .true.
+      self%owes_vtu = .true.
       row = simulation%history()
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
@@ -80,8 +81,8 @@ contains
                               fracture_length=row%fracture_length, &
                               has_well=size(simulation%scene%injections) > 0, &
                               well_pressure=row%well_pressure, &
-                              keq_over_kic=simulation%keq_over_kic(), is_load=.not. simulation%scene%has_fluid()), &
-                              log_line)
+                              keq_over_kic=simulation%keq_over_kic(), &
+                              is_load=.not. simulation%scene%has_fluid()), log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
 
@@ -129,34 +130,38 @@ contains
          call self%write_fields(simulation, error)
       else if (simulation%shows_growth) then
          associate (limit => simulation%scene%output%growth_states)
-            if (self%n_growth == limit .and. simulation%scene%output%vtu) then
+            if (self%n_growth == limit .and. limit > 0 .and. simulation%scene%output%vtu) then
                words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
                        "files of further increments of growth are left out"
                call self%files%log(words)
                call simulation%summary%warn(words)
             end if
-            call self%write_fields(simulation, error, only_rows=self%n_growth >= limit)
+            call self%write_fields(simulation, error, with_vtu=self%n_growth < limit)
          end associate
          self%n_growth = self%n_growth + 1
       end if
    end subroutine write_due_fields
 
-   !> Fields of the last accepted state, unless they have been written.
-   subroutine write_fields(self, simulation, error, only_rows)
+   !> Fields of the last accepted state, as far as they have not been written.
+   subroutine write_fields(self, simulation, error, with_vtu)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
       type(error_t), allocatable, intent(out) :: error
-      logical, intent(in), optional :: only_rows  !< no VTU files
+      logical, intent(in), optional :: with_vtu  !< .false.: only the rows of fractures.csv
       type(snapshot_t), allocatable :: fields
       type(intersection_fields_t) :: none
+      logical :: has_vtu
 
-      if (self%has_written) return
+      has_vtu = .true.
+      if (present(with_vtu)) has_vtu = with_vtu
+      if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
       allocate (none%point(0), none%pressure(0))
       call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, none, &
-                                   error, only_rows)
-      self%has_written = .true.
+                                   error, self%owes_rows, has_vtu)
+      self%owes_rows = .false.
+      if (has_vtu) self%owes_vtu = .false.
    end subroutine write_fields
 
 end module app_journal

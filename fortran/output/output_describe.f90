@@ -37,7 +37,8 @@ module output_describe
       "* Without a fluid there is no time: `load_factor`, the factor on the loads of the scene,", &
       "  stands in its place in all tables, in network.json and as the time of the VTU files.", &
       "* The rows of the other tables belong to those of history.csv that have the same `time_s`", &
-      "  or `load_factor`. Growth can go on at the same load: `history_row` tells such states apart.", &
+      "  or `load_factor`. Growth can go on at the same load: `history_row` tells such states", &
+      "  apart.", &
       "* Files are whole at any time: they are written aside and renamed, the tables every few", &
       "  seconds while a run goes on, run.json last.", &
       "", &
@@ -101,17 +102,17 @@ contains
       call describe(unit, "network.json", "The fractures, their tips and joints. `[]` stands "// &
                     "for each item of a list.", network_keys)
       call describe_words(unit, "joints[].kind", joint_words)
-      call describe(unit, "matrix.vtu", "Fields of the rock in the states of "// &
-                    "fractures.csv, unless the scene turns VTU files off; of growth only as many "// &
-                    "as `growth_states` of `&output` says, after which run.json has a "// &
-                    "warning. There are values of the triangles, and the displacement of their "// &
-                    "nodes too. Without a fluid these are six to a triangle. Every array has its "// &
-                    "unit as VTK's key `UNITS_LABEL`. The field "// &
-                    "data `TimeValue` of each file is its time_s or load_factor, and `history_row` "// &
-                    "the number of the row of history.csv. In matrix.pvd and the others, times "// &
-                    "rise from file to file, as ParaView needs it: states with the same load "// &
-                    "factor are told apart in the last digit, and those of a falling load "// &
-                    "stand in the order of their load factor.", matrix_fields)
+      call describe(unit, "matrix.vtu", "Fields of the rock in the states of fractures.csv, "// &
+                    "unless the scene turns VTU files off; of growth only as many as "// &
+                    "`growth_states` of `&output` says, after which run.json has a warning. "// &
+                    "There are values of the triangles, and the displacement of their nodes "// &
+                    "too. Without a fluid these are six to a triangle. Every array has its "// &
+                    "unit as VTK's key `UNITS_LABEL`. The field data `TimeValue` of each file "// &
+                    "is its time_s or load_factor, and `history_row` the number of the row of "// &
+                    "history.csv. In matrix.pvd and the others, times rise from file to file, "// &
+                    "as ParaView needs it: states with the same load factor are told apart in "// &
+                    "the last digit, and those of a falling load stand in the order of their "// &
+                    "load factor.", matrix_fields)
       call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
                     "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
                     "`state_names` the words of states 0, 1 and 2.", fracture_fields)

@@ -231,8 +231,8 @@ contains
          & '" header_type="UInt64">')
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)//legends(self)// &
-         & "</FieldData>")
+         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)// &
+         & legends(self)//"</FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
          & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
