@@ -44,15 +44,14 @@ def check_states(out: Path) -> None:
     for name in ("matrix.pvd", "fractures.pvd"):
         times = [time for time, _ in files(out / name)]
         assert all(before < after for before, after in pairwise(times))
-    for (time, file), row in zip(
-        files(out / "fractures.pvd"), history_rows(out / "fractures.pvd"), strict=True
-    ):
+    numbers_of_rows = history_rows(out / "fractures.pvd")
+    for (time, file), number in zip(files(out / "fractures.pvd"), numbers_of_rows, strict=True):
         fields = pyvista.read(file)
-        assert float(fields.field_data["TimeValue"][0]) == float(history[row - 1][clock])
-        assert time == pytest.approx(float(history[row - 1][clock]), rel=1e-12)
+        assert float(fields.field_data["TimeValue"][0]) == float(history[number - 1][clock])
+        assert time == pytest.approx(float(history[number - 1][clock]), rel=1e-12)
         length = fields.compute_cell_sizes().cell_data["Length"].sum()
         # with a fluid the wings of the body's mesh lag behind by less than a cell
-        assert length == pytest.approx(float(history[row - 1]["fracture_length_m"]), rel=0.1)
+        assert length == pytest.approx(float(history[number - 1]["fracture_length_m"]), rel=0.1)
 
 
 def test_each_increment_without_a_fluid(tmp_path: Path) -> None:
