@@ -35,10 +35,31 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
     assert bound.startswith("forward error bound 0.003503 above 1e-06 at 3600 s; in 5 states, ")
     assert mass.startswith("mass error ")
     assert "2 warnings:" in terminal
+    assert terminal.count("warning") == 1
     assert bound in terminal
     log = (tmp_path / "out" / "run.log").read_text()
     assert log.count("warning: forward error bound") == 1
     assert log.count("warning: mass error") == 1
+
+
+def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:
+    """A conductive rock in long steps: a bound of 2 %, and a pressure right within 0.1 %."""
+    base = (TOP / "verification/stability/base.nml").read_text()
+    for old, new in (
+        ("permeability = 5.0e-20", "permeability = 1.0e-12"),
+        ("step = 3600.0", "step = 1.0e7"),
+        ("end = 18000.0", "end = 5.0e7"),
+        ("&injection\n  fracture = 'f1'\n  rate = 1.5e-8\n/\n", ""),
+    ):
+        assert old in base, old
+        base = base.replace(old, new, 1)
+    status, _, _, warnings = run(tmp_path, base)
+    assert status == 0
+    assert any(warning.startswith("forward error bound 0.022") for warning in warnings)
+    # the same body, sealed too, with k = 1e-20 m2, where the bound is 2e-13
+    assert numbers(tmp_path / "out/fractures.csv", "pressure_pa")[-1] == pytest.approx(
+        6.902057e6, rel=1e-3
+    )
 
 
 def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:

@@ -56,6 +56,7 @@ TIPS = [
     "k2_dc_error_pa_sqrtm",
     "k1_corrected_pa_sqrtm",
     "k2_corrected_pa_sqrtm",
+    "history_row",
 ]
 FRACTURES = [
     "time_s",
@@ -70,6 +71,7 @@ FRACTURES = [
     "traction_t_pa",
     "pressure_pa",
     "state",
+    "history_row",
 ]
 PROBES = [
     "time_s",

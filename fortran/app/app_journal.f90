@@ -2,6 +2,7 @@
 module app_journal
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use mesh_types, only: mesh_t, network_t
    use output_progress, only: progress_t, progress_values_t
    use output_run, only: run_output_t
@@ -17,7 +18,8 @@ module app_journal
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
-      real(rk) :: fields_time = -huge(1.0_rk)  !< of the last written fields [s]
+      logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
+      integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
    contains
       procedure :: begin => begin_journal
       procedure :: write_state
@@ -55,21 +57,18 @@ contains
       type(history_row_t) :: row
       type(probe_row_t) :: probes
       character(len=:), allocatable :: log_line
-      logical :: has_fluid
 
-      has_fluid = simulation%scene%has_fluid()
+      self%owes_rows = .true.
+      self%owes_vtu = .true.
       row = simulation%history()
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
          if (allocated(error)) return
          call self%files%probe_row(row%time, probes)
       end if
-      ! Only a scene in time has an interval between its fields.
-      if (simulation%shows_state .and. (self%files%fields_due(row%time) .or. .not. has_fluid)) then
-         call self%write_fields(simulation, error)
-         if (allocated(error)) return
-      end if
       call self%files%history_row(row)
+      call write_due_fields(self, simulation, row%time, error)
+      if (allocated(error)) return
       call self%files%tick(error)
       call self%progress%show(progress_values_t( &
                               share=simulation%share_done(), time=row%time, &
@@ -78,8 +77,8 @@ contains
                               fracture_length=row%fracture_length, &
                               has_well=size(simulation%scene%injections) > 0, &
                               well_pressure=row%well_pressure, &
-                              keq_over_kic=simulation%keq_over_kic(), is_load=.not. has_fluid), &
-                              log_line)
+                              keq_over_kic=simulation%keq_over_kic(), &
+                              is_load=.not. simulation%scene%has_fluid()), log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
 
@@ -111,21 +110,54 @@ contains
       end associate
    end subroutine write_chronicle
 
-   !> Fields of the last good state, unless those of its time have been written.
-   subroutine write_fields(self, simulation, error)
+   !> Fields where they are due: at the end of an interval, or without a fluid of a step of the
+   !! load; and at every increment of growth, with VTU files for as many as the scene wants.
+   subroutine write_due_fields(self, simulation, time, error)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: time  !< of the state [s], or its load factor
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: words
+      logical :: is_due
+
+      is_due = .not. simulation%shows_growth
+      if (simulation%scene%has_fluid()) is_due = self%files%fields_due(time)
+      if (is_due) then
+         call self%write_fields(simulation, error)
+      else if (simulation%shows_growth) then
+         associate (limit => simulation%scene%output%growth_states)
+            if (self%n_growth == limit .and. limit > 0 .and. simulation%scene%output%vtu) then
+               words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
+                       "files of further increments of growth are left out"
+               call self%files%log(words)
+               call simulation%summary%warn(words)
+            end if
+            call self%write_fields(simulation, error, with_vtu=self%n_growth < limit)
+         end associate
+         self%n_growth = self%n_growth + 1
+      end if
+   end subroutine write_due_fields
+
+   !> Fields of the last accepted state, as far as they have not been written.
+   subroutine write_fields(self, simulation, error, with_vtu)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_vtu  !< .false.: only the rows of fractures.csv
       type(snapshot_t), allocatable :: fields
       type(intersection_fields_t) :: none
+      logical :: has_vtu
 
+      has_vtu = .true.
+      if (present(with_vtu)) has_vtu = with_vtu
+      if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
-      if (.not. fields%time > self%fields_time) return
       allocate (none%point(0), none%pressure(0))
       call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, none, &
-                                   error)
-      self%fields_time = fields%time
+                                   error, self%owes_rows, has_vtu)
+      self%owes_rows = .false.
+      if (has_vtu) self%owes_vtu = .false.
    end subroutine write_fields
 
 end module app_journal

@@ -24,7 +24,6 @@ module mechanics_simulation
       logical :: has_onset = .false.  !< growth has stopped the load
       real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
       type(snapshot_t), allocatable :: good  !< of the last accepted state
-      logical :: is_good = .false.  !< the present state is in equilibrium, not one on the way
    contains
       procedure :: begin
       procedure :: next_state
@@ -69,7 +68,8 @@ contains
       end associate
    end subroutine note_features
 
-   !> Take the load to the end of the programme's step, or to the next onset of growth.
+   !> Take the load to the end of the programme's step, or to the next onset of growth. The state
+   !! after the last increment is accepted at the load of that.
    subroutine next_state(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -80,14 +80,13 @@ contains
          target = load%from + (load%to - load%from)*real(self%step, rk)/real(load%steps, rk)
          if (self%step == load%steps) target = load%to
       end associate
-      self%is_good = .false.
-      call rise(self, target, self%has_onset, timers, error)
+      self%has_onset = .false.
+      if (.not. self%owes_state) call rise(self, target, self%has_onset, timers, error)
       if (allocated(error)) return
       call watch_body(self)
       call self%heed_limits(error)
       if (allocated(error)) return
-      self%is_good = .true.
-      self%shows_state = .not. self%has_onset
+      self%shows_growth = self%has_onset .or. self%owes_state
       self%accepted_factor = self%factor
       call note_state(self)
    end subroutine next_state
@@ -134,7 +133,6 @@ contains
       any_grew = .false.
       if (self%has_onset) then
          call self%grow_tips(any_grew, timers, error)
-         self%is_good = .not. allocated(error)
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
             self%ending = "a piece of the body has come loose"
             if (allocated(error)) deallocate (error)
@@ -142,15 +140,20 @@ contains
          if (allocated(error)) return
       else
          self%tip%advance = 0.0_rk
-         self%step = self%step + 1
-         if (self%step > self%scene%load%steps) self%ending = "the scene's last load factor"
+         if (.not. self%owes_state) then
+            self%step = self%step + 1
+            if (self%step > self%scene%load%steps) self%ending = "the scene's last load factor"
+         end if
+         self%owes_state = .false.
       end if
       if (self%scene%growth%intensities) call self%note_tips()
       if (.not. any_grew) return
       call self%note_growth()
       call self%note_mesh(self%body%mesh)
       self%summary%increments = self%summary%increments + 1
-      if (.not. self%is_cut) call self%end_at_gain()
+      if (self%is_cut) return
+      call self%end_at_gain()
+      self%owes_state = allocated(self%ending)
    end subroutine grow
 
    !> The network, and the mesh that follows it.
@@ -180,17 +183,12 @@ contains
       call probes_of_body(self, row, error)
    end subroutine probes
 
-   !> Fields of the present state, or of the last accepted one if it is none.
+   !> Fields of the last accepted state.
    subroutine snapshot(self, fields)
       class(mechanics_simulation_t), intent(in) :: self
       type(snapshot_t), allocatable, intent(out) :: fields
 
-      if (.not. allocated(self%good)) return
-      if (self%is_good) then
-         fields = body_snapshot(self)
-      else
-         fields = self%good
-      end if
+      if (allocated(self%good)) fields = self%good
    end subroutine snapshot
 
    !> What stands for the time: the load factor [-].

@@ -12,7 +12,7 @@ module output_closing
 
 contains
 
-   !> The lines, one thought each.
+   !> The lines, one thought each. Warnings stand elsewhere (app_warnings).
    function closing_lines(record, last_state, length, gain, seconds, directory) result(lines)
       type(run_record_t), intent(in) :: record
       character(len=*), intent(in) :: last_state  !< a time or load factor in words
@@ -22,7 +22,6 @@ contains
       character(len=*), intent(in) :: directory  !< where the results are
       type(text_t), allocatable :: lines(:)
       character(len=:), allocatable :: line
-      integer(ik) :: n_warnings
 
       call add_text(lines, record%status//": "//record%reason)
       line = "reached "//last_state//" in "//counted(record%steps, "step")
@@ -38,9 +37,6 @@ contains
       if (record%keq_over_kic > 0.0_rk) then
          call add_text(lines, "largest K_eq/K_IC "//brief_text(record%keq_over_kic, 4))
       end if
-      n_warnings = 0
-      if (allocated(record%warnings)) n_warnings = size(record%warnings, kind=ik)
-      if (n_warnings > 0) call add_text(lines, counted(n_warnings, "warning")//", in run.json")
       call add_text(lines, "results in "//directory)
    end function closing_lines
 

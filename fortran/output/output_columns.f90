@@ -76,7 +76,8 @@ module output_columns
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
       column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
-      column_t("tip", "-", always, "Number of the tip, from 1"), &
+      column_t("tip", "-", always, &
+               "Number of the tip, from 1: the same in all rows and in network.json"), &
       column_t("fracture", "-", always, "Number of its fracture, from 1 in the scene's order"), &
       column_t("x_m", "m", always, "Place of the tip, before it grew"), &
       column_t("y_m", "m", always, "Place of the tip, before it grew"), &
@@ -103,7 +104,8 @@ module output_columns
       column_t("k1_corrected_pa_sqrtm", "Pa m^1/2", always, &
                "k1_pa_sqrtm with what the mesh lacks added, where that is known; else the same"), &
       column_t("k2_corrected_pa_sqrtm", "Pa m^1/2", always, &
-               "k2_pa_sqrtm with what the mesh lacks added, where that is known; else the same")]
+               "k2_pa_sqrtm with what the mesh lacks added, where that is known; else the same"), &
+      column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
    type(column_t), parameter :: fracture_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
@@ -120,7 +122,8 @@ module output_columns
       column_t("traction_n_pa", "Pa", always, "Normal traction of contact"), &
       column_t("traction_t_pa", "Pa", always, "Tangential traction of contact"), &
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
-      column_t("state", "-", always, "State of contact")]
+      column_t("state", "-", always, "State of contact"), &
+      column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
    !> NAME stands for each probe's name; all but the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
@@ -213,7 +216,8 @@ module output_columns
       column_t("fractures[].x_m", "m", always, "x of its vertices, a list"), &
       column_t("fractures[].y_m", "m", always, "y of its vertices, a list"), &
       column_t("tips", "-", always, "The free tips at the end"), &
-      column_t("tips[].tip", "-", always, "Number of the tip, from 1"), &
+      column_t("tips[].tip", "-", always, &
+               "Number of the tip, as in tips.csv; those of joined tips are not given again"), &
       column_t("tips[].fracture", "-", always, "Number of its fracture"), &
       column_t("tips[].end", "-", always, "Which end of the fracture it is: `start` or `end`"), &
       column_t("tips[].x_m", "m", always, "Place of the tip"), &

@@ -37,7 +37,8 @@ module output_describe
       "* Without a fluid there is no time: `load_factor`, the factor on the loads of the scene,", &
       "  stands in its place in all tables, in network.json and as the time of the VTU files.", &
       "* The rows of the other tables belong to those of history.csv that have the same `time_s`", &
-      "  or `load_factor`.", &
+      "  or `load_factor`. Growth can go on at the same load: `history_row` tells such states", &
+      "  apart.", &
       "* Files are whole at any time: they are written aside and renamed, the tables every few", &
       "  seconds while a run goes on, run.json last.", &
       "", &
@@ -53,7 +54,7 @@ module output_describe
       "history = pandas.read_csv(""out/onset/history.csv"")", &
       "history.plot(x=""time_s"", y=""well_pressure_pa"")", &
       "cells = pandas.read_csv(""out/onset/fractures.csv"")", &
-      "last = cells[cells.time_s == cells.time_s.max()]  # the state at the end", &
+      "last = cells[cells.history_row == len(history)]  # the state at the end", &
       "record = json.load(open(""out/onset/run.json""))  # null: not a number", &
       "```", &
       "", &
@@ -75,15 +76,20 @@ contains
       call describe(unit, "history.csv", "A row per accepted time step, after that of the "// &
                     "initial state if it was in equilibrium; without a fluid a row at the end "// &
                     "of each step of the load programme and at each onset of growth. Growth "// &
-                    "follows its step: it shows in the next row.", history_columns)
+                    "follows its step: it shows in the next row, also where that growth ends "// &
+                    "the run. With a fluid, a "// &
+                    "step may hold several increments of growth, which the windows around the "// &
+                    "tips follow: tips.csv has a row of each, and the next row of history.csv "// &
+                    "comes once the mesh of the body has followed.", history_columns)
       call describe(unit, "tips.csv", "With growth or stress intensity factors: a row per free "// &
                     "tip and state, or per tip and increment of growth. Where any tip grows, "// &
                     "the rows of all hold the values before that. A tip that "// &
                     "has joined something, or been joined, has no more rows.", tip_columns)
       call describe(unit, "fractures.csv", "With fractures: a row per fracture cell and "// &
-                    "written time. These are the times that `interval` of `&output` asks for, "// &
-                    "without a fluid the ends of the load programme's steps, and the end of "// &
-                    "the run.", fracture_columns)
+                    "written state. These are the times that `interval` of `&output` asks for, "// &
+                    "without a fluid the ends of the load programme's steps; the first state "// &
+                    "on each mesh that has followed growth, without a fluid each onset of "// &
+                    "growth; and the end of the run.", fracture_columns)
       call describe_words(unit, "state", contact_words)
       call describe(unit, "probes.csv", "With probes: a row per row of history.csv. `NAME` "// &
                     "stands for the name of a probe; all columns but the time repeat for each "// &
@@ -96,11 +102,17 @@ contains
       call describe(unit, "network.json", "The fractures, their tips and joints. `[]` stands "// &
                     "for each item of a list.", network_keys)
       call describe_words(unit, "joints[].kind", joint_words)
-      call describe(unit, "matrix.vtu", "Fields of the rock at the times of fractures.csv, "// &
-                    "unless the scene turns VTU files off: values of the triangles, and the "// &
-                    "displacement of their nodes too. Without a fluid these are six to a "// &
-                    "triangle. Every array has its unit as VTK's key `UNITS_LABEL`. The field "// &
-                    "data `TimeValue` of each file is its time_s or load_factor.", matrix_fields)
+      call describe(unit, "matrix.vtu", "Fields of the rock in the states of fractures.csv, "// &
+                    "unless the scene turns VTU files off; of growth only as many as "// &
+                    "`growth_states` of `&output` says, after which run.json has a warning. "// &
+                    "There are values of the triangles, and the displacement of their nodes "// &
+                    "too. Without a fluid these are six to a triangle. Every array has its "// &
+                    "unit as VTK's key `UNITS_LABEL`. The field data `TimeValue` of each file "// &
+                    "is its time_s or load_factor, and `history_row` the number of the row of "// &
+                    "history.csv. In matrix.pvd and the others, times rise from file to file, "// &
+                    "as ParaView needs it: states with the same load factor are told apart in "// &
+                    "the last digit, and those of a falling load stand in the order of their "// &
+                    "load factor.", matrix_fields)
       call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
                     "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
                     "`state_names` the words of states 0, 1 and 2.", fracture_fields)

@@ -30,6 +30,7 @@ module output_network
       character(len=:), allocatable, private :: clock  !< key of the times
       type(network_t), private :: network  !< as last seen
       type(fracture_mesh_t), private :: mesh  !< as last seen
+      integer(ik), allocatable, private :: tip_ends(:, :)  !< (2, tips) fracture and end at first
       type(joint_t), allocatable, private :: joints(:)
       type(text_buffer_t), private :: steps  !< JSON of the steps so far
       logical, private :: is_written = .true.
@@ -66,6 +67,10 @@ contains
       if (same_network(network, self%network) .and. self%steps%length > 0) return
       self%network = network
       self%mesh = mesh
+      if (.not. allocated(self%tip_ends)) then
+         self%tip_ends = reshape([mesh%tip_fracture, mesh%tip_end], [2_ik, mesh%n_tips], &
+                                 order=[2, 1])
+      end if
       call note_joints(self, time)
       call json%keep_on_one_line()
       call json%begin_object("")
@@ -130,7 +135,7 @@ contains
       call json%end_array()
    end subroutine add_fractures
 
-   !> The free tips.
+   !> The free tips, with the numbers that they have from the start of the run.
    subroutine add_tips(json, record)
       type(json_t), intent(inout) :: json
       type(network_record_t), intent(in) :: record
@@ -140,7 +145,9 @@ contains
       associate (mesh => record%mesh)
          do i = 1, mesh%n_tips
             call json%begin_object("")
-            call json%add("tip", i)
+            call json%add("tip", int(findloc(record%tip_ends(1, :) == mesh%tip_fracture(i) .and. &
+                                             record%tip_ends(2, :) == mesh%tip_end(i), .true., &
+                                             dim=1), ik))
             call json%add("fracture", mesh%tip_fracture(i))
             call json%add("end", trim(merge("start", "end  ", mesh%tip_end(i) == 1)))
             call json%add("x_m", mesh%point_xy(1, mesh%tip_point(i)))

@@ -162,9 +162,10 @@ contains
       fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
    end function fields_due
 
-   !> Write the fields at a time: VTU files where the scene wants them, and the rows of
-   !! fractures.csv.
-   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error)
+   !> Write the fields of the state that the last row of history.csv has: VTU files where the scene
+   !! wants them, and the rows of fractures.csv.
+   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error, with_rows, &
+                           with_vtu)
       class(run_output_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
       type(mesh_t), intent(in) :: mesh
@@ -172,10 +173,17 @@ contains
       type(fracture_fields_t), intent(in) :: fracture
       type(intersection_fields_t), intent(in) :: intersections  !< may be empty
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_rows, with_vtu  !< .false.: without these
+      logical :: has_rows, has_vtu
 
-      call self%tables%fracture_rows(time, mesh%fracture, fracture)
-      if (self%writes_vtu) then
-         call self%snapshots%write(time, mesh, matrix, fracture, intersections, error)
+      has_rows = .true.
+      if (present(with_rows)) has_rows = with_rows
+      has_vtu = self%writes_vtu
+      if (present(with_vtu)) has_vtu = has_vtu .and. with_vtu
+      if (has_rows) call self%tables%fracture_rows(time, mesh%fracture, fracture)
+      if (has_vtu) then
+         call self%snapshots%write(time, int(self%tables%history%n_rows, ik), mesh, matrix, &
+                                   fracture, intersections, error)
       end if
       if (self%interval > 0.0_rk) then
          self%next_fields = self%interval*(aint(time/self%interval + 1.0e-6_rk) + 1.0_rk)

@@ -56,15 +56,17 @@ contains
       end if
       call remove_earlier(directory)
       do i = 1, 3
-         call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd")
+         call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
+                                       is_falling=scene%load%to < scene%load%from)
       end do
       if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
    end subroutine open_snapshots
 
-   !> Write the fields at a time.
-   subroutine write_snapshot(self, time, mesh, matrix, fracture, intersections, error)
+   !> Write the fields of a state.
+   subroutine write_snapshot(self, time, history_row, mesh, matrix, fracture, intersections, error)
       class(snapshots_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
+      integer(ik), intent(in) :: history_row  !< with the same state, from 1
       type(mesh_t), intent(in) :: mesh
       type(matrix_fields_t), intent(in) :: matrix
       type(fracture_fields_t), intent(in) :: fracture
@@ -73,15 +75,15 @@ contains
       type(vtu_grid_t) :: grid
 
       call fill_matrix(grid, time, mesh, matrix, self%material)
-      call write_one(self, 1, time, grid, error)
+      call write_one(self, 1, time, history_row, grid, error)
       if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
          call fill_fractures(grid, time, mesh%fracture, fracture, self%names)
-         call write_one(self, 2, time, grid, error)
+         call write_one(self, 2, time, history_row, grid, error)
       end if
       if (.not. allocated(error) .and. allocated(intersections%point)) then
          if (size(intersections%point) > 0) then
             call fill_intersections(grid, time, mesh%fracture, intersections)
-            call write_one(self, 3, time, grid, error)
+            call write_one(self, 3, time, history_row, grid, error)
          end if
       end if
       self%n_written = self%n_written + 1
@@ -100,14 +102,16 @@ contains
    end subroutine flush_snapshots
 
    !> Write one grid and add it to its collection.
-   subroutine write_one(self, i, time, grid, error)
+   subroutine write_one(self, i, time, history_row, grid, error)
       class(snapshots_t), intent(inout) :: self
       integer, intent(in) :: i  !< index of the dimension
       real(rk), intent(in) :: time  !< [s]
-      type(vtu_grid_t), intent(in) :: grid
+      integer(ik), intent(in) :: history_row
+      type(vtu_grid_t), intent(inout) :: grid
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: file
 
+      call grid%set_history_row(history_row)
       file = file_name(i, self%n_written)
       call grid%write(self%directory//"/"//file, error)
       if (.not. allocated(error)) call self%collections(i)%add(time, file)

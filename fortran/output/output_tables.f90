@@ -118,6 +118,7 @@ contains
          call table%put("k2_dc_error_pa_sqrtm", row%k2_dc_error)
          call table%put("k1_corrected_pa_sqrtm", row%k1_corrected)
          call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
+         call table%put("history_row", int(self%history%n_rows, ik))
          call table%end_row()
       end associate
    end subroutine tip_row
@@ -153,6 +154,7 @@ contains
             else
                call table%put_nothing("state")
             end if
+            call table%put("history_row", int(self%history%n_rows, ik))
             call table%end_row()
          end do
       end associate

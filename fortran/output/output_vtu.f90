@@ -49,6 +49,7 @@ module output_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
+      integer(ik) :: history_row = 0  !< of history.csv with the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
       type(vtu_words_t), allocatable :: legends(:)
@@ -60,6 +61,7 @@ module output_vtu
       generic :: add => add_scalar, add_vector, add_integer
       procedure :: add_at_points
       procedure :: add_legend
+      procedure :: set_history_row
       procedure :: set_units
       procedure :: write => write_grid
    end type vtu_grid_t
@@ -153,6 +155,14 @@ contains
       call move_alloc(longer, self%legends)
    end subroutine add_legend
 
+   !> Say which row of history.csv has the same state.
+   pure subroutine set_history_row(self, row)
+      class(vtu_grid_t), intent(inout) :: self
+      integer(ik), intent(in) :: row  !< from 1
+
+      self%history_row = row
+   end subroutine set_history_row
+
    !> Give the fields so far their units, as VTK's key UNITS_LABEL.
    pure subroutine set_units(self, names, units)
       class(vtu_grid_t), intent(inout) :: self
@@ -221,7 +231,8 @@ contains
          & '" header_type="UInt64">')
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//legends(self)//"</FieldData>")
+         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)// &
+         & legends(self)//"</FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
          & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
@@ -285,6 +296,17 @@ contains
       end subroutine array
 
    end function header
+
+   !> The row of history.csv as field data.
+   pure function state_number(self) result(xml)
+      class(vtu_grid_t), intent(in) :: self
+      character(len=:), allocatable :: xml
+
+      xml = ""
+      if (self%history_row == 0) return
+      xml = '<DataArray type="Int32" Name="history_row" NumberOfTuples="1" format="ascii">'// &
+            integer_text(self%history_row)//"</DataArray>"
+   end function state_number
 
    !> The legends as arrays of strings: the codes of their characters, each string ended by a 0.
    pure function legends(self) result(xml)

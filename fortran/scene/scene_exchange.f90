@@ -229,6 +229,7 @@ contains
       case ("output")
          call exchange(record, "vtu", scene%output%vtu, reading)
          call exchange(record, "interval", scene%output%interval, reading, nothing=0.0_rk)
+         call exchange(record, "growth_states", scene%output%growth_states, reading)
       case default  ! the repeated groups
          return
       end select

@@ -406,7 +406,10 @@ module scene_parameters
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
       parameter_t("output", "interval", unit="s", range=at_least_zero, scenes=in_fluid, &
                   absent="the regular step", derived=.true., &
-                  meaning="Time between written fields; 0: the regular step")]
+                  meaning="Time between written fields; 0: the regular step"), &
+      parameter_t("output", "growth_states", kind_integer, range=at_least_zero, default="200", &
+                  meaning="Most states of growth that VTU files are written of beside those of "// &
+                  "interval or of the load's steps")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]

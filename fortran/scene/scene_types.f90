@@ -172,6 +172,7 @@ module scene_types
    type :: output_t
       logical :: vtu = .true.
       real(rk) :: interval = 0.0_rk  !< between written fields [s]
+      integer(ik) :: growth_states = 200  !< of which VTU files are written beside these
    end type output_t
 
    !> The whole problem.

@@ -40,7 +40,7 @@ module simulation_limits
    ! The table keeps its own layout.
    !&<
    type(limit_t), parameter :: limits(*) = [ &
-      limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 1.0e-2_rk, &
+      limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 0.1_rk, &
               "Bound of the rounding errors in the solution on the fractures, relative", &
               "look for values of the scene that lie too many decades apart"), &
       limit_t("mass error", "-", with_fluid, 1.0e-8_rk, 1.0e-3_rk, &

@@ -41,7 +41,7 @@ module simulation_types
       type(watch_t) :: watch  !< over the limits of the run
       character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
       logical :: owes_state = .false.  !< the scene is over after one more state
-      logical :: shows_state = .true.  !< the fields of the present state may be written
+      logical :: shows_growth = .false.  !< the present state has to do with an increment of growth
       real(rk) :: start_time = 0.0_rk  !< at which the scene begins, as time gives it
       real(rk) :: end_time = 0.0_rk  !< at which it is over
       logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) so far

@@ -25,6 +25,7 @@ module twolevel_simulation
    !> Both levels, the last step, and how the next one is chosen.
    type, extends(two_levels_t) :: twolevel_simulation_t
       logical :: is_initial = .false.  !< the present state is the one before the first step
+      logical :: has_new_mesh = .false.  !< the coarse mesh has grown since the present state
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
@@ -106,6 +107,8 @@ contains
          self%state = before  ! the last good one
          return
       end if
+      self%shows_growth = self%has_new_mesh
+      self%has_new_mesh = .false.
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
          if (.not. self%owes_state) then
@@ -225,6 +228,7 @@ contains
          if (allocated(error)) return
          call self%end_at_gain()
          if (coarse_grew) then
+            self%has_new_mesh = .true.
             call self%note_mesh(self%mesh)
             call watch_mesh(self, error)
             if (allocated(error)) return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from wingcrack_post.fields import MatrixField, read_matrix
 from wingcrack_post.frames import extent, usual_limit
 from wingcrack_post.history import development, intensities
 from wingcrack_post.load import abscissa, load_figure, moment_label
-from wingcrack_post.stress import stress_maps
+from wingcrack_post.stress import MEAN_COLOURS, stress_maps
 
 
 @pytest.fixture
@@ -95,3 +96,18 @@ def test_stress_maps_show_mean_and_shear(loaded: Run) -> None:
 def test_stress_maps_leave_pressure_to_others(wet_run: Path) -> None:
     with pytest.raises(AbsentError, match="pore pressure"):
         stress_maps(read_run(wet_run))
+
+
+def test_states_of_one_load_are_told_by_their_step(loaded: Run) -> None:
+    load = loaded.history.moments()
+    assert moment_label(loaded, float(load[2]), 2) == moment_label(loaded, float(load[2]))
+    cells = dict(loaded.history.cells)
+    cells["load_factor"] = [cells["load_factor"][0]] * loaded.history.rows
+    same = replace(loaded, history=replace(loaded.history, cells=cells))
+    assert moment_label(same, float(load[0]), 2).endswith(", step 3")
+
+
+def test_mean_stress_can_be_read_in_grey() -> None:
+    """Lighter and lighter from compression to tension."""
+    red, green, blue = MEAN_COLOURS(np.linspace(0.0, 1.0, 64))[:, :3].T
+    assert np.all(np.diff(0.2126 * red + 0.7152 * green + 0.0722 * blue) > 0.0)

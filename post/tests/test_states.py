@@ -9,7 +9,13 @@ import pytest
 
 from synthetic_run import GROWTH_STEP, HOUR, LAST_WING, STEPS, times, wing_length
 from wingcrack_post import Run, read_run
-from wingcrack_post.states import growth_start, last_settled, select_states
+from wingcrack_post.states import (
+    _history_rows,
+    growth_start,
+    last_settled,
+    select_states,
+    settled_rows,
+)
 
 
 def _chosen(run: Run, count: int, wanted: tuple[float, ...] = ()) -> list[float]:
@@ -107,3 +113,21 @@ def test_states_that_share_a_moment_keep_their_order(own_run: Path) -> None:
     chosen = select_states(run, moments, 6)
     assert chosen[-1] == STEPS - 1
     assert len(chosen) == 6
+
+
+def test_rows_that_the_files_tell_are_taken(own_run: Path) -> None:
+    """Of many states of one load only the first ones are written, and the last."""
+    run = _rewritten(own_run, time_s=[*times()[:4], *[times()[3]] * (STEPS - 4)])
+    written = [*times()[:5], times()[3]]
+    rows = [0, 1, 2, 3, 4, STEPS - 1]
+    assert select_states(run, written, 6, rows=rows) == [0, 1, 2, 3, 4, 5]
+    assert select_states(run, written, 2, rows=rows)[-1] == 5
+    assert list(_history_rows(run, np.array(written), rows)) == rows
+
+
+def test_short_steps_are_not_settled(own_run: Path) -> None:
+    steps = [HOUR] * STEPS
+    steps[GROWTH_STEP] = 0.01 * HOUR
+    run = _rewritten(own_run, dt_s=steps)
+    settled = list(settled_rows(run))
+    assert settled == [row for row in range(STEPS) if row != GROWTH_STEP]

@@ -21,6 +21,7 @@ from wingcrack_post import (
     style,
     view,
 )
+from wingcrack_post.stress import MEAN_COLOURS
 from wingcrack_post.view import draw_view
 
 
@@ -70,7 +71,7 @@ def test_singular_cells_do_not_colour_the_view(dry_run: Path, tmp_path: Path) ->
     mesh.save(path)
     scenery = render._scenery(read_run(run), STEPS - 1)
     assert scenery.limits == (-15.0, 15.0)
-    assert scenery.colours == "PuOr_r"
+    assert scenery.colours == MEAN_COLOURS
 
 
 def test_no_opengl_is_one_sentence(

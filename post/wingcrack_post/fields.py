@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import warnings
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
@@ -18,15 +19,18 @@ from wingcrack_post.table import FloatArray
 
 IntArray = npt.NDArray[np.int64]
 
+_ROW = re.compile(rb'Name="history_row"[^>]*>(\d+)<')
+_HEAD = 1000  # bytes of a VTU file that hold its row
 _LINE, _TRIANGLE, _QUADRATIC_TRIANGLE = 3, 5, 22  # VTK cell types
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """One written VTU file."""
+    """One written VTU file, with the row of history.csv (from 0) where the file says it."""
 
     time_s: float
     path: Path
+    row: int | None = None
 
 
 @dataclass(frozen=True)
@@ -71,12 +75,27 @@ def read_series(path: Path) -> tuple[Snapshot, ...]:
     try:
         entries = ElementTree.parse(path).iter("DataSet")
         found = [
-            Snapshot(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"])
+            (float(entry.attrib["timestep"]), path.parent / entry.attrib["file"])
             for entry in entries
         ]
     except (ElementTree.ParseError, KeyError, ValueError) as reason:
         raise RunError(f"{path}: the file is no valid PVD collection ({reason}).") from None
-    return tuple(found)  # not sorted: a load factor may fall
+    states = [Snapshot(time, file, _history_row(file)) for time, file in found]
+    # a falling load stands in the order of its factor
+    rows = [state.row for state in states if state.row is not None]
+    if len(rows) == len(states):
+        states.sort(key=lambda state: state.row or 0)
+    return tuple(states)
+
+
+def _history_row(path: Path) -> int | None:
+    """Row of history.csv with the same state, from the text at the head of a VTU file."""
+    try:
+        with path.open("rb") as file:
+            found = _ROW.search(file.read(_HEAD))
+    except OSError:
+        return None  # who needs the fields will say what is wrong
+    return int(found[1]) - 1 if found else None
 
 
 def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:

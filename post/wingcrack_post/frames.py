@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import Colormap, Normalize
 from matplotlib.tri import Triangulation
 
 from wingcrack_post import style
@@ -49,6 +49,7 @@ class Frame:
     """Rock and fractures in one written state."""
 
     moment: float
+    row: int | None  # of history.csv, from 0
     matrix: MatrixField
     fractures: FractureField | None
 
@@ -74,10 +75,11 @@ def read_frames(
     check(first)
     written = [snapshot.time_s for snapshot in run.matrix]
     frames = []
-    for place in select_states(run, written, count, wanted, since_growth=since_growth):
+    rows = [snapshot.row for snapshot in run.matrix]
+    for place in select_states(run, written, count, wanted, rows=rows, since_growth=since_growth):
         matrix = first if place == 0 else read_matrix(run.matrix[place].path)
         check(matrix)
-        frames.append(Frame(written[place], matrix, _fractures(run, place)))
+        frames.append(Frame(written[place], rows[place], matrix, _fractures(run, place)))
     return frames
 
 
@@ -133,7 +135,12 @@ def usual_limit(matrix: MatrixField, values: FloatArray, view: Window) -> float:
 
 
 def draw_field(
-    axes: Axes, frame: Frame, values: FloatArray, norm: Normalize, colours: str, unit: Unit
+    axes: Axes,
+    frame: Frame,
+    values: FloatArray,
+    norm: Normalize,
+    colours: Colormap | str,
+    unit: Unit,
 ) -> None:
     """Draw one value per triangle; `unit` is that of the axes."""
     x, y = unit.of(frame.matrix.points).T

@@ -18,7 +18,7 @@ from wingcrack_post.load import STEP_LABEL, abscissa, has_load, tip_steps
 from wingcrack_post.marks import mark_moments
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import jump_scale, run_length_unit, without_round_off
-from wingcrack_post.states import growth_start
+from wingcrack_post.states import growth_start, settled_rows
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.tabulated import intensities_table, state_table
 from wingcrack_post.units import MEGAPASCAL, area_unit, displacement_unit, intensity_unit
@@ -128,19 +128,21 @@ def development(run: Run) -> Figure:
         jumps.plot(time, unit.of(jump), dashes, color=colour, label=name)
     jumps.legend()
     _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", label)
-    _draw_states(states, table, time)
+    _draw_states(states, run, time)
     _finish(states, "contact state", "fracture cells [-]", label)
     style.outside_legend(figure, mark_moments(run, panels), 3)
     style.letter(panels)
     return figure
 
 
-def _draw_states(axes: Axes, table: Table, time: FloatArray) -> None:
-    for state in style.STATES:
+def _draw_states(axes: Axes, run: Run, time: FloatArray) -> None:
+    rows = settled_rows(run)  # in the short steps after growth fractures stick that slip else
+    for state, dashes in zip(style.STATES, ("-", "-", "--"), strict=True):
         # a state holds for the step that ends at its time
         axes.step(
-            time,
-            table.number(f"n_{state}"),
+            time[rows],
+            run.history.number(f"n_{state}")[rows],
+            dashes,
             where="pre",
             color=style.STATE_COLOURS[state],
             label=state,

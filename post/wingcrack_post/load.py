@@ -31,11 +31,14 @@ def abscissa(run: Run, moments: FloatArray) -> tuple[FloatArray, str]:
     return clock.of(moments), f"time [{clock.name}]"
 
 
-def moment_label(run: Run, moment: float) -> str:
-    """How a title calls a moment of the run."""
+def moment_label(run: Run, moment: float, row: int | None = None) -> str:
+    """How a title calls a moment of the run; states of one load by their step (row, from 0) too."""
     value, label = abscissa(run, np.array([moment]))
     if has_load(run):
-        return f"load factor {value[0]:.4g}"
+        name = f"load factor {value[0]:.4g}"
+        loads = run.history.moments()
+        shared = row is not None and np.count_nonzero(loads == loads[row]) > 1
+        return f"{name}, step {row + 1}" if row is not None and shared else name
     return f"$t$ = {value[0]:.4g} {label[6:-1]}"
 
 

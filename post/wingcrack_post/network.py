@@ -28,6 +28,7 @@ _MARGIN = 0.12  # around the network, as a share of its size
 _LARGE = 0.5  # share of the body from which on the whole body is shown
 _SIZE = (3.6, 5.0)  # [inch] of the axes at most
 _BESIDE = (1.75, 0.95)  # [inch] for labels and colour bar
+_ONLY_LABELS = 0.8  # [inch] beside the axes without a colour bar
 
 
 @style.styled
@@ -48,8 +49,9 @@ def network_figure(run: Run) -> Figure:
         raise AbsentError("the scene has no fractures")
     box = _box(growths, run.scene)
     ratio = (box[3] - box[2]) / (box[1] - box[0])
-    width = min(_SIZE[0], _SIZE[1] / ratio)
-    figure = style.new_figure(width + _BESIDE[0], width * ratio + _BESIDE[1])
+    beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
+    width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
+    figure = style.new_figure(width + beside, width * ratio + _BESIDE[1])
     axes = figure.add_subplot()
     draw_network(axes, growths, run.network, run.history, run.scene)
     return figure

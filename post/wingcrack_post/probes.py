@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -81,7 +82,8 @@ def probe_histories(run: Run) -> Figure:
                     time,
                     unit.of(table.number(name + end)),
                     linestyle=style.LINE_STYLES[part],
-                    color=style.CYCLE[index % len(style.CYCLE)],
+                    **_look(index),
+                    markevery=(index % 7, max(1, time.size // 7)),
                 )
         axes.set_title(quantity.title)
         axes.set_ylabel(f"{quantity.label} [{unit.name}]")
@@ -90,6 +92,14 @@ def probe_histories(run: Run) -> Figure:
     handles = [*_handles(names, quantities), *mark_moments(run, panels)]
     style.outside_legend(figure, handles, 6 if len(handles) <= 6 else 4)
     return figure
+
+
+def _look(index: int) -> dict[str, Any]:
+    """Colour and marker of a probe."""
+    return {
+        "color": style.CYCLE[index % len(style.CYCLE)],
+        "marker": style.MARKERS[index % len(style.MARKERS)],
+    }
 
 
 def _values_table(table: Table, names: Sequence[str], quantities: Sequence[_Quantity]) -> Figure:
@@ -111,8 +121,7 @@ def _values_table(table: Table, names: Sequence[str], quantities: Sequence[_Quan
 def _handles(names: list[str], quantities: list[_Quantity]) -> list[Line2D]:
     """Colours of the probes, then which component has which dashes."""
     handles = [
-        Line2D([], [], color=style.CYCLE[index % len(style.CYCLE)], label=f"probe {name}")
-        for index, name in enumerate(names)
+        Line2D([], [], label=f"probe {name}", **_look(index)) for index, name in enumerate(names)
     ]
     for part, dashes in enumerate(style.LINE_STYLES):
         symbols = [q.parts[part][1] for q in quantities if part < len(q.parts)]

@@ -111,7 +111,10 @@ def _profile(
 ) -> Figure:
     moments, s = table.moments()[mine], table.number("s_m")[mine]
     xy = np.column_stack((table.number("x_m")[mine], table.number("y_m")[mine]))
+    told = table.number("history_row")[mine] if table.has("history_row") else None
     states = state_numbers(moments, s)
+    if told is not None:
+        states = np.searchsorted(np.unique(told), told).astype(float)
     s = arc_length(states, s, xy)
     panels = list(_PANELS)
     if table.has("pressure_pa", "aperture_m"):
@@ -119,8 +122,10 @@ def _profile(
     columns = len(panels) // 2
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
     axes = list(figure.subplots(2, columns, sharex=True).flat)
-    written = moments[np.searchsorted(states, np.unique(states))]
-    chosen = select_states(run, written, DEFAULT_COUNT, wanted_s)
+    firsts = np.searchsorted(states, np.unique(states))
+    written = moments[firsts]
+    in_history = [] if told is None else [int(row) - 1 for row in told[firsts]]
+    chosen = select_states(run, written, DEFAULT_COUNT, wanted_s, rows=in_history)
     colours = style.ordered_colours(len(chosen))
     length = run_length_unit(run)
     initial = length.of(s[states == 0.0])
@@ -148,7 +153,10 @@ def _profile(
         axis.set_xlabel(f"distance along the fracture [{length.name}]")
     style.letter(axes)
     figure.suptitle(run.fracture_name(label), fontsize=9)
-    names = [moment_label(run, float(written[state])) for state in chosen]
+    names = [
+        moment_label(run, float(written[state]), in_history[state] if in_history else None)
+        for state in chosen
+    ]
     style.outside_legend(figure, _time_handles(names, colours, friction), 4)
     return figure
 

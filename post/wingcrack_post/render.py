@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import Colormap
 
 from wingcrack_post import style
 from wingcrack_post.errors import EnvironmentLacksError, RunError
@@ -49,7 +50,7 @@ class _Scenery:
     body: Any  # pyvista mesh, moved by the displacements
     lines: Any  # pyvista mesh of the fractures, moved likewise; None without fractures
     quantity: str  # what colours the body, with its unit
-    colours: str  # colour map
+    colours: Colormap | str
     limits: tuple[float, float] | None  # of the colours; None for all values
     factor: float  # how much larger than in truth displacements are drawn
     views: Sequence[Window]
@@ -75,8 +76,7 @@ def render(run: Run, target: Path, place: int) -> None:
         _draw_panel(plotter, scenery, panel)
     plotter.subplot(0, 0)
     plotter.add_text(
-        f"{run.name}, {moment_label(run, run.matrix[place].time_s).replace('$', '')}, "
-        f"displacements x {scenery.factor:.3g}",
+        f"{run.name}, {_label(run, place)}, displacements x {scenery.factor:.3g}",
         position=(0.06, 0.95),
         viewport=True,
         font_size=20,
@@ -86,14 +86,20 @@ def render(run: Run, target: Path, place: int) -> None:
     plotter.close()
 
 
+def _label(run: Run, place: int) -> str:
+    state = run.matrix[place]
+    return moment_label(run, state.time_s, state.row).replace("$", "")
+
+
 def _scenery(run: Run, place: int) -> _Scenery:
     snapshot = run.matrix[place]
     path = snapshot.path
     matrix = read_grid(path)
     body, factor = deformed(matrix, path)
+    colours: Colormap | str = style.FIELD_COLOURS
     if "pressure" in matrix.cell_data:
         quantity, values = "pore pressure [MPa]", cell_values(matrix, path, "pressure")
-        unit, colours, limits = MEGAPASCAL, style.FIELD_COLOURS, None
+        unit, limits = MEGAPASCAL, None
     else:
         cell_values(matrix, path, "stress")  # a run without it is refused by name
         field = matrix_field(matrix, path)

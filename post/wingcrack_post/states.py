@@ -39,9 +39,12 @@ def select_states(
     count: int,
     wanted: Sequence[float] = (),
     *,
+    rows: Sequence[int | None] = (),
     since_growth: bool = False,
 ) -> list[int]:
     """Choose some of the written states and give their places in `written`, in order.
+
+    `rows` are their rows of history.csv, from 0, where known.
 
     With `wanted` these are the states nearest to those moments. Without, they are the first one,
     the one in which growth began, states of equally spaced fracture length, the one with the
@@ -55,33 +58,42 @@ def select_states(
         raise RunError(f"{run.directory}: no fields are written yet.")
     if len(wanted):
         return sorted({int(np.argmin(np.abs(moments - moment))) for moment in wanted})
-    rows = _history_rows(run, moments)
-    places = np.flatnonzero(_settled(run, rows))
-    begun = _begun(run, rows[places])
+    in_history = _history_rows(run, moments, rows)
+    places = np.flatnonzero(_settled(run, in_history))
+    begun = _begun(run, in_history[places])
     if since_growth and begun is not None:
         skipped = max(0, min(begun, places.size - count))
         places, begun = places[skipped:], begun - skipped
     if begun == places.size - 1:
         begun = None  # nothing between it and the last state
-    values = _spacing(run, rows[places], begun)
+    values = _spacing(run, in_history[places], begun)
     chosen = _spread(values, begun or 0, count)
-    chosen = _with_peak(run, rows[places], chosen, begun)
+    chosen = _with_peak(run, in_history[places], chosen, begun)
     return [int(places[index]) for index in _filled(chosen, places.size, count)]
 
 
-def last_settled(run: Run, written: Sequence[float]) -> int:
+def last_settled(run: Run, written: Sequence[float], rows: Sequence[int | None] = ()) -> int:
     """Place of the last written state that is not in a short step after growth."""
-    rows = _history_rows(run, np.asarray(written, dtype=float))
-    return int(np.flatnonzero(_settled(run, rows))[-1])
+    in_history = _history_rows(run, np.asarray(written, dtype=float), rows)
+    return int(np.flatnonzero(_settled(run, in_history))[-1])
 
 
-def _history_rows(run: Run, written: FloatArray) -> IntArray:
-    """Row of history.csv of each written state.
+def settled_rows(run: Run) -> IntArray:
+    """Rows of history.csv but those of the short steps that follow growth."""
+    return np.flatnonzero(_settled(run, np.arange(run.history.rows)))
 
-    Several rows can share a moment (a load under which growth goes on by itself); the last written
-    state is then the last of them, the one before it an earlier one.
+
+def _history_rows(run: Run, written: FloatArray, told: Sequence[int | None] = ()) -> IntArray:
+    """Row of history.csv of each written state, as the files tell it.
+
+    Files of earlier versions do not. Several rows can share a moment (a load under which growth
+    goes on by itself); the last written state is then the last of them, the one before it an
+    earlier one.
     """
     moments = run.history.moments()
+    known = [row for row in told if row is not None and row < moments.size]
+    if known and len(known) == written.size:
+        return np.array(known, dtype=np.int64)
     rows = np.zeros(written.size, dtype=np.int64)
     bound = moments.size
     for place in reversed(range(written.size)):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from wingcrack_post import style
@@ -32,7 +32,11 @@ from wingcrack_post.units import Unit, stress_unit
 
 PANELS_PER_ROW = 3
 DEFAULT_COUNT = 6
-MEAN_COLOURS = "PuOr_r"  # orange in tension, purple in compression: seen by the colour-blind
+# Purple in compression, orange in tension: seen by the colour-blind. Lighter and lighter: in grey
+# print, where a map that is dark at both ends would not tell the signs apart, it can be read too.
+MEAN_COLOURS = LinearSegmentedColormap.from_list(
+    "mean_stress", ["#2D004B", "#6A51A3", "#A9A9B0", "#F0A94A", "#FFE680"]
+)
 _HEIGHT = 3.0  # [inch] of a panel at most
 
 
@@ -65,7 +69,7 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     height = min(_HEIGHT, (width - 1.6) / columns * view.ratio)
     figure = style.new_figure(width, 2 * bands * (height + 0.3) + 0.85)
     rows = figure.subplots(2 * bands, columns, squeeze=False, sharex=True, sharey=True)
-    quantities = (
+    quantities: tuple[tuple[str, Colormap | str, list[FloatArray]], ...] = (
         ("mean stress", MEAN_COLOURS, [mean_stress(frame.matrix) for frame in frames]),
         ("largest shear stress", style.FIELD_COLOURS, [_shear(frame.matrix) for frame in frames]),
     )
@@ -76,7 +80,7 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
         for axes, frame, field in zip(panels, frames, fields, strict=False):
             draw_field(axes, frame, scale.of(field), norm, colours, unit)
             draw_fractures(axes, frame.fractures, 1.1, unit)
-            axes.set_title(moment_label(run, frame.moment))
+            axes.set_title(moment_label(run, frame.moment, frame.row))
         lettered += panels[: len(frames)]
         bar = figure.colorbar(
             ScalarMappable(norm, colours),

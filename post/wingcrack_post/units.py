@@ -26,7 +26,7 @@ class Unit:
 METRE = Unit("m", 1.0)
 MEGAPASCAL = Unit("MPa", 1e6)
 
-_SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9))
+_SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9), Unit("pm", 1e-12))
 _STRESSES = (MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
 _AREAS = (Unit("m²", 1.0), Unit("cm²", 1e-4), Unit("mm²", 1e-6))
 _TIMES = tuple(Unit(name, SECONDS[name]) for name in ("h", "min", "s"))

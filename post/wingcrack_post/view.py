@@ -40,7 +40,8 @@ def draw_view(run: Run, target: Path, time_s: float | None = None) -> Path:
     target.parent.mkdir(parents=True, exist_ok=True)
     aside = target.with_name(f".{target.stem}.{os.getpid()}.png")
     if time_s is None:
-        place = last_settled(run, [snapshot.time_s for snapshot in run.matrix])
+        written = [snapshot.time_s for snapshot in run.matrix]
+        place = last_settled(run, written, [snapshot.row for snapshot in run.matrix])
     else:
         place = run.matrix.index(nearest(run.matrix, time_s))
     try:

@@ -82,7 +82,7 @@ contains
       call check_words(list(2)%text, "smallest angle of the mesh 5 degree below 10 at 5 s; "// &
                        "in 3 states, the worst 2 degree at 6 s; ")
       call watch%see(limit_mass, ieee_value(1.0_rk, ieee_quiet_nan), "8 s")
-      call watch%see(limit_forward_error, 0.06_rk, "8 s")
+      call watch%see(limit_forward_error, 0.6_rk, "8 s")
       call watch%stop_run(error)
       call checks%fails_with(error, "mass error nan above 0.001 at 8 s", "NaN stops")
    end subroutine test_watch
