@@ -1,4 +1,4 @@
-"""Judge a run with a fluid by its files alone: contact, fluid mass, bounds, limits (docs/sweeps.md).
+"""Judge a run with a fluid by its files alone: contact, mass, bounds, limits (docs/sweeps.md).
 
 Nothing here comes from the solver: the law of contact, the balance of fluid and the limits are
 computed again from scene.nml, the tables, the VTU files and run.json.
@@ -280,9 +280,9 @@ def check_counts(scene: Any, state: State, findings: Findings) -> None:
 
 def load_of(scene: Any) -> float:
     """The largest traction on the body [Pa]."""
+    names = ("x_traction", "y_traction")
     return max(
-        max(abs(side.get("x_traction") or 0.0), abs(side.get("y_traction") or 0.0))
-        for side in groups(scene, "side")
+        abs(float(side.get(name) or 0.0)) for side in groups(scene, "side") for name in names
     )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import collections
+import json
 import math
 import shutil
 import subprocess
@@ -178,8 +179,6 @@ def run_scene(folder: Path) -> Verdict:
 
 def warnings_of(out: Path) -> list[str]:
     """The warnings of a run."""
-    import json
-
     warnings = json.loads((out / "run.json").read_text())["warnings"]
     return [str(text) for text in warnings]
 

@@ -1,8 +1,8 @@
 !> Mutated scene files through what `check` does, many to a process (docs/sweeps.md):
 !!
 !!    mutated_scenes check FIRST LAST SCENE.nml ...   judge the mutated files FIRST to LAST
-!!    mutated_scenes write FIRST LAST SCENE.nml ...   leave them as mutated-NUMBER.nml, and of each
-!!                                                    that is a scene scene-NUMBER.nml, as `run` would
+!!    mutated_scenes write FIRST LAST SCENE.nml ...   leave them as mutated-NUMBER.nml, beside each
+!!                                                    that is a scene scene-NUMBER.nml, as of a run
 !!
 !! Each file stands on disk while it is judged: one that ends the process is still there, and its
 !! name has its number. An alarm ends the process if a file takes too long.

@@ -4,8 +4,8 @@
     .venv/bin/python verification/programs/mutated_scenes.py processes --count 20000
     .venv/bin/python verification/programs/mutated_scenes.py runs --count 2000
 
-Each number stands for one mutated file of inputs/ (docs/sweeps.md). What is found wrong is told with
-its number; `--first NUMBER --count 1` does it again.
+Each number stands for one mutated file of inputs/ (docs/sweeps.md). What is found wrong is told
+with its number; `--first NUMBER --count 1` does it again.
 """
 
 from __future__ import annotations
