@@ -7,8 +7,8 @@ module base_utf8
 
 contains
 
-   !> Every byte is printable ASCII or part of a UTF-8 character: no control characters, nothing of
-   !! another encoding.
+   !> Every byte is printable ASCII or part of a UTF-8 character: no control characters (U+0080 to
+   !! U+009F are some too), no ends of lines (U+2028, U+2029), nothing of another encoding.
    pure logical function is_printable(text)
       character(len=*), intent(in) :: text
       integer :: i, n_bytes
@@ -17,7 +17,18 @@ contains
       i = 1
       do while (i <= len(text))
          n_bytes = utf8_length(text(i:))
-         if (n_bytes == 0 .or. iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) return
+         select case (n_bytes)
+         case (0)
+            return
+         case (1)
+            if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) return
+         case (2)
+            if (iachar(text(i:i)) == 194 .and. iachar(text(i + 1:i + 1)) < 160) return
+         case (3)
+            if (iachar(text(i:i)) == 226 .and. iachar(text(i + 1:i + 1)) == 128 .and. &
+                any(iachar(text(i + 2:i + 2)) == [168, 169])) return
+         case default  ! none of them is a control character
+         end select
          i = i + n_bytes
       end do
       is_printable = .true.

@@ -155,13 +155,14 @@ contains
    !> Points on a circle: equally spaced ones, of which those next to a given point, to the end of
    !! an arc or to the end of a fracture on the circle give way to it.
    !!
-   !! A polygon of n corners on the circle lacks 2/3 (pi/n)**2 of its area: 1e-4 with 256.
+   !! A polygon of n corners on the circle lacks 2/3 (pi/n)**2 of its area: 1e-4 with 256, 2e-6 with
+   !! 2000. More would be of no use, and each edge is compared with every other one.
    pure function circle(scene, given) result(corners)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: given(:, :)  !< (2, n) of which some lie on the circle [m]
       real(rk), allocatable :: corners(:, :)
       real(rk), parameter :: on_circle = 1.0e-6_rk  ! distance over the radius
-      integer, parameter :: fewest = 256
+      real(rk), parameter :: fewest = 256.0_rk, most = 2000.0_rk
       real(rk), allocatable :: angle(:), fixed(:)
       real(rk) :: spacing, candidate
       integer :: i, k, n
@@ -185,7 +186,7 @@ contains
                end associate
             end do
          end do
-         n = max(fewest, ceiling(2.0_rk*pi*d%radius/size_boundary))
+         n = ceiling(min(most, max(fewest, 2.0_rk*pi*d%radius/size_boundary)))
          spacing = 2.0_rk*pi/n
          angle = fixed
          do i = 0, n - 1

@@ -144,6 +144,11 @@ contains
       case (kind_real, kind_reals)
          good = .not. is_text
          if (good) call read_real(word, number, good)
+         if (good .and. .not. abs(number) < huge(number)) then
+            reason = "is "//shortened(word)//" but must be a smaller number: the largest one "// &
+                     "there is means 'unlimited', which is said by leaving the name out"
+            return
+         end if
          if (good) good = holds(parameter%range, number)
          if (good) value%reals = [number]
       case (kind_integer, kind_wholes)

@@ -34,6 +34,11 @@ program test_base_utf8
    call checks%is_true(.not. is_printable("cut "//bytes([195])), "a cut letter")
    call checks%is_true(.not. is_printable(bytes([27])//"[31m"), "no control characters")
    call checks%is_true(.not. is_printable(bytes([127])), "no deletion")
+   call checks%is_true(.not. is_printable(bytes([194, 155])//"31m"), "nor those of two bytes")
+   call checks%is_true(is_printable(bytes([194, 160])), "a blank of two bytes")
+   call checks%is_true(.not. is_printable("a"//bytes([226, 128, 168])), "no end of a line")
+   call checks%is_true(.not. is_printable(bytes([226, 128, 169])//"b"), "nor of a paragraph")
+   call checks%is_true(is_printable(bytes([226, 128, 148])), "a dash")
    call checks%finish()
 
 contains

@@ -21,6 +21,7 @@ program test_mechanics_bodies
    call check_in_situ()
    call check_pure_shear()
    call check_disc()
+   call check_rim()
    call check_arcs()
    call checks%finish()
 
@@ -216,6 +217,18 @@ contains
       call checks%is_close(largest_error(simulation, exact)/maxval(abs(exact)), 0.0_rk, round_off, &
                            "a disc under pressure")
    end subroutine check_disc
+
+   !> However small the cells are, the rim of a disc has no more corners than a polygon may have:
+   !! each pair of its edges is compared.
+   subroutine check_rim()
+      type(scene_t) :: scene
+      type(outline_t) :: outline
+
+      scene = disc_scene([0.0_rk, 0.0_rk], 42.0_rk)
+      scene%discretization%size_boundary = 1.0e-5_rk
+      outline = outline_of_scene(scene)
+      call checks%is_true(size(outline%corners, 2) == 2000, "corners of a disc")
+   end subroutine check_rim
 
    !> Held at its centre, and in y beside it.
    function disc_scene(centre, radius) result(scene)

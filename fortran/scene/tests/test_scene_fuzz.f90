@@ -1,8 +1,9 @@
 !> Whatever a file holds, reading it ends with a scene or with a message, never in a crash.
 program test_scene_fuzz
    use testing_checks, only: checks_t
+   use testing_files, only: file_text
+   use testing_random, only: random_t
    use base_errors, only: error_t
-   use base_kinds, only: lk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_bytes, same_scene, source_path
    use scene_types, only: scene_t
@@ -11,10 +12,9 @@ program test_scene_fuzz
    character(len=*), parameter :: path = "test_scene_fuzz.nml"
    type(checks_t) :: checks
    character(len=:), allocatable :: good
-   integer(lk) :: seed
+   type(random_t) :: random
 
-   seed = 20231101_lk
-   call load_good()
+   good = file_text(source_path("inputs/paper_c/onset.nml"))
    call cut_everywhere()
    call change_bytes()
    call random_bytes()
@@ -24,18 +24,6 @@ program test_scene_fuzz
    call checks%finish()
 
 contains
-
-   subroutine load_good()
-      integer :: unit
-      integer(lk) :: n_bytes
-
-      open (newunit=unit, file=source_path("inputs/paper_c/onset.nml"), action="read", &
-            status="old", access="stream", form="unformatted")
-      inquire (unit=unit, size=n_bytes)
-      allocate (character(len=n_bytes) :: good)
-      read (unit) good
-      close (unit)
-   end subroutine load_good
 
    !> A file that ends early is refused, wherever it ends before its last group has begun.
    subroutine cut_everywhere()
@@ -64,20 +52,21 @@ contains
 
    subroutine change_bytes()
       character(len=:), allocatable :: bytes
-      integer :: i, k, position, n_survived
+      integer :: i, k, position, again, n_survived
 
       n_survived = 0
       do i = 1, 1500
          bytes = good
-         do k = 1, 1 + random_below(4)
-            position = 1 + random_below(len(bytes) - 1)
-            select case (random_below(3))
+         do k = 1, 1 + random%below(4)
+            position = 1 + random%below(len(bytes) - 1)
+            select case (random%below(3))
             case (0)  ! change
-               bytes(position:position) = char(random_below(256))
+               bytes(position:position) = char(random%below(256))
             case (1)  ! lose
                bytes = bytes(:position - 1)//bytes(position + 1:)
             case default  ! repeat what stands elsewhere
-               bytes = bytes(:position)//bytes(1 + random_below(len(bytes)):)
+               again = 1 + random%below(len(bytes))
+               bytes = bytes(:position)//bytes(again:)
             end select
          end do
          if (settled(bytes)) n_survived = n_survived + 1
@@ -93,7 +82,7 @@ contains
       n_refused = 0
       do i = 1, 500
          do k = 1, len(bytes)
-            bytes(k:k) = char(random_below(256))
+            bytes(k:k) = char(random%below(256))
          end do
          if (refused(bytes)) n_refused = n_refused + 1
       end do
@@ -110,14 +99,15 @@ contains
          "-", ".", "NaN", "T", "! remark", "x(1)", "0*1"]
       !&>
       character(len=:), allocatable :: text
-      integer :: i, k, n_refused
+      integer :: i, k, piece, n_refused
 
       n_refused = 0
       do i = 1, 2000
          text = "&fracture"
          do k = 1, 12
-            text = text//" "//trim(pieces(1 + random_below(size(pieces))))
-            if (random_below(5) == 0) text = text//achar(10)
+            piece = 1 + random%below(size(pieces))
+            text = text//" "//trim(pieces(piece))
+            if (random%below(5) == 0) text = text//achar(10)
          end do
          if (refused(text)) n_refused = n_refused + 1
       end do
@@ -158,13 +148,5 @@ contains
       refused = allocated(error)
       if (refused) refused = index(error%message, path) == 1
    end function refused
-
-   !> A number from 0 to n - 1 (linear congruential; Lewis, Goodman and Miller 1969).
-   integer function random_below(n)
-      integer, intent(in) :: n
-
-      seed = mod(16807_lk*seed, 2147483647_lk)
-      random_below = int(mod(seed, int(n, lk)))
-   end function random_below
 
 end program test_scene_fuzz
