@@ -69,17 +69,16 @@ contains
       end associate
    end function history_of_levels
 
-   !> Seismic moment of the slip since a state before, per metre of thickness [N m].
-   pure real(rk) function slip_moment(simulation, slip_before) result(moment)
+   !> Seismic moment of the slip in the last step, per metre of thickness [N m].
+   pure real(rk) function slip_moment(simulation) result(moment)
       class(two_levels_t), intent(in) :: simulation
-      real(rk), intent(in) :: slip_before(:, :)  !< (2, fracture cells) [u]_tau [m]
       integer(ik) :: i
 
       moment = 0.0_rk
       do i = 1, simulation%mesh%fracture%n_cells
          moment = moment + simulation%model%rock%shear*0.5_rk &
                   *simulation%model%condensed%length(i) &
-                  *sum(abs(simulation%state%jump(2, :, i) - slip_before(:, i)))
+                  *sum(abs(simulation%state%jump(2, :, i) - simulation%state%slip_before(:, i)))
       end do
    end function slip_moment
 

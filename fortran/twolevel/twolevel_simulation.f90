@@ -97,7 +97,7 @@ contains
          call take_step(self, timers, error)
       end if
       if (allocated(error)) return
-      self%seismic_moment = self%seismic_moment + slip_moment(self, before%jump(2, :, :))
+      self%seismic_moment = self%seismic_moment + slip_moment(self)
       self%mass_error = self%mass_error + self%report%mass_error
       row = self%history()
       call watch_levels(self, self%report, self%mass_error, row%mass_error_relative)

@@ -158,6 +158,7 @@ contains
          injection = matmul(self%share, rate(self%scene%injections, self%state%time, dt))
          call self%model%advance(self%mesh, dt, self%state, timers, report, error)
          if (allocated(error) .or. .not. report%converged) return
+         call self%windows%accept()
          self%values_are_current = .false.
          self%undrained = .false.
          self%injected = self%injected + dt*sum(injection)
@@ -176,7 +177,7 @@ contains
       allocate (self%coarse_values%nodal(3, self%mesh%n_nodes))
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
                         self%state%tractions, self%coarse_values%nodal)
-      self%coarse_values%dilation = self%model%cells%law%dilation
+      self%coarse_values%law = self%model%cells%law
       self%values_are_current = .true.
    end subroutine update_values
 

@@ -76,6 +76,7 @@ contains
       end do
 
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
+      allocate (after%slip_before(2, n), source=0.0_rk)
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
       prefilled = 0.0_rk
@@ -83,6 +84,7 @@ contains
          old = map%fracture_cell_old(i)
          if (old > 0) then
             after%jump(:, :, i) = before%jump(:, :, old)
+            after%slip_before(:, i) = before%slip_before(:, old)
             after%traction(:, :, i) = before%traction(:, :, old)
             after%contact(:, i) = before%contact(:, old)
             after%pressure(i) = before%pressure(old)
