@@ -20,6 +20,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_tips, only: support_tips
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, scene_t
    implicit none(type, external)
@@ -144,6 +145,7 @@ contains
          call self%condensed%factorize(mesh, self%matrix, dt, error)
          call timers%stop(phase_factorize)
          if (allocated(error)) return
+         call support_tips(mesh, self%rock, self%condensed)
       end if
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
