@@ -1,7 +1,8 @@
 !> A window around a tip: a piece of the network on a fine mesh, loaded by the coarse level.
 !!
-!! The outer edge takes the coarse displacement, the rock the coarse pressure as initial stress, the
-!! fracture faces what twolevel_faces says.
+!! The edge takes the coarse displacement, or, where it lies on a side of the body, what the scene
+!! gives there; the rock takes the coarse pressure as initial stress, the fracture faces what
+!! twolevel_faces says.
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -10,6 +11,7 @@ module twolevel_window
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
+   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side
    use fine_contact, only: contact_t
    use fine_contact_transfer, only: transfer_contact
    use fine_faces, only: face_conditions_t
@@ -17,7 +19,7 @@ module twolevel_window
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
-   use mesh_types, only: mesh_t, network_t
+   use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: scene_t
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
@@ -71,6 +73,7 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       real(rk) :: tip(2), half
+      integer(ik) :: side
 
       self%fracture = fracture
       self%end = end
@@ -101,7 +104,49 @@ contains
       self%tip = findloc(self%mesh%fracture%tip_fracture == fracture .and. &
                          self%mesh%fracture%tip_end == end, .true., dim=1)
       self%loads = no_loads(self%model%mesh)
+      do side = 1, side_count
+         if (on_body(self, scene, side)) then
+            call add_side_traction(self%model%mesh, side, scene%sides(side)%traction, &
+                                   self%loads%force)
+         end if
+      end do
    end subroutine build
+
+   !> A side of the window lies on that side of the body.
+   pure logical function on_body(self, scene, side)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      integer(ik), intent(in) :: side
+
+      select case (side)
+      case (1)
+         on_body = self%lower(1) <= scene%domain%x_min
+      case (2)
+         on_body = self%upper(1) >= scene%domain%x_max
+      case (3)
+         on_body = self%lower(2) <= scene%domain%y_min
+      case default
+         on_body = self%upper(2) >= scene%domain%y_max
+      end select
+   end function on_body
+
+   !> Which displacements are given on the window's edge: all, and those of the scene where it lies
+   !! on a side of the body.
+   pure function held_edge(self, scene) result(boundary)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(fine_boundary_t) :: boundary
+      integer(ik) :: axis, side
+
+      boundary = free_boundary(self%model%mesh)
+      do side = 1, side_count
+         do axis = 1, 2
+            if (on_body(self, scene, side) .and. &
+                .not. scene%sides(side)%displacement_given(axis)) cycle
+            call hold_side(self%model%mesh, side, axis, boundary)
+         end do
+      end do
+   end function held_edge
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
    !! between.
@@ -213,7 +258,7 @@ contains
          call self%faces%load(self%model%mesh, face_condition, state, self%loads)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
-         call self%model%prepare(conditions, error)
+         call self%model%prepare(conditions, error, held_edge(self, scene))
          if (allocated(error)) return
       end if
       call self%model%solve(self%loads, self%displacement, error, self%contact)
