@@ -20,7 +20,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: support_tips
+   use coarse_tips, only: tip_springs
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, scene_t
    implicit none(type, external)
@@ -38,6 +38,7 @@ module coarse_model
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      real(rk), allocatable :: reach(:)  !< (tips) share of its cell that lies behind each [-]
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -70,6 +71,8 @@ contains
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
+      if (allocated(self%reach)) deallocate (self%reach)
+      allocate (self%reach(mesh%fracture%n_tips), source=1.0_rk)
       call self%condensed%solver%release()
       self%condensed%analysed = .false.
       self%condensed%dt = -1.0_rk
@@ -145,8 +148,9 @@ contains
          call self%condensed%factorize(mesh, self%matrix, dt, error)
          call timers%stop(phase_factorize)
          if (allocated(error)) return
-         call support_tips(mesh, self%rock, self%condensed)
       end if
+      if (n > 0) call self%condensed%support(tip_springs(mesh%fracture, self%rock, &
+                                                         self%condensed, self%reach))
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known

@@ -4,60 +4,108 @@
 !! here. A crack then slips and opens as if it were longer or shorter by a share of its tip cells
 !! that does not fall with their size, and the error is of first order. That share depends on the
 !! mode and on Poisson's ratio nu, hardly on the mesh: -0.19 + 0.42 nu for opening and 0.11 + 0.42
-!! nu for slip, each within 0.03. A spring between the faces of the tip cells makes it vanish.
+!! nu for slip, each within 0.03. Springs between the faces of the tip cells make it vanish; they
+!! also let a tip lie anywhere in its cell, so that the mesh need not follow each small advance: the
+!! softer the springs, the farther the tip is along.
 !!
-!! The stiffness of the springs follows from the closed form of one crack in an infinite body under
-!! uniform pressure, and under uniform shear without friction: means over cracks of 20 cells at 20,
-!! 45 and 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes,
-!! angles and loads). At an opening tip it is negative, a quarter of what would make the body
-!! unstable.
+!! Their stiffness follows from the closed form of one crack in an infinite body under uniform
+!! pressure, and under uniform shear without friction: means over cracks of 20 cells at 20, 45 and
+!! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
+!! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
+!! the body unstable.
 module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_rock, only: rock_t
-   use mesh_types, only: mesh_t
+   use mesh_types, only: fracture_mesh_t
    implicit none(type, external)
    private
 
-   public :: support_tips
+   public :: tip_springs
 
 contains
 
-   !> Add the springs at the free tips to the condensed body.
-   pure subroutine support_tips(mesh, rock, condensed)
-      type(mesh_t), intent(in) :: mesh
+   !> Stiffness added to that of the condensed body, by unknown of q.
+   pure function tip_springs(fracture, rock, condensed, reach) result(spring)
+      type(fracture_mesh_t), intent(in) :: fracture
       type(rock_t), intent(in) :: rock
-      type(condensed_t), intent(inout) :: condensed
-      real(rk) :: spring(2)
-      integer(ik) :: at, component, end, k, tip
+      type(condensed_t), intent(in) :: condensed
+      real(rk), intent(in) :: reach(:)  !< (tips) share of its cell that lies behind a tip, > 0 [-]
+      real(rk) :: spring(condensed%layout%count())  !< [Pa]
+      integer(ik) :: behind, cell, end, tip
 
-      spring = tip_springs(rock)
-      do tip = 1, mesh%fracture%n_tips
-         associate (cells => mesh%fracture%point_cells%of(mesh%fracture%tip_point(tip)))
-            do k = 1, size(cells)
-               do end = 1, 2
-                  do component = 1, 2
-                     at = condensed%layout%at_jump(cells(k), end) + component - 1
-                     condensed%stiffness(at, at) = condensed%stiffness(at, at) + spring(component)
-                  end do
-               end do
-            end do
-         end associate
+      spring = 0.0_rk
+      do tip = 1, fracture%n_tips
+         cell = tip_cell(fracture, tip)
+         behind = cell + merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+         do end = 1, 2
+            associate (at => condensed%layout%at_jump(cell, end))
+               spring(at:at + 1) = spring(at:at + 1) &
+                                   + in_tip_cell(rock) + (1.0_rk/reach(tip) - 1.0_rk)*ahead(rock)
+            end associate
+            if (.not. reach(tip) < 1.0_rk) cycle
+            associate (at => condensed%layout%at_jump(behind, end))
+               spring(at:at + 1) = spring(at:at + 1) + (1.0_rk - reach(tip))*in_cell_behind(rock)
+            end associate
+         end do
       end do
-   end subroutine support_tips
+   end function tip_springs
 
-   !> Stiffness at either end of a tip cell against opening and against slip [Pa].
-   pure function tip_springs(rock) result(spring)
+   !> The fracture cell that ends at a tip; cells are stored along each fracture.
+   pure integer(ik) function tip_cell(fracture, tip)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: tip
+      integer(ik) :: cells(1)
+
+      cells = fracture%point_cells%of(fracture%tip_point(tip))
+      tip_cell = cells(1)
+   end function tip_cell
+
+   !> Where a tip is at the end of its cell: stiffness at either end of the cell [Pa].
+   pure function in_tip_cell(rock) result(spring)
       type(rock_t), intent(in) :: rock
       real(rk) :: spring(2)  !< n, tau
-      real(rk) :: crack_modulus, poisson
 
-      associate (lame => rock%lame, shear => rock%shear)
-         crack_modulus = 4.0_rk*shear*(lame + shear)/(lame + 2.0_rk*shear)
-         poisson = lame/(2.0_rk*(lame + shear))
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[-0.0471_rk + nu*(0.095_rk + 0.038_rk*nu), &
+                                       0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
       end associate
-      spring(1) = crack_modulus*(-0.0471_rk + poisson*(0.095_rk + 0.038_rk*poisson))
-      spring(2) = crack_modulus*(0.0201_rk + poisson*(0.0627_rk + 0.0415_rk*poisson))
-   end function tip_springs
+   end function in_tip_cell
+
+   !> Where a tip is in its cell: what is added there, over what the tip lacks to the cell's end in
+   !! terms of what it has [Pa].
+   pure function ahead(rock) result(spring)
+      type(rock_t), intent(in) :: rock
+      real(rk) :: spring(2)  !< n, tau
+
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[0.156_rk - 0.03_rk*nu, 0.1752_rk - 0.104_rk*nu]
+      end associate
+   end function ahead
+
+   !> Where a tip is at the start of its cell: what is added in the cell behind it [Pa].
+   pure function in_cell_behind(rock) result(spring)
+      type(rock_t), intent(in) :: rock
+      real(rk) :: spring(2)  !< n, tau
+
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[0.0133_rk + 0.049_rk*nu, &
+                                       0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
+      end associate
+   end function in_cell_behind
+
+   !> E', in plane strain E/(1 - nu^2) [Pa].
+   pure real(rk) function crack_modulus(rock)
+      type(rock_t), intent(in) :: rock
+
+      crack_modulus = 4.0_rk*rock%shear*(rock%lame + rock%shear)/(rock%lame + 2.0_rk*rock%shear)
+   end function crack_modulus
+
+   !> Poisson's ratio of the two-dimensional constants, as in plane strain [-].
+   pure real(rk) function poisson(rock)
+      type(rock_t), intent(in) :: rock
+
+      poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+   end function poisson
 
 end module coarse_tips
