@@ -2,9 +2,9 @@
 !!
 !! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or
 !! lost; old fracture cells keep their state as it is. A new fracture cell is closed, without slip,
-!! at the pressure of the cell that it grew from, and either empty ("conserved": the fluid that
-!! fills its residual aperture comes from the cells it is connected to, in the next step's balance)
-!! or "prefilled".
+!! at the pressure of the cell that it grew from. Its residual aperture is the roughness of its
+!! faces, which conducts fluid but holds none that is worth counting ("conserved"), or it is open
+!! and comes along filled ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
    use coarse_geometry, only: cell_area
@@ -95,12 +95,9 @@ contains
          else
             after%pressure(i) = before%pressure(nearest_old(map, mesh, i))
             after%unknowns(3, end_block(mesh, i, both)) = after%pressure(i)
-            after%aperture(i) = 0.0_rk
-            if (is_prefilled) then
-               after%aperture(i) = cells%residual_aperture(i)
-               prefilled = prefilled + after%aperture(i)*(mesh%fracture%cell_s(2, i) &
-                                                          - mesh%fracture%cell_s(1, i))
-            end if
+            after%aperture(i) = cells%residual_aperture(i)
+            if (is_prefilled) prefilled = prefilled + after%aperture(i) &
+                                          *(mesh%fracture%cell_s(2, i) - mesh%fracture%cell_s(1, i))
          end if
       end do
    end subroutine transfer_state
