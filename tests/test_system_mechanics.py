@@ -363,7 +363,7 @@ def test_a_traction_of_minus_zero_reads_back(tmp_path: Path) -> None:
     ("old", "new", "words"),
     [
         ("&fe", "&coarse size_boundary = 1.0 /\n&fe", "&coarse: needs a fluid"),
-        ("law = 'open'", "law = 'open', friction = 0.5", "which has neither"),
+        ("law = 'open'", "law = 'open', friction = 0.5", "only the law 'friction' has it"),
         ("x_displacement = 0.0 /\n\n&fe", "y_displacement = 0.0 /\n\n&fe", "can rotate"),
     ],
 )

@@ -35,7 +35,7 @@ contains
       class(simulation_t), intent(in) :: simulation
       type(error_t), allocatable, intent(out) :: error
 
-      call self%files%open(directory, simulation%scene, error, simulation%scene%has_fluid())
+      call self%files%open(directory, simulation%scene, error)
       if (allocated(error)) return
       call self%progress%begin(quiet)
       call write_network(self, simulation)
@@ -66,8 +66,7 @@ contains
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
          if (allocated(error)) return
-         ! An array that is not allocated counts as an absent argument.
-         call self%files%probe_row(row%time, probes%displacement, probes%stress, probes%pressure)
+         call self%files%probe_row(row%time, probes)
       end if
       ! Only a scene in time has an interval between its fields.
       if (simulation%shows_state .and. (self%files%fields_due(row%time) .or. .not. has_fluid)) then

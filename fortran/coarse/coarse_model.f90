@@ -22,7 +22,7 @@ module coarse_model
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: tip_springs
    use mesh_types, only: mesh_t, point_interior
-   use scene_types, only: boundary_side_t, scene_t
+   use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
    private
 
@@ -80,28 +80,28 @@ contains
    end subroutine set_mesh
 
    !> The state before anything happens: no displacement, uniform pressure.
-   subroutine new_state(mesh, cells, pressure, model, state)
+   subroutine new_state(mesh, cells, initial, model, state)
       type(mesh_t), intent(in) :: mesh
       type(fracture_cells_t), intent(in) :: cells
-      real(rk), intent(in) :: pressure  !< [Pa]
+      type(initial_t), intent(in) :: initial
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(out) :: state
       integer(ik) :: c, n
 
       n = mesh%fracture%n_cells
       allocate (state%unknowns(3, model%regions%n_blocks), source=0.0_rk)
-      state%unknowns(3, :) = pressure
+      state%unknowns(3, :) = initial%pressure
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c) &
+         state%content(c) = initial%pressure*model%rock%storage*model%matrix%storage(c) &
                             /(model%rock%storage + model%rock%biot**2 &
                               /(model%rock%lame + model%rock%shear))
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
       state%unknowns(:2, :) = 0.0_rk
-      allocate (state%pressure(n), source=pressure)
+      allocate (state%pressure(n), source=initial%pressure)
       allocate (state%contact(2, n), source=state_stick)
       state%aperture = cells%residual_aperture
    end subroutine new_state

@@ -25,16 +25,47 @@ module contact_law
    implicit none(type, external)
    private
 
-   public :: contact_equations, contact_law_t, contact_residual
+   public :: contact_equations, contact_law_t, contact_residual, is_valid
 
    !> Parameters of the law.
    type :: contact_law_t
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< tan(psi) [-]
       logical :: bilateral = .false.  !< the faces cannot part
+   contains
+      procedure :: add_share
+      procedure :: divide
    end type contact_law_t
 
 contains
+
+   !> Whether the parameters are finite and not negative.
+   elemental logical function is_valid(law)
+      type(contact_law_t), intent(in) :: law
+
+      associate (numbers => [law%friction, law%dilation])
+         is_valid = all(numbers >= 0.0_rk .and. numbers <= huge(1.0_rk))
+      end associate
+   end function is_valid
+
+   !> Add to the weighted sum of laws whose faces meet. The sum is bilateral or not from the start.
+   pure subroutine add_share(self, law, share)
+      class(contact_law_t), intent(inout) :: self
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: share  !< its weight [any unit]
+
+      self%friction = self%friction + share*law%friction
+      self%dilation = self%dilation + share*law%dilation
+   end subroutine add_share
+
+   !> The mean from the weighted sum.
+   pure subroutine divide(self, total)
+      class(contact_law_t), intent(inout) :: self
+      real(rk), intent(in) :: total  !< of the weights [unit of the shares]
+
+      self%friction = self%friction/total
+      self%dilation = self%dilation/total
+   end subroutine divide
 
    !> Normal and tangential equation with their derivatives.
    !!

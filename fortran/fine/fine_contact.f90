@@ -123,14 +123,12 @@ contains
             associate (law => problem%law(i), given => conditions%law(cell)%contact)
                if (law%bilateral .and. .not. given%bilateral) cycle
                weight(i) = weight(i) + problem%share(k, cell)
-               law%friction = law%friction + problem%share(k, cell)*given%friction
-               law%dilation = law%dilation + problem%share(k, cell)*given%dilation
+               call law%add_share(given, problem%share(k, cell))
             end associate
          end do
       end do
       do i = 1, problem%n
-         problem%law(i)%friction = problem%law(i)%friction/weight(i)
-         problem%law(i)%dilation = problem%law(i)%dilation/weight(i)
+         call problem%law(i)%divide(weight(i))
          if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
       end do
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)

@@ -14,7 +14,7 @@ module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
-   use contact_law, only: contact_law_t
+   use contact_law, only: contact_law_t, is_valid
    use fine_boundary, only: fine_boundary_t
    use fine_line, only: line_resultants
    use fine_mesh, only: fine_mesh_t
@@ -96,10 +96,7 @@ contains
          call raise_error(error, origin, "a fracture cell has an unknown face condition")
       else if (.not. sum(abs(conditions%dilation)) <= huge(1.0_rk)) then
          call raise_error(error, origin, "a dilation is not a finite number")
-      else if (.not. all(conditions%law%contact%friction >= 0.0_rk &
-                         .and. conditions%law%contact%friction <= huge(1.0_rk) &
-                         .and. conditions%law%contact%dilation >= 0.0_rk &
-                         .and. conditions%law%contact%dilation <= huge(1.0_rk))) then
+      else if (.not. all(is_valid(conditions%law%contact))) then
          call raise_error(error, origin, "friction and dilation must be finite and not negative")
       end if
    end subroutine check_conditions

@@ -6,12 +6,12 @@
 module mechanics_faces
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
-   use contact_law, only: contact_law_t
    use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: network_t
    use scene_types, only: fracture_t, scene_t
    use growth_network, only: fracture_length
+   use simulation_laws, only: law_of_fracture
    implicit none(type, external)
    private
 
@@ -26,23 +26,16 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       type(face_conditions_t) :: conditions
       integer(ik) :: cell
+      logical :: is_old
 
       conditions = loaded_everywhere(fine)
       do cell = 1, fine%fracture%n_cells
          associate (f => fine%fracture%cell_fracture(cell), law => conditions%law(cell))
-            select case (scene%fractures(f)%law)
-            case ("open")
-               cycle
-            case ("slip")
-               law%slip_given = was_there(start, f, fine%fracture%cell_s(:, cell))
-            case ("friction")
-               law%contact = contact_law_t(friction=scene%fractures(f)%friction, &
-                                           dilation=tan(scene%fractures(f)%dilation))
-            case default
-               law%contact = contact_law_t()
-            end select
-            law%contact%bilateral = scene%fractures(f)%held_closed .and. &
-                                    was_there(start, f, fine%fracture%cell_s(:, cell))
+            if (scene%fractures(f)%law == "open") cycle
+            is_old = was_there(start, f, fine%fracture%cell_s(:, cell))
+            law%contact = law_of_fracture(scene%fractures(f))
+            law%contact%bilateral = scene%fractures(f)%held_closed .and. is_old
+            law%slip_given = scene%fractures(f)%law == "slip" .and. is_old
             conditions%condition(cell) = face_contact
          end associate
       end do

@@ -5,6 +5,7 @@
 !! fields of the VTU files against it. A new column is one entry here, at the place where it shall
 !! stand, and one line in output_tables that says where its value comes from.
 module output_columns
+   use scene_types, only: scene_t
    implicit none(type, external)
    private
 
@@ -279,14 +280,19 @@ module output_columns
 
 contains
 
-   !> Whether a column is written in a run with or without a fluid, as far as that decides.
-   elemental logical function applies(column, has_fluid)
+   !> Whether a column is written in the run of a scene, as far as the scene decides.
+   elemental logical function applies(column, scene)
       type(column_t), intent(in) :: column
-      logical, intent(in) :: has_fluid
+      type(scene_t), intent(in) :: scene
 
-      applies = .true.
-      if (column%runs == with_fluid) applies = has_fluid
-      if (column%runs == without_fluid) applies = .not. has_fluid
+      select case (column%runs)
+      case (with_fluid)
+         applies = scene%has_fluid()
+      case (without_fluid)
+         applies = .not. scene%has_fluid()
+      case default
+         applies = .true.
+      end select
    end function applies
 
 end module output_columns

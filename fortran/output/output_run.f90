@@ -8,7 +8,7 @@ module output_run
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use output_files, only: make_directory, remove_file, rename_file
    use output_network, only: network_record_t
    use output_record, only: run_record_t
@@ -62,20 +62,17 @@ module output_run
 contains
 
    !> Make the directory, remove an earlier run's files from it, and write scene.nml.
-   subroutine open_run(self, directory, scene, error, has_fluid)
+   subroutine open_run(self, directory, scene, error)
       class(run_output_t), intent(out) :: self
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      logical, intent(in), optional :: has_fluid  !< .false.: no columns for pressure and fluid
 
       character(len=:), allocatable :: scene_path
       type(text_t), allocatable :: names(:)
-      logical :: was_there, fluid
+      logical :: was_there
       integer :: i
 
-      fluid = .true.
-      if (present(has_fluid)) fluid = has_fluid
       self%directory = trim(directory)
       self%writes_vtu = scene%output%vtu
       self%interval = scene%output%interval
@@ -98,14 +95,14 @@ contains
       call rename_file(scene_path//".part", scene_path, error)
       if (allocated(error)) return
 
-      call self%tables%open(self%directory, scene, fluid)
+      call self%tables%open(self%directory, scene)
       allocate (names(0))
       if (allocated(scene%fractures)) then
          do i = 1, size(scene%fractures)
             call add_text(names, trim(scene%fractures(i)%name))
          end do
       end if
-      call self%network%open(self%directory//"/network.json", names, fluid)
+      call self%network%open(self%directory//"/network.json", names, scene%has_fluid())
    end subroutine open_run
 
    !> Add an accepted step to history.csv.
@@ -125,14 +122,12 @@ contains
    end subroutine tip_row
 
    !> Add the state at all probes to probes.csv.
-   subroutine probe_row(self, time, displacement, stress, pressure)
+   subroutine probe_row(self, time, row)
       class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      real(rk), intent(in) :: displacement(:, :)  !< (2, n_probes) [m]
-      real(rk), intent(in) :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
-      real(rk), intent(in), optional :: pressure(:)  !< (n_probes) [Pa]
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      type(probe_row_t), intent(in) :: row
 
-      call self%tables%probe_row(time, displacement, stress, pressure)
+      call self%tables%probe_row(time, row)
    end subroutine probe_row
 
    !> Add an event to events.csv.

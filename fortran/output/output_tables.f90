@@ -9,7 +9,7 @@ module output_tables
                              probe_columns, tip_columns
    use output_series, only: series_t
    use results_fields, only: fracture_fields_t
-   use results_rows, only: history_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
    private
@@ -40,24 +40,22 @@ module output_tables
 contains
 
    !> Open the tables of a scene.
-   subroutine open_tables(self, directory, scene, has_fluid)
+   subroutine open_tables(self, directory, scene)
       class(tables_t), intent(out) :: self
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
-      logical, intent(in) :: has_fluid  !< else there are no columns for pressure and fluid
 
-      call open_table(self%history, directory//"/history.csv", history_columns, has_fluid)
-      call open_table(self%events, directory//"/events.csv", event_columns, has_fluid)
+      call open_table(self%history, directory//"/history.csv", history_columns, scene)
+      call open_table(self%events, directory//"/events.csv", event_columns, scene)
       if (scene%growth%enabled .or. scene%growth%intensities) then
-         call open_table(self%tips, directory//"/tips.csv", tip_columns, has_fluid)
+         call open_table(self%tips, directory//"/tips.csv", tip_columns, scene)
       end if
       if (allocated(scene%fractures)) then
          if (size(scene%fractures) > 0) call open_table(self%fractures, &
-            & directory//"/fractures.csv", fracture_columns, has_fluid)
+            & directory//"/fractures.csv", fracture_columns, scene)
       end if
       if (allocated(scene%probes)) then
-         if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene, &
-            & has_fluid)
+         if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
       end if
    end subroutine open_tables
 
@@ -161,30 +159,24 @@ contains
    end subroutine fracture_rows
 
    !> Add the state at all probes.
-   subroutine probe_row(self, time, displacement, stress, pressure)
+   subroutine probe_row(self, time, row)
       class(tables_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s], or the load factor
-      real(rk), intent(in) :: displacement(:, :)  !< (2, n_probes) [m]
-      real(rk), intent(in) :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
-      real(rk), intent(in), optional :: pressure(:)  !< (n_probes) [Pa]; needed in a run with fluid
-      integer :: i
+      type(probe_row_t), intent(in) :: row
+      integer(ik) :: i
 
       if (.not. self%probes%is_open()) return
       associate (table => self%probes)
          call table%put("time_s", time)
          call table%put("load_factor", time)
-         do i = 1, size(displacement, 2)
+         do i = 1, size(row%displacement, 2, kind=ik)
             associate (name => self%probe_names(i)%text)
-               if (present(pressure)) then
-                  call table%put(name//"_p_pa", pressure(i))
-               else
-                  call table%put_nothing(name//"_p_pa")
-               end if
-               call table%put(name//"_ux_m", displacement(1, i))
-               call table%put(name//"_uy_m", displacement(2, i))
-               call table%put(name//"_sxx_pa", stress(1, i))
-               call table%put(name//"_syy_pa", stress(2, i))
-               call table%put(name//"_sxy_pa", stress(3, i))
+               call put_if_there(table, name//"_p_pa", row%pressure, i)
+               call table%put(name//"_ux_m", row%displacement(1, i))
+               call table%put(name//"_uy_m", row%displacement(2, i))
+               call table%put(name//"_sxx_pa", row%stress(1, i))
+               call table%put(name//"_syy_pa", row%stress(2, i))
+               call table%put(name//"_sxy_pa", row%stress(3, i))
             end associate
          end do
          call table%end_row()
@@ -234,21 +226,20 @@ contains
    end subroutine flush_tables
 
    !> Open a table with the columns that the table of columns has for it.
-   subroutine open_table(table, path, columns, has_fluid)
+   subroutine open_table(table, path, columns, scene)
       type(series_t), intent(out) :: table
       character(len=*), intent(in) :: path
       type(column_t), intent(in) :: columns(:)
-      logical, intent(in) :: has_fluid
+      type(scene_t), intent(in) :: scene
 
-      call table%open(path, columns%name, applies(columns, has_fluid))
+      call table%open(path, columns%name, applies(columns, scene))
    end subroutine open_table
 
    !> Open the table of the probes: the time or load factor, then the same columns for each of them.
-   subroutine open_probes(self, path, scene, has_fluid)
+   subroutine open_probes(self, path, scene)
       class(tables_t), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(scene_t), intent(in) :: scene
-      logical, intent(in) :: has_fluid
       integer, parameter :: n_common = 2, n_each = size(probe_columns) - n_common
       character(len=column_length) :: names(n_common + n_each*size(scene%probes))
       integer :: i, k
@@ -262,19 +253,19 @@ contains
                & probe_columns(n_common + k)%name(len("NAME") + 1:)
          end do
       end do
-      call self%probes%open(path, names, [applies(probe_columns(:n_common), has_fluid), &
-         & (applies(probe_columns(n_common + 1:), has_fluid), i=1, size(scene%probes))])
+      call self%probes%open(path, names, [applies(probe_columns(:n_common), scene), &
+         & (applies(probe_columns(n_common + 1:), scene), i=1, size(scene%probes))])
    end subroutine open_probes
 
-   !> A cell's value, or nothing where the field is left out.
-   subroutine put_if_there(table, name, values, cell)
+   !> The value of a cell or a probe, or nothing where the field is left out.
+   subroutine put_if_there(table, name, values, i)
       type(series_t), intent(inout) :: table
       character(len=*), intent(in) :: name  !< of the column
-      real(rk), allocatable, intent(in) :: values(:)  !< (n_cells) in the unit of the name
-      integer(ik), intent(in) :: cell
+      real(rk), allocatable, intent(in) :: values(:)  !< in the unit of the name
+      integer(ik), intent(in) :: i  !< cell or probe
 
       if (allocated(values)) then
-         call table%put(name, values(cell))
+         call table%put(name, values(i))
       else
          call table%put_nothing(name)
       end if

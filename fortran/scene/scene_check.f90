@@ -8,6 +8,7 @@ module scene_check
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_sides, only: check_parts, check_sides
+   use scene_check_table, only: check_table
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: name_length, scene_t
@@ -28,6 +29,7 @@ contains
       call check_names(sheet, error)
       if (.not. allocated(error)) call check_permeability(sheet, error)
       if (.not. allocated(error)) call check_sides(sheet, error)
+      if (.not. allocated(error)) call check_table(sheet, error)
       if (.not. allocated(error)) call check_injections(sheet, error)
    end subroutine check_sheet
 
@@ -104,7 +106,7 @@ contains
       end if
    end subroutine check_permeability
 
-   !> Wells belong to a fracture, and have both coordinates or none.
+   !> Wells belong to a fracture.
    pure subroutine check_injections(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -131,9 +133,6 @@ contains
                likely = nearest_word(wanted%text, names)
                if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
                call refuse(error, sheet, i, "fracture", reason)
-            else if (record%is_given("x") .neqv. record%is_given("y")) then
-               call refuse(error, sheet, i, merge("y", "x", record%is_given("x")), &
-                           "is missing but must be given with the other coordinate")
             end if
          end associate
          if (allocated(error)) return
@@ -173,19 +172,8 @@ contains
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      integer :: i, record
+      integer :: i
 
-      record = sheet%find("time")
-      if (scene%time%step > scene%time%end) then
-         call refuse(error, sheet, record, "step", "is "//real_text(scene%time%step)// &
-                     " but must be at most end, "//real_text(scene%time%end))
-         return
-      else if (scene%time%smallest_factor > scene%time%share_after_growth) then
-         call refuse(error, sheet, record, "smallest_factor", "is "// &
-                     real_text(scene%time%smallest_factor)//" but must be at most "// &
-                     "growth_factor, "//real_text(scene%time%share_after_growth))
-         return
-      end if
       do i = 1, size(scene%injections)
          if (scene%injections(i)%end > scene%injections(i)%start) cycle
          call refuse(error, sheet, sheet%find("injection", i), "end", "is "// &

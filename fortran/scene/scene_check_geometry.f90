@@ -41,43 +41,22 @@ contains
             call refuse(error, sheet, mesh_record(sheet), "size_boundary", "is "// &
                         real_text(size_boundary)//" but must be at most the shorter edge of "// &
                         "the domain, "//rounded_text(shorter_edge))
-         else if (scene%discretization%size_fracture > size_boundary) then
-            call refuse(error, sheet, mesh_record(sheet), "size_fracture", "is "// &
-                        real_text(scene%discretization%size_fracture)// &
-                        " but must be at most size_boundary, "//real_text(size_boundary))
          end if
       end associate
    end subroutine check_domain
 
-   !> What is given belongs to the body's shape.
+   !> The scene can have this shape.
    pure subroutine check_shape(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      character(len=8), parameter :: names(9) = ["x_min   ", "x_max   ", "y_min   ", "y_max   ", &
-                                                 "x_centre", "y_centre", "radius  ", "x       ", &
-                                                 "y       "]
-      character(len=9), parameter :: shapes(3) = ["rectangle", "disc     ", "polygon  "]
-      character(len=21), parameter :: wanted(3) = ["four sides           ", &
-                                                   "a centre and a radius", &
-                                                   "corners x and y      "]
-      integer, parameter :: owner(9) = [1, 1, 1, 1, 2, 2, 2, 3, 3]
-      integer :: i, record, own
 
-      own = findloc(shapes == scene%domain%shape, .true., dim=1)
-      record = sheet%find("domain")
-      if (own /= 1 .and. scene%has_fluid()) then
-         call refuse(error, sheet, record, "shape", "is '"//trim(shapes(own))//"' but must be "// &
-                     "'rectangle' in a scene with &fluid")
-         return
+      if (scene%domain%shape /= "rectangle" .and. scene%has_fluid()) then
+         call refuse(error, sheet, sheet%find("domain"), "shape", "is '"// &
+                     trim(scene%domain%shape)//"' but must be 'rectangle' in a scene with &fluid")
+      else if (scene%domain%shape == "polygon") then
+         call check_corners(sheet, scene%domain, error)
       end if
-      do i = 1, size(names)
-         if (owner(i) == own .or. .not. sheet%records(record)%is_given(trim(names(i)))) cycle
-         call refuse(error, sheet, record, trim(names(i)), "is given for a "// &
-                     trim(shapes(own))//", which has "//trim(wanted(own))//" instead")
-         return
-      end do
-      if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
    end subroutine check_shape
 
    !> A polygon has corners.

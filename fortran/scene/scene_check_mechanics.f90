@@ -191,18 +191,6 @@ contains
                call refuse(error, sheet, record, "law", "is '"//trim(fracture%law)// &
                            "' but must be 'friction' in a scene with &fluid")
                return
-            else if (fracture%law /= "friction" .and. &
-                     (sheet%records(record)%is_given("friction") .or. &
-                      sheet%records(record)%is_given("dilation_deg"))) then
-               call refuse(error, sheet, record, "friction", "or dilation_deg is given with "// &
-                           "the law '"//trim(fracture%law)//"', which has neither")
-               return
-            else if (fracture%law /= "slip" .and. &
-                     (sheet%records(record)%is_given("slip") .or. &
-                      sheet%records(record)%is_given("slip_taper"))) then
-               call refuse(error, sheet, record, "slip", "or slip_taper is given with the law '"// &
-                           trim(fracture%law)//"', which has neither")
-               return
             else if (fracture%law == "open" .and. fracture%held_closed) then
                call refuse(error, sheet, record, "held_closed", "is .true., but the faces of "// &
                            "the law 'open' do not touch; give 'friction' or 'frictionless'")

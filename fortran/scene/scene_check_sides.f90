@@ -56,11 +56,7 @@ contains
                                          record%is_given("arc_to_deg"))) then
             call refuse(error, sheet, i, given_of(record, "arc_from_deg", "arc_to_deg"), &
                         "is given, but only a disc has arcs")
-         else if (record%is_given("arc_from_deg") .neqv. record%is_given("arc_to_deg")) then
-            call refuse(error, sheet, i, trim(merge("arc_to_deg  ", "arc_from_deg", &
-                                                    record%is_given("arc_from_deg"))), &
-                        "is missing but must be given with the other end of the arc")
-         else if (record%is_given("arc_from_deg")) then
+         else if (record%is_given("arc_from_deg") .and. record%is_given("arc_to_deg")) then
             from = record%value("arc_from_deg")
             to = record%value("arc_to_deg")
             if (.not. (to%reals(1) > from%reals(1) .and. to%reals(1) <= from%reals(1) + 360)) then

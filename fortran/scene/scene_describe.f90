@@ -1,11 +1,10 @@
 !> docs/input.md, written from the table of parameters.
 module scene_describe
    use scene_intervals, only: in_words
-   use scene_parameters, only: group_t, groups, in_fluid, in_mechanics, kind_choice, kind_integer
-   use scene_parameters, only: kind_logical, need_disc, need_friction, need_polygon, need_rectangle
-   use scene_parameters, only: kind_name, kind_real, kind_reals, need_always, need_fluid
-   use scene_parameters, only: kind_wholes, need_fracture, need_growth, need_slip, need_tips
-   use scene_parameters, only: parameter_t, parameters
+   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, in_mechanics
+   use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real
+   use scene_parameters, only: kind_reals, kind_wholes, need_always, need_choice, need_fluid
+   use scene_parameters, only: need_fracture, need_growth, need_tips, parameter_t, parameters
    implicit none(type, external)
    private
 
@@ -75,7 +74,7 @@ contains
          write (unit, "(a)") "| `"//trim(parameters(i)%name)//"` | "//kind_words(parameters(i))// &
             " | "//trim(parameters(i)%unit)//" | "//default_words(parameters(i))//" | "// &
             allowed_words(parameters(i))//" | "//trim(parameters(i)%meaning)// &
-            table_words(parameters(i)%scenes)//" |"
+            table_words(parameters(i))//" |"
       end do
    end subroutine describe_group
 
@@ -89,15 +88,27 @@ contains
       if (scenes == in_mechanics) words = " Only in scenes without &fluid."
    end function scene_words
 
-   !> Which scenes may give a parameter, as the end of a phrase.
-   pure function table_words(scenes) result(words)
-      integer, intent(in) :: scenes
+   !> Who may give a parameter and beside what, as the end of a phrase.
+   pure function table_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: words
 
       words = ""
-      if (scenes == in_fluid) words = "; only with &fluid"
-      if (scenes == in_mechanics) words = "; only without &fluid"
+      if (parameter%with /= "") words = "; given together with "//trim(parameter%with)
+      if (parameter%of /= "" .and. parameter%need /= need_choice) then
+         words = words//"; only with "//choice_words(parameter)
+      end if
+      if (parameter%scenes == in_fluid) words = words//"; only with &fluid"
+      if (parameter%scenes == in_mechanics) words = words//"; only without &fluid"
    end function table_words
+
+   !> The choice that a parameter belongs to.
+   pure function choice_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: words
+
+      words = "the "//choice_name(parameter)//" '"//choice_value(parameter)//"'"
+   end function choice_words
 
    pure function kind_words(parameter) result(words)
       type(parameter_t), intent(in) :: parameter
@@ -138,16 +149,8 @@ contains
          words = "required with growth or intensities"
       case (need_growth)
          words = "required with growth"
-      case (need_slip)
-         words = "required with the law 'slip'"
-      case (need_rectangle)
-         words = "required for a rectangle"
-      case (need_disc)
-         words = "required for a disc"
-      case (need_polygon)
-         words = "required for a polygon"
-      case (need_friction)
-         words = "required with the law 'friction'"
+      case (need_choice)
+         words = "required with "//choice_words(parameter)
       case default
          words = trim(parameter%absent)
          if (.not. parameter%derived) words = "none: "//words
@@ -175,6 +178,10 @@ contains
          words = "at most 64 letters, digits, `_`, `-`, `.`"
       case (kind_integer, kind_real, kind_reals, kind_wholes)
          words = in_words(parameter%range, whole=any(parameter%kind == [kind_integer, kind_wholes]))
+         if (parameter%at_most /= "") then
+            if (words /= "") words = words//", "
+            words = words//"at most "//trim(parameter%at_most)
+         end if
          if (words == "") words = "any finite"
       case default
          words = "at most 256 bytes of UTF-8"

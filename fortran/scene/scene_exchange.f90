@@ -163,15 +163,19 @@ contains
       end do
    end subroutine scene_to_sheet
 
-   !> Leave out what a scene of this kind must not give.
+   !> Leave out what a scene of this kind or a group with this choice must not give, and halves of
+   !! pairs.
    pure subroutine drop_foreign(record, has_fluid)
       type(record_t), intent(inout) :: record
       logical, intent(in) :: has_fluid
       integer :: item
 
       do item = lbound(record%values, 1), ubound(record%values, 1)
-         if (applies(parameters(item)%scenes, has_fluid)) cycle
-         record%values(item)%is_set = .false.
+         associate (rule => parameters(item), value => record%values(item))
+            value%is_set = value%is_set .and. applies(rule%scenes, has_fluid) &
+                           .and. record%suits(item)
+            if (rule%with /= "") value%is_set = value%is_set .and. record%is_set(rule%with)
+         end associate
       end do
    end subroutine drop_foreign
 
@@ -295,18 +299,12 @@ contains
       call exchange(record, "x", fracture%x, reading)
       call exchange(record, "y", fracture%y, reading)
       call exchange(record, "law", fracture%law, reading)
-      if (reading .or. fracture%law == "friction") then
-         call exchange(record, "friction", fracture%friction, reading)
-      end if
-      if (reading .or. fracture%law == "slip") then
-         call exchange(record, "slip", fracture%slip, reading)
-         call exchange(record, "slip_taper", fracture%slip_taper, reading, nothing=0.0_rk)
-      end if
-      if (reading .or. fracture%law == "friction") then
-         dilation_deg = to_degrees(fracture%dilation)
-         call exchange(record, "dilation_deg", dilation_deg, reading)
-         fracture%dilation = dilation_deg*radians
-      end if
+      call exchange(record, "slip", fracture%slip, reading)
+      call exchange(record, "slip_taper", fracture%slip_taper, reading, nothing=0.0_rk)
+      call exchange(record, "friction", fracture%friction, reading)
+      dilation_deg = to_degrees(fracture%dilation)
+      call exchange(record, "dilation_deg", dilation_deg, reading)
+      fracture%dilation = dilation_deg*radians
       call exchange(record, "held_closed", fracture%held_closed, reading)
       call exchange(record, "face_pressure", fracture%face_pressure, reading)
       call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)

@@ -14,9 +14,9 @@ module scene_parameters
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
    public :: kind_wholes
-   public :: need_always, need_fluid, need_fracture, need_friction, need_growth, need_never
-   public :: need_disc, need_polygon, need_rectangle, need_slip, need_tips
-   public :: applies, in_all, in_fluid, in_mechanics
+   public :: need_always, need_choice, need_fluid, need_fracture, need_growth, need_never
+   public :: need_tips
+   public :: applies, choice_name, choice_value, in_all, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
    integer, parameter :: kind_reals = 2  !< a list of any length
@@ -33,11 +33,7 @@ module scene_parameters
    integer, parameter :: need_fracture = 3  !< where there is a fracture
    integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
    integer, parameter :: need_growth = 5  !< where fractures grow
-   integer, parameter :: need_friction = 6  !< in a fracture with the law 'friction'
-   integer, parameter :: need_rectangle = 7  !< where the body is a rectangle
-   integer, parameter :: need_disc = 8  !< where the body is a disc
-   integer, parameter :: need_slip = 9  !< in a fracture with the law 'slip'
-   integer, parameter :: need_polygon = 10  !< where the body is a polygon
+   integer, parameter :: need_choice = 6  !< with the choice that it belongs to
 
    ! Scenes that may give a group or a parameter.
    integer, parameter :: in_all = 0
@@ -72,6 +68,10 @@ module scene_parameters
       integer :: scenes = in_all  !< which may give it
       character(len=32) :: choices = ""  !< separated by `|`
       character(len=160) :: meaning = ""
+      ! Towards other names of its group:
+      character(len=24) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
+      character(len=20) :: with = ""  !< given only if this is given too
+      character(len=20) :: at_most = ""  !< a number that it must not exceed
    end type parameter_t
 
    ! The tables keep their own layout.
@@ -123,7 +123,7 @@ module scene_parameters
               meaning="How the load changes: tractions, point loads and displacements are "// &
               "those of the scene times a factor, which rises, or falls where to is less than "// &
               "from; the first state, at from, is reached from nothing. Faces keep what they "// &
-              "have slipped until friction lets them slip back. With growth the factor at which "// &
+             "have slipped until friction lets them slip back. With growth the factor at which "// &
               "the next tip grows is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
@@ -151,24 +151,32 @@ module scene_parameters
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
                   choices="rectangle|disc|polygon", &
                   meaning="Disc and polygon in mechanics-only scenes"), &
-      parameter_t("domain", "x_min", unit="m", need=need_rectangle, absent="no rectangle", &
+      parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
+                  of="shape=rectangle", &
                   meaning="Left side"), &
-      parameter_t("domain", "x_max", unit="m", need=need_rectangle, absent="no rectangle", &
+      parameter_t("domain", "x_max", unit="m", need=need_choice, absent="no rectangle", &
+                  of="shape=rectangle", &
                   meaning="Right side, above x_min"), &
-      parameter_t("domain", "y_min", unit="m", need=need_rectangle, absent="no rectangle", &
+      parameter_t("domain", "y_min", unit="m", need=need_choice, absent="no rectangle", &
+                  of="shape=rectangle", &
                   meaning="Bottom side"), &
-      parameter_t("domain", "y_max", unit="m", need=need_rectangle, absent="no rectangle", &
+      parameter_t("domain", "y_max", unit="m", need=need_choice, absent="no rectangle", &
+                  of="shape=rectangle", &
                   meaning="Top side, above y_min"), &
-      parameter_t("domain", "x_centre", unit="m", need=need_disc, absent="no disc", &
+      parameter_t("domain", "x_centre", unit="m", need=need_choice, absent="no disc", &
+                  of="shape=disc", &
                   meaning="x of the disc's centre"), &
-      parameter_t("domain", "y_centre", unit="m", need=need_disc, absent="no disc", &
+      parameter_t("domain", "y_centre", unit="m", need=need_choice, absent="no disc", &
+                  of="shape=disc", &
                   meaning="y of the disc's centre"), &
-      parameter_t("domain", "radius", unit="m", need=need_disc, range=positive, &
+      parameter_t("domain", "radius", unit="m", need=need_choice, range=positive, of="shape=disc", &
                   absent="no disc", meaning="Radius of the disc"), &
-      parameter_t("domain", "x", kind_reals, "m", need_polygon, absent="no polygon", &
+      parameter_t("domain", "x", kind_reals, "m", need_choice, absent="no polygon", &
+                  of="shape=polygon", &
                   meaning="x of the corners of a polygon, either way round; edge k runs from "// &
                   "corner k to the next one, the last to corner 1"), &
-      parameter_t("domain", "y", kind_reals, "m", need_polygon, absent="no polygon", &
+      parameter_t("domain", "y", kind_reals, "m", need_choice, absent="no polygon", &
+                  of="shape=polygon", &
                   meaning="y of the corners"), &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
                   meaning="Young's modulus E"), &
@@ -214,18 +222,20 @@ module scene_parameters
                   choices="friction|frictionless|slip|open", &
                   meaning="What the faces do; all but friction only in mechanics-only scenes. "// &
                   "Slip: contact with a given slip; open: free of traction, free to overlap"), &
-      parameter_t("fracture", "slip", unit="m", need=need_slip, absent="not given", &
-                  scenes=in_mechanics, &
+      parameter_t("fracture", "slip", unit="m", need=need_choice, absent="not given", &
+                  of="law=slip", scenes=in_mechanics, &
                   meaning="Given slip, left against right side in the fracture's direction, "// &
                   "times the load factor"), &
       parameter_t("fracture", "slip_taper", unit="m", range=positive, scenes=in_mechanics, &
+                  of="law=slip", &
                   absent="half the fracture's length", derived=.true., &
                   meaning="The given slip rises from a free end as a quarter of an ellipse of "// &
                   "this length"), &
-      parameter_t("fracture", "friction", need=need_friction, range=at_least_zero, &
-                  absent="no friction", &
+      parameter_t("fracture", "friction", need=need_choice, range=at_least_zero, &
+                  of="law=friction", absent="no friction", &
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
+                  of="law=friction", &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
@@ -244,10 +254,10 @@ module scene_parameters
                   scenes=in_mechanics, &
                   meaning="Numbers of a polygon's edges, required there"), &
       parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
-                  scenes=in_mechanics, &
+                  scenes=in_mechanics, with="arc_to_deg", &
                 meaning="Where an arc of a disc's rim begins, counter-clockwise from the x axis"), &
       parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
-                  scenes=in_mechanics, &
+                  scenes=in_mechanics, with="arc_from_deg", &
                   meaning="Where it ends, above arc_from_deg by at most 360"), &
       parameter_t("side", "x_displacement", unit="m", absent="traction is given", &
                   meaning="Prescribed displacement in x"), &
@@ -287,9 +297,9 @@ module scene_parameters
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
                   meaning="Time when it ends, after start"), &
       parameter_t("injection", "x", unit="m", absent="over the whole fracture", &
-                  meaning="x of the point of injection, given together with y"), &
+                  with="y", meaning="x of the point of injection"), &
       parameter_t("injection", "y", unit="m", absent="over the whole fracture", &
-                  meaning="y of the point of injection, given together with x"), &
+                  with="x", meaning="y of the point of injection"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
                   choices="equilibrated|undrained", &
                   meaning="After loading: that of the matrix around the fracture, or what the "// &
@@ -299,12 +309,13 @@ module scene_parameters
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
                   meaning="End of the run"), &
       parameter_t("time", "step", unit="s", need=need_always, range=positive, &
-                  meaning="Regular time step, at most end"), &
+                  at_most="end", &
+                  meaning="Regular time step"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
                   meaning="Share of the regular step that follows growth"), &
       parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
-                  meaning="Share of the regular step below which a cut step ends the run, at "// &
-                  "most growth_factor"), &
+                  at_most="growth_factor", &
+                  meaning="Share of the regular step below which a cut step ends the run"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &
@@ -325,8 +336,8 @@ module scene_parameters
                   meaning="Equal steps from the one to the other"), &
       parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
-                  meaning="Element size at the fractures, at most size_boundary and the "// &
-                  "length of each fracture"), &
+                  at_most="size_boundary", &
+                  meaning="Element size at the fractures, at most the length of each fracture"), &
       parameter_t("fe", "size_boundary", unit="m", need=need_always, range=positive, &
                   meaning="Element size far from the fractures, at most the shorter edge of "// &
                   "the domain"), &
@@ -347,8 +358,8 @@ module scene_parameters
                   meaning="Meshes after the first at most"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
-                  meaning="Cell size dH at the fractures, at most size_boundary and the "// &
-                  "length of each fracture"), &
+                  at_most="size_boundary", &
+                  meaning="Cell size dH at the fractures, at most the length of each fracture"), &
       parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
                   meaning="Cell size far from the fractures, at most the shorter edge of the "// &
                   "domain"), &
@@ -413,5 +424,21 @@ contains
 
       applies = scenes == in_all .or. (scenes == in_fluid .eqv. has_fluid)
    end function applies
+
+   !> The name that makes the choice to which a parameter belongs.
+   pure function choice_name(parameter) result(name)
+      type(parameter_t), intent(in) :: parameter  !< of a choice
+      character(len=:), allocatable :: name
+
+      name = parameter%of(:index(parameter%of, "=") - 1)
+   end function choice_name
+
+   !> What that name must be.
+   pure function choice_value(parameter) result(value)
+      type(parameter_t), intent(in) :: parameter  !< of a choice
+      character(len=:), allocatable :: value
+
+      value = trim(parameter%of(index(parameter%of, "=") + 1:))
+   end function choice_value
 
 end module scene_parameters

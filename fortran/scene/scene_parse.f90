@@ -3,9 +3,9 @@ module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
-   use scene_parameters, only: applies, groups, need_always, need_fluid, need_fracture, &
-                               need_disc, need_friction, need_growth, &
-                               need_polygon, need_rectangle, need_slip, need_tips, parameters
+   use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
+                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
+                               parameters
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
                           refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
@@ -307,7 +307,6 @@ contains
       integer, intent(in) :: record
       logical, intent(in) :: has_growth, has_tips
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: law, body_shape
       logical :: needed
       integer :: item
 
@@ -326,17 +325,8 @@ contains
                needed = has_tips
             case (need_growth)
                needed = has_growth
-            case (need_rectangle)
-               body_shape = sheet%records(record)%value("shape")
-               needed = body_shape%text == "rectangle"
-            case (need_disc, need_polygon)
-               body_shape = sheet%records(record)%value("shape")
-               needed = body_shape%text == merge("disc   ", "polygon", &
-                                                 parameters(item)%need == need_disc)
-            case (need_friction, need_slip)
-               law = sheet%records(record)%value("law")
-               needed = law%text == merge("friction", "slip    ", &
-                                          parameters(item)%need == need_friction)
+            case (need_choice)
+               needed = sheet%records(record)%suits(item)
             case default
                needed = .false.
             end select
@@ -369,16 +359,9 @@ contains
          words = words//", which growth and stress intensity factors need"
       case (need_growth)
          words = words//", which growth needs"
-      case (need_rectangle)
-         words = words//", which a rectangle needs"
-      case (need_disc)
-         words = words//", which a disc needs"
-      case (need_polygon)
-         words = words//", which a polygon needs"
-      case (need_friction)
-         words = words//", which the law 'friction' needs"
-      case (need_slip)
-         words = words//", which the law 'slip' needs"
+      case (need_choice)
+         words = words//", which the "//choice_name(parameters(item))//" '"// &
+                 choice_value(parameters(item))//"' needs"
       case default
          words = words//", which is always needed"
       end select

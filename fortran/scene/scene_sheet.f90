@@ -3,7 +3,7 @@ module scene_sheet
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
-   use scene_parameters, only: groups, parameters
+   use scene_parameters, only: choice_name, choice_value, groups, parameters
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -22,6 +22,7 @@ module scene_sheet
       procedure :: value => value_of
       procedure :: is_set
       procedure :: is_given
+      procedure :: suits
    end type record_t
 
    !> A whole file.
@@ -118,6 +119,18 @@ contains
 
       is_given = self%values(parameter_index(self%group, name))%line > 0
    end function is_given
+
+   !> A parameter of this group belongs to the choice that the group makes, or to every one.
+   pure logical function suits(self, item)
+      class(record_t), intent(in) :: self
+      integer, intent(in) :: item  !< index into parameters
+      type(value_t) :: choice
+
+      suits = parameters(item)%of == ""
+      if (suits) return
+      choice = self%value(choice_name(parameters(item)))
+      suits = choice%text == choice_value(parameters(item))
+   end function suits
 
    !> Index of the n-th group of a name; 0: there are fewer.
    pure integer function find(self, name, n) result(record)

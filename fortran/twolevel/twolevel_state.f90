@@ -4,7 +4,6 @@ module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use contact_law, only: contact_law_t
    use coarse_fields, only: nodal_values
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
@@ -14,6 +13,7 @@ module twolevel_state
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
+   use simulation_laws, only: law_of_fracture
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_transfer, only: transfer_cells, transfer_state
@@ -83,7 +83,7 @@ contains
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, scene, timers, error)
       if (allocated(error)) return
-      call new_state(self%mesh, self%model%cells, scene%initial%pressure, self%model, self%state)
+      call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
       allocate (self%grown(0), self%segment(size(self%tip)))
@@ -131,7 +131,7 @@ contains
          allocate (cells%injection(fracture%n_cells), source=0.0_rk)
          do i = 1, fracture%n_cells
             associate (given => self%scene%fractures(fracture%cell_fracture(i)))
-               cells%law(i) = contact_law_t(friction=given%friction, dilation=tan(given%dilation))
+               cells%law(i) = law_of_fracture(given)
                cells%residual_aperture(i) = given%aperture
             end associate
          end do

@@ -13,7 +13,7 @@ program biot_manufactured
    use coarse_state, only: state_t, step_report_t
    use fine_quadrature, only: triangle_rule_7
    use mesh_types, only: mesh_t
-   use scene_types, only: scene_t
+   use scene_types, only: initial_t, scene_t
    use verification_files, only: finish, integer_argument, real_argument, stop_on, table_t
    use verification_meshes, only: cell_centre, plain_rectangle
    implicit none(type, external)
@@ -59,7 +59,7 @@ program biot_manufactured
    allocate (model%cells%law(0), model%cells%residual_aperture(0), model%cells%injection(0))
    call model%set_mesh(mesh, scene, timers, error)
    call stop_on(error)
-   call new_state(mesh, model%cells, 0.0_rk, model, state)
+   call new_state(mesh, model%cells, initial_t(), model, state)
    allocate (model%source(3, mesh%n_cells))
    mass_error = 0.0_rk
    do step = 1, n_steps

@@ -13,7 +13,7 @@ program coarse_mandel
    use coarse_regions, only: regions_t
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t
-   use scene_types, only: scene_t
+   use scene_types, only: initial_t, scene_t
    use verification_files, only: finish, integer_argument, real_argument, stop_on, table_t
    use verification_meshes, only: cell_centre, plain_rectangle
    implicit none(type, external)
@@ -49,7 +49,7 @@ program coarse_mandel
    call set_up(scene, rest)
    scene%sides(4)%displacement(2) = 1.0_rk
    call set_up(scene, moved)
-   call new_state(mesh, rest%cells, 0.0_rk, rest, state)
+   call new_state(mesh, rest%cells, initial_t(), rest, state)
    associate (rock => rest%rock)
       diffusivity = rock%mobility/(rock%storage + rock%biot**2/(rock%lame + 2.0_rk*rock%shear))
    end associate

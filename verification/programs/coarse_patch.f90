@@ -10,7 +10,7 @@ program coarse_patch
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t
-   use scene_types, only: scene_t
+   use scene_types, only: initial_t, scene_t
    use verification_files, only: finish, real_argument, stop_on, table_t
    use verification_meshes, only: cell_centre, distort, plain_rectangle, turn
    implicit none(type, external)
@@ -58,7 +58,7 @@ contains
       allocate (model%cells%law(0), model%cells%residual_aperture(0), model%cells%injection(0))
       call model%set_mesh(mesh, scene, timers, error)
       call stop_on(error)
-      call new_state(mesh, model%cells, 0.0_rk, model, state)
+      call new_state(mesh, model%cells, initial_t(), model, state)
       do step = 1, 4  ! each leaves a millionth of what is not steady
          call model%advance(mesh, 1.0e6_rk, state, timers, report, error)
          call stop_on(error)

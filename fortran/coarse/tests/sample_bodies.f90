@@ -256,7 +256,7 @@ contains
       model%cells = uniform_cells(mesh, law, aperture)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
-      call new_state(mesh, model%cells, scene%initial%pressure, model, state)
+      call new_state(mesh, model%cells, scene%initial, model, state)
    end subroutine cut_square
 
 end module sample_bodies

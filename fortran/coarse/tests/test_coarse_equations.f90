@@ -15,7 +15,7 @@ program test_coarse_equations
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
-   use scene_types, only: scene_t
+   use scene_types, only: initial_t, scene_t
    implicit none(type, external)
 
    real(rk), parameter :: dt = 10.0_rk  !< [s]
@@ -65,7 +65,7 @@ contains
       call checks%no_error(error, "discretization")
       call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
-      call new_state(mesh, model%cells, 5.0e6_rk, model, state)
+      call new_state(mesh, model%cells, initial_t(pressure=5.0e6_rk), model, state)
       state%jump = 1.0e-5_rk*reshape(scattered(size(state%jump, kind=ik)), shape(state%jump))
       state%pressure = state%pressure + 1.0e6_rk*scattered(mesh%fracture%n_cells)
    end subroutine start

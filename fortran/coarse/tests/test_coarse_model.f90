@@ -12,7 +12,7 @@ program test_coarse_model
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use scene_types, only: scene_t
+   use scene_types, only: initial_t, scene_t
    implicit none(type, external)
 
    real(rk), parameter :: undrained_pressure = 6902061.032_rk  !< catalogue 4.0 [Pa]
@@ -92,7 +92,7 @@ contains
       call make_cells(mesh, friction, dilation, model%cells)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
-      call new_state(mesh, model%cells, 0.0_rk, model, state)
+      call new_state(mesh, model%cells, initial_t(), model, state)
    end subroutine start
 
    !> Displacement at the corner (2, 2), which belongs to one or two cells.

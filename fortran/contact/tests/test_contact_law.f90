@@ -2,8 +2,9 @@
 program test_contact_law
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_valid
    use contact_states, only: state_name, state_open, state_slip, state_stick
+   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
@@ -20,6 +21,8 @@ program test_contact_law
    call test_violations()
    call test_way()
    call test_friction_opposes_slip()
+   call test_means()
+   call test_validity()
    call checks%finish()
 
 contains
@@ -220,5 +223,29 @@ contains
          call checks%is_close(work, -0.5_rk*4.0e6_rk*1.0e-6_rk, 1.0e-12_rk, "friction dissipates")
       end do
    end subroutine test_friction_opposes_slip
+
+   !> Three parts of one law and one of another.
+   subroutine test_means()
+      type(contact_law_t) :: mean
+
+      call mean%add_share(dilating, 3.0_rk)
+      call mean%add_share(smooth, 1.0_rk)
+      call mean%divide(4.0_rk)
+      call checks%is_close(mean%friction, 0.375_rk, 1.0e-15_rk, "mean friction")
+      call checks%is_close(mean%dilation, 0.075_rk, 1.0e-15_rk, "mean dilation")
+   end subroutine test_means
+
+   !> Numbers that no law has, each by itself.
+   subroutine test_validity()
+      real(rk) :: infinite, nan
+
+      infinite = ieee_value(infinite, ieee_positive_inf)
+      nan = ieee_value(nan, ieee_quiet_nan)
+      call checks%is_true(all(is_valid([rough, dilating, smooth, tied])), "valid laws")
+      call checks%is_true(.not. is_valid(contact_law_t(friction=-0.1_rk)), "negative friction")
+      call checks%is_true(.not. is_valid(contact_law_t(friction=nan)), "friction that is no number")
+      call checks%is_true(.not. is_valid(contact_law_t(dilation=-0.1_rk)), "negative dilation")
+      call checks%is_true(.not. is_valid(contact_law_t(dilation=infinite)), "infinite dilation")
+   end subroutine test_validity
 
 end program test_contact_law

@@ -9,7 +9,7 @@ program test_output_run
    use contact_states, only: state_open, state_slip, state_stick
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use output_files, only: make_directory, write_text_file
    use output_record, only: run_record_t, status_finished
    use output_run, only: run_output_t
@@ -29,6 +29,7 @@ program test_output_run
    type(matrix_fields_t) :: matrix
    type(fracture_fields_t) :: fracture
    type(intersection_fields_t) :: intersections
+   type(probe_row_t) :: probes
    type(timers_t) :: timers
 
    call make_scene()
@@ -78,8 +79,7 @@ contains
             & k1_error=1.0e3_rk, k2_error=2.0e3_rk, g_domain=28.0_rk, g_error=1.5_rk, &
             & k1_dc_error=3.0e3_rk, k2_dc_error=4.0e3_rk, k1_corrected=1.0005e6_rk, &
             & k2_corrected=2.005e5_rk))
-         call output%probe_row(2.0_rk*i, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
-            & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]), [6.8e6_rk])
+         call output%probe_row(2.0_rk*i, probes)
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
          call output%write_fields(2.0_rk*i, mesh, matrix, fracture, intersections, error)
          call checks%no_error(error, "fields")
@@ -148,10 +148,12 @@ contains
       type(run_record_t) :: record
       type(matrix_fields_t) :: dry_matrix
       type(fracture_fields_t) :: dry_fracture
+      type(probe_row_t) :: dry_probes
       type(intersection_fields_t) :: none
       type(scene_t) :: dry_scene
 
       dry_scene = scene
+      dry_scene%fluid%viscosity = 0.0_rk
       dry_scene%output%vtu = .false.
       dry_scene%output%interval = 10.0_rk
       dry_scene%growth%intensities = .false.
@@ -159,12 +161,13 @@ contains
       deallocate (dry_matrix%pressure)
       dry_fracture = fracture
       deallocate (dry_fracture%pressure)
-      call output%open(folder, dry_scene, error, has_fluid=.false.)
+      call output%open(folder, dry_scene, error)
       call checks%no_error(error, "open without fluid")
       call output%history_row(history_row_t(time=1.0_rk, strain_energy=0.25_rk))
       call output%tip_row(tip_row_t(time=1.0_rk))
-      call output%probe_row(1.0_rk, reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1]), &
-         & reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1]))
+      dry_probes = probes
+      deallocate (dry_probes%pressure)
+      call output%probe_row(1.0_rk, dry_probes)
       call output%write_fields(1.0_rk, mesh, dry_matrix, dry_fracture, none, error)
       call checks%no_error(error, "fields without fluid")
       call checks%is_true(.not. output%fields_due(9.99_rk), "fields follow the interval")
@@ -268,6 +271,7 @@ contains
       scene%material%biot = 0.8_rk
       scene%material%permeability_xx = 1.0e-18_rk
       scene%material%permeability_yy = 2.0e-18_rk
+      scene%fluid%viscosity = 1.0e-4_rk
       scene%time%end = 4.0_rk
       scene%time%step = 2.0_rk
       scene%output%interval = 2.0_rk
@@ -327,6 +331,9 @@ contains
       fracture%traction_t = [1.0e6_rk, 3.0e6_rk, 0.0_rk]
       fracture%pressure = [6.0e6_rk, 6.5e6_rk, 7.0e6_rk]
       fracture%state = [state_stick, state_slip, state_open]
+      probes%displacement = reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1])
+      probes%stress = reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1])
+      probes%pressure = [6.8e6_rk]
       intersections%point = [2_ik]
       intersections%pressure = [6.75e6_rk]
    end subroutine make_state

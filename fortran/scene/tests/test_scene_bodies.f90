@@ -57,8 +57,8 @@ contains
      call refuse_two(1, "&domain shape='polygon' x=0, 1", 2, "y=0, 1 /", ":1: &domain: x has 2 "// &
                       "values but must have at least 3, the corners of the polygon"//doc)
       call refuse(1, "&domain shape='polygon' x_min=0 x=0, 0, 1, 1, 2, 2", ":1: &domain: x_min "// &
-                  "is given for a polygon, which has corners x and y instead"//doc)
-      call refuse(2, "/", ":1: &domain: y [m], which a polygon needs, is missing"//doc)
+                  "is given, but only the shape 'rectangle' has it, and not 'polygon'"//doc)
+      call refuse(2, "/", ":1: &domain: y [m], which the shape 'polygon' needs, is missing"//doc)
       ! Corners may divide a straight edge, and run counter-clockwise.
       call accept_two(1, "&domain shape='polygon' x=2, 2, 1, 1, 0.5, 0, 0", 2, &
                       "  y=0, 1, 1, 2, 2, 2, 0 /", "seven corners")
@@ -118,7 +118,7 @@ contains
                   "sides must not overlap")
       call refuse(7, "&side name='b' x_traction=1 /", "sides must not overlap")
     call refuse(7, "&side name='b' arc_from_deg=200 x_traction=1 /", ":7: &side: arc_to_deg is "// &
-                  "missing but must be given with the other end of the arc"//doc)
+                  "missing but must be given with arc_from_deg"//doc)
       call refuse(7, "&side name='b' arc_from_deg=200 arc_to_deg=190 x_traction=1 /", ":7: "// &
                  "&side: arc_to_deg is 190.0 but must be above arc_from_deg, 200.0, by at most "// &
                   "360"//doc)
@@ -126,8 +126,8 @@ contains
                   "only a polygon has edges"//doc)
       call accept(4, "", "held by an arc", and_7="&side name='b' arc_from_deg=-100 "// &
                   "arc_to_deg=-80 x_displacement=0 y_displacement=0 /")
-     call refuse(2, "  radius=0.5 x=0, 1, 1 /", "x is given for a disc, which has a centre and "// &
-                  "a radius instead")
+      call refuse(2, "  radius=0.5 x=0, 1, 1 /", "x is given, but only the shape "// &
+                  "'polygon' has it, and not 'disc'")
    end subroutine check_arcs
 
    !> Places that are known, beside and in a notch.

@@ -119,8 +119,8 @@ contains
 
    subroutine check_missing()
       call refuse(4, "", ":3: &material: poisson, which is always needed, is missing"//doc)
-      call refuse(2, "", ": group &domain is missing, and with it x_min [m], which a "// &
-                  "rectangle needs"//doc)
+      call refuse(2, "", ": group &domain is missing, and with it x_min [m], which the "// &
+                  "shape 'rectangle' needs"//doc)
       call refuse(7, "/", ":3: &material: toughness [Pa m^1/2], which growth needs, is missing"// &
                   doc)
       call refuse(5, "  biot=0.8", ":3: &material: porosity, which a scene with &fluid needs, "// &
@@ -177,7 +177,7 @@ contains
       call refuse(18, "&injection fracture='g1' rate=5.0e-9", ":18: &injection: fracture is "// &
                   "'g1', which is no fracture of the scene; the nearest is 'f1'"//doc)
       call refuse(19, "  start=0.0 x=1.0 /", &
-                  ":18: &injection: y is missing but must be given with the other coordinate"//doc)
+                  ":18: &injection: y is missing but must be given with x"//doc)
       call refuse(24, "&fine window=0.01 /", ":24: &fine: window is 0.01 but must be larger "// &
                   "than twice the fine mesh size, 0.005"//doc)
       call refuse(25, "&growth enabled=.true. increment=0.15 /", &

@@ -35,11 +35,12 @@ program test_scene_mechanics
    call accept("no friction", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='frictionless' /")
    call accept("a slip", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='slip' slip=1e-3 /")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' friction=0.5 /", &
-               ":3: &fracture: friction or dilation_deg is given with the law 'open'")
+               ":3: &fracture: friction is given, but only the law 'friction' has it, and not "// &
+               "'open'")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='slip' /", "slip [m], which the law "// &
                "'slip' needs, is missing")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=1 slip_taper=0.1 /", &
-               "slip or slip_taper is given with the law 'friction', which has neither")
+               "slip_taper is given, but only the law 'slip' has it, and not 'friction'")
    call accept("held closed", 3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=1 "// &
                "held_closed=.true. face_pressure=1e6 /")
    call accept("a pressure on open faces", 3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' "// &
@@ -62,12 +63,13 @@ program test_scene_mechanics
    call refuse(2, "&material young=1e9 poisson=0.2 /", "toughness [Pa m^1/2], which growth needs")
    call refuse(6, "", "", accepted=.true., and_1="&domain shape='disc' x_centre=1 y_centre=0.5 "// &
                "radius=2 /")
-   call refuse(6, "", "radius [m], which a disc needs", and_1="&domain shape='disc' "// &
+   call refuse(6, "", "radius [m], which the shape 'disc' needs", and_1="&domain shape='disc' "// &
                "x_centre=1 y_centre=0.5 /")
-   call refuse(6, "", "x_min is given for a disc", and_1="&domain shape='disc' x_min=0 "// &
+   call refuse(6, "", "x_min is given, but only the shape 'rectangle'", &
+               and_1="&domain shape='disc' x_min=0 "// &
                "x_centre=1 y_centre=0.5 radius=2 /")
-   call refuse(6, "", "radius is given for a rectangle", and_1=trim(good(1) (:len_trim(good(1)) &
-                                                                             - 1))//" radius=2 /")
+   call refuse(6, "", "radius is given, but only the shape 'disc'", &
+               and_1=trim(good(1) (:len_trim(good(1)) - 1))//" radius=2 /")
    call refuse(6, trim(good(6)), "", accepted=.true., and_1="&domain shape='disc' x_centre=1 "// &
                "y_centre=0.5 radius=2 /")
    call delete_file(path)

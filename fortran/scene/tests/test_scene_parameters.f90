@@ -2,8 +2,9 @@
 program test_scene_parameters
    use testing_checks, only: checks_t
    use scene_intervals, only: in_words
-   use scene_parameters, only: groups, kind_choice, kind_logical, kind_name, kind_text, &
-                               need_always, need_never, parameter_t, parameters
+   use scene_parameters, only: choice_name, choice_value, groups, kind_choice, kind_logical, &
+                               kind_name, kind_real, kind_text, need_always, need_choice, &
+                               need_never, parameter_t, parameters
    use scene_values, only: default_value, read_value, value_t
    use scene_tokens, only: token_list_t, tokenize
    use base_kinds, only: ik
@@ -23,6 +24,7 @@ program test_scene_parameters
    end do
    do i = 1, size(parameters)
       call check_parameter(parameters(i))
+      call check_others(parameters(i))
    end do
    call checks%finish()
 
@@ -63,5 +65,38 @@ contains
       call default_value(item, value)
       call checks%is_true(value%is_set .and. value%line == 0, name//" gets its default")
    end subroutine check_parameter
+
+   !> The names that a parameter speaks of stand in its group and can be compared with it.
+   subroutine check_others(item)
+      type(parameter_t), intent(in) :: item
+      character(len=:), allocatable :: name
+      integer :: other
+
+      name = trim(item%group)//" "//trim(item%name)
+      call checks%is_true(item%need /= need_choice .or. item%of /= "", name//" has a choice")
+      if (item%of /= "") then
+         other = index_of(item%group, choice_name(item))
+         call checks%is_true(parameters(other)%kind == kind_choice, name//" belongs to a choice")
+         call checks%is_true(index("|"//trim(parameters(other)%choices)//"|", &
+                                   "|"//choice_value(item)//"|") > 0, name//" has one of its words")
+      end if
+      if (item%with /= "") then
+         other = index_of(item%group, item%with)
+         call checks%is_true(parameters(other)%with == item%name, name//" and its pair")
+      end if
+      if (item%at_most /= "") then
+         other = index_of(item%group, item%at_most)
+         call checks%is_true(all([item%kind, parameters(other)%kind] == kind_real) .and. &
+                             item%unit == parameters(other)%unit, name//" and its bound")
+      end if
+   end subroutine check_others
+
+   !> Where a name of a group stands; it must.
+   integer function index_of(group, name) result(other)
+      character(len=*), intent(in) :: group, name
+
+      other = findloc(parameters%group == group .and. parameters%name == name, .true., dim=1)
+      if (other == 0) error stop "a name that its group does not have"
+   end function index_of
 
 end program test_scene_parameters

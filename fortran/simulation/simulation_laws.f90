@@ -1,0 +1,20 @@
+!> What the scene says of a fracture's faces, as the law of contact takes it.
+module simulation_laws
+   use contact_law, only: contact_law_t
+   use scene_types, only: fracture_t
+   implicit none(type, external)
+   private
+
+   public :: law_of_fracture
+
+contains
+
+   !> The law where the faces touch; what the scene holds closed is bilateral besides.
+   elemental type(contact_law_t) function law_of_fracture(fracture) result(law)
+      type(fracture_t), intent(in) :: fracture
+
+      law%friction = fracture%friction
+      law%dilation = tan(fracture%dilation)
+   end function law_of_fracture
+
+end module simulation_laws
