@@ -38,7 +38,7 @@ module coarse_model
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
-      real(rk), allocatable :: reach(:)  !< (tips) share of its cell that lies behind each [-]
+      real(rk), allocatable :: ahead(:)  !< (tips) how far the mesh goes on beyond each, closed [m]
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -71,8 +71,8 @@ contains
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
-      if (allocated(self%reach)) deallocate (self%reach)
-      allocate (self%reach(mesh%fracture%n_tips), source=1.0_rk)
+      if (allocated(self%ahead)) deallocate (self%ahead)
+      allocate (self%ahead(mesh%fracture%n_tips), source=0.0_rk)
       call self%condensed%solver%release()
       self%condensed%analysed = .false.
       self%condensed%dt = -1.0_rk
@@ -150,7 +150,7 @@ contains
          if (allocated(error)) return
       end if
       if (n > 0) call self%condensed%support(tip_springs(mesh%fracture, self%rock, &
-                                                         self%condensed, self%reach))
+                                                         self%condensed, self%ahead))
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known

@@ -11,6 +11,7 @@ module coarse_state
    type :: fracture_cells_t
       type(contact_law_t), allocatable :: law(:)  !< (n)
       real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
+      real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
    end type fracture_cells_t
 

@@ -23,32 +23,52 @@ module coarse_tips
 
    public :: tip_springs
 
+   real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
+
 contains
 
    !> Stiffness added to that of the condensed body, by unknown of q.
-   pure function tip_springs(fracture, rock, condensed, reach) result(spring)
+   pure function tip_springs(fracture, rock, condensed, ahead) result(spring)
       type(fracture_mesh_t), intent(in) :: fracture
       type(rock_t), intent(in) :: rock
       type(condensed_t), intent(in) :: condensed
-      real(rk), intent(in) :: reach(:)  !< (tips) share of its cell that lies behind a tip, > 0 [-]
+      real(rk), intent(in) :: ahead(:)  !< (tips) how far the mesh goes on beyond each [m]
       real(rk) :: spring(condensed%layout%count())  !< [Pa]
-      integer(ik) :: behind, cell, end, tip
+      real(rk) :: at_end(2), left, share
+      integer(ik) :: cell, step, tip
 
       spring = 0.0_rk
       do tip = 1, fracture%n_tips
          cell = tip_cell(fracture, tip)
-         behind = cell + merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+         step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+         at_end = in_tip_cell(rock)
+         left = ahead(tip)
+         do while (left >= (1.0_rk - least)*condensed%length(cell))  ! the tip is farther back
+            call add(cell, (1.0_rk/least - 1.0_rk)*within(rock))
+            left = max(0.0_rk, left - condensed%length(cell))
+            cell = cell + step
+            at_end = in_cell_behind(rock)
+         end do
+         share = 1.0_rk - left/condensed%length(cell)
+         call add(cell, at_end + (1.0_rk/share - 1.0_rk)*within(rock))
+         if (share < 1.0_rk) call add(cell + step, (1.0_rk - share)*in_cell_behind(rock))
+      end do
+
+   contains
+
+      !> Springs at both ends of a cell.
+      pure subroutine add(cell, stiffness)
+         integer(ik), intent(in) :: cell
+         real(rk), intent(in) :: stiffness(2)  !< n, tau [Pa]
+         integer(ik) :: end
+
          do end = 1, 2
             associate (at => condensed%layout%at_jump(cell, end))
-               spring(at:at + 1) = spring(at:at + 1) &
-                                   + in_tip_cell(rock) + (1.0_rk/reach(tip) - 1.0_rk)*ahead(rock)
-            end associate
-            if (.not. reach(tip) < 1.0_rk) cycle
-            associate (at => condensed%layout%at_jump(behind, end))
-               spring(at:at + 1) = spring(at:at + 1) + (1.0_rk - reach(tip))*in_cell_behind(rock)
+               spring(at:at + 1) = spring(at:at + 1) + stiffness
             end associate
          end do
-      end do
+      end subroutine add
+
    end function tip_springs
 
    !> The fracture cell that ends at a tip; cells are stored along each fracture.
@@ -74,14 +94,14 @@ contains
 
    !> Where a tip is in its cell: what is added there, over what the tip lacks to the cell's end in
    !! terms of what it has [Pa].
-   pure function ahead(rock) result(spring)
+   pure function within(rock) result(spring)
       type(rock_t), intent(in) :: rock
       real(rk) :: spring(2)  !< n, tau
 
       associate (nu => poisson(rock))
          spring = crack_modulus(rock)*[0.156_rk - 0.03_rk*nu, 0.1752_rk - 0.104_rk*nu]
       end associate
-   end function ahead
+   end function within
 
    !> Where a tip is at the start of its cell: what is added in the cell behind it [Pa].
    pure function in_cell_behind(rock) result(spring)

@@ -12,7 +12,11 @@ module twolevel_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: state_t, step_report_t
-   use growth_network, only: end_gain, extend, move_end
+   use base_tolerances, only: same_place
+   use growth_network, only: end_gain, end_place, extend, move_end
+   use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
+   use mesh_types, only: network_t
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
@@ -20,6 +24,10 @@ module twolevel_equilibrium
    public :: accept_equilibrium, find_equilibrium
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
+
+   !> Excess of K_eq over K_IC, relative to that, beyond which a tried step is not one that a segment
+   !! begins in: its direction would be that of a state that never is.
+   real(rk), parameter :: excess_max = 0.2_rk
 
 contains
 
@@ -36,8 +44,14 @@ contains
       integer, parameter :: tries_max = 25
       logical :: has_begun(size(self%tip)), moves(size(self%tip)), wants(size(self%tip))
       type(state_t) :: before
+      type(tip_t) :: tip(size(self%tip))
+      type(segment_t) :: segment(size(self%tip))
+      type(network_t) :: network
       integer :: k
 
+      tip = self%tip
+      segment = self%segment
+      network = self%network
       is_too_long = .false.
       has_begun = .false.
       before = self%state
@@ -51,7 +65,9 @@ contains
          call judge_tips(self, moves, wants)
          if (.not. any(moves)) then
             if (.not. any(wants)) return
-            is_too_long = any(wants .and. has_begun)
+            is_too_long = any(wants .and. (has_begun .or. &
+                                           self%tip%drive%intensity > &
+                                           (1.0_rk + excess_max)*self%rules%toughness))
             if (is_too_long) exit
             has_begun = has_begun .or. wants
             call begin_segments(self, wants, before, timers, error)
@@ -61,7 +77,11 @@ contains
          self%state = before
       end do
       if (k > tries_max) is_too_long = .true.
+      ! The cells that segments were begun with stay, closed, for the next try.
       self%state = before
+      self%tip = tip
+      self%segment = segment
+      self%network = network
       self%values_are_current = .false.
    end subroutine find_equilibrium
 
@@ -95,10 +115,14 @@ contains
                tip%xy = segment%place()
                tip%direction = segment%direction
                call move_end(self%network, tip%fracture, tip%end, tip%xy)
-               k = findloc(fracture%tip_fracture == tip%fracture .and. &
-                           fracture%tip_end == tip%end, .true., dim=1)
-               if (k > 0) self%model%reach(k) = segment%share()
             end associate
+         end do
+         do k = 1, fracture%n_tips
+            i = findloc(self%tip%fracture == fracture%tip_fracture(k) .and. &
+                        self%tip%end == fracture%tip_end(k), .true., dim=1)
+            if (i == 0) cycle
+            self%model%ahead(k) = norm2(fracture%point_xy(:, fracture%tip_point(k)) &
+                                        - self%tip(i)%xy)
          end do
       end associate
    end subroutine place_tips
@@ -134,16 +158,33 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: centres(:, :)
-      logical :: any_grew
+      real(rk) :: to(2)
+      logical :: any_grew, is_new(size(self%tip))
       integer(ik) :: i
 
       self%segment%is_open = self%segment%is_open .and. .not. wants
-      call self%grow_by(merge(self%rules%increment, 0.0_rk, wants), any_grew, timers, error)
+      is_new = wants
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. wants(i)) cycle
+         associate (tip => self%tip(i), segment => self%segment(i))
+            to = end_place(self%coarse_network, tip%fracture, tip%end)
+            is_new(i) = .not. norm2(to - tip%xy) > same_place*self%rules%increment
+            if (is_new(i)) cycle
+            ! An earlier try of this step has begun it.
+            call extend(self%network, tip%fracture, tip%end, to)
+            call segment%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), norm2(to - tip%xy))
+         end associate
+      end do
+      if (.not. any(is_new)) then
+         self%state = before
+         return
+      end if
+      call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new), any_grew, timers, error)
       if (allocated(error)) return
       allocate (centres(2, 0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
-            if (.not. (wants(i) .and. tip%advance > 0.0_rk)) cycle
+            if (.not. (is_new(i) .and. tip%advance > 0.0_rk)) cycle
             call self%segment(i)%open_segment(tip%origin, tip%direction, norm2(tip%xy - tip%origin))
             call extend(self%coarse_network, tip%fracture, tip%end, tip%xy)
             centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])

@@ -55,7 +55,8 @@ contains
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
             if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
-            row%fracture_volume = sum(state%aperture*simulation%model%condensed%length)
+            row%fracture_volume = sum((state%aperture - simulation%model%cells%roughness) &
+                                      *simulation%model%condensed%length)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
             states = cell_states(simulation)

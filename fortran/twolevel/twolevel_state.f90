@@ -128,7 +128,8 @@ contains
 
       associate (fracture => self%mesh%fracture, cells => self%model%cells)
          allocate (cells%law(fracture%n_cells), cells%residual_aperture(fracture%n_cells))
-         allocate (cells%injection(fracture%n_cells), source=0.0_rk)
+         allocate (cells%injection(fracture%n_cells), cells%roughness(fracture%n_cells), &
+                   source=0.0_rk)
          do i = 1, fracture%n_cells
             associate (given => self%scene%fractures(fracture%cell_fracture(i)))
                cells%law(i) = law_of_fracture(given)
@@ -272,10 +273,12 @@ contains
       type(fracture_cells_t) :: cells
       real(rk) :: prefilled
       integer(ik) :: i
+      logical :: is_prefilled
 
-      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, cells)
-      call transfer_state(map, self%mesh, mesh, cells, &
-                          self%scene%growth%new_volume == "prefilled", self%state, state, prefilled)
+      is_prefilled = self%scene%growth%new_volume == "prefilled"
+      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, &
+                          is_prefilled, cells)
+      call transfer_state(map, self%mesh, mesh, cells, is_prefilled, self%state, state, prefilled)
       self%share = transfer_shares(map, self%share)
       self%grown = pack([(i, i=1, mesh%fracture%n_cells)], map%fracture_cell_old == 0)
       self%mesh = mesh

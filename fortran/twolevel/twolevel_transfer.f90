@@ -19,25 +19,29 @@ module twolevel_transfer
 contains
 
    !> Properties of the fracture cells of the new mesh.
-   subroutine transfer_cells(map, mesh, before, new_aperture, after)
+   subroutine transfer_cells(map, mesh, before, new_aperture, is_prefilled, after)
       type(mesh_map_t), intent(in) :: map
       type(mesh_t), intent(in) :: mesh  !< the new one
       type(fracture_cells_t), intent(in) :: before
       real(rk), intent(in) :: new_aperture  !< residual aperture of new cells [m]
+      logical, intent(in) :: is_prefilled  !< it holds fluid from the start
       type(fracture_cells_t), intent(out) :: after
       integer(ik) :: i, old
 
       allocate (after%law(mesh%fracture%n_cells), after%residual_aperture(mesh%fracture%n_cells))
-      allocate (after%injection(mesh%fracture%n_cells), source=0.0_rk)
+      allocate (after%injection(mesh%fracture%n_cells), after%roughness(mesh%fracture%n_cells), &
+                source=0.0_rk)
       do i = 1, mesh%fracture%n_cells
          old = map%fracture_cell_old(i)
          if (old > 0) then
             after%law(i) = before%law(old)
             after%residual_aperture(i) = before%residual_aperture(old)
+            after%roughness(i) = before%roughness(old)
             after%injection(i) = before%injection(old)
          else
             after%law(i) = before%law(nearest_old(map, mesh, i))
             after%residual_aperture(i) = new_aperture
+            if (.not. is_prefilled) after%roughness(i) = new_aperture
          end if
       end do
    end subroutine transfer_cells

@@ -205,12 +205,13 @@ contains
       length = simulation%mesh%fracture%cell_s(2, :) - simulation%mesh%fracture%cell_s(1, :)
    end function lengths
 
-   !> Volume of the fractures [m2].
+   !> Volume of the fractures that holds fluid [m2].
    function volume(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
       real(rk) :: volume
 
-      volume = sum(simulation%state%aperture*lengths(simulation))
+      volume = sum((simulation%state%aperture - simulation%model%cells%roughness) &
+                   *lengths(simulation))
    end function volume
 
    !> Fluid that the fractures took up in a step by its compression, a c_p dp [m2].
