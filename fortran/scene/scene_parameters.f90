@@ -383,7 +383,7 @@ module scene_parameters
                   meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "law", kind_choice, scenes=in_fluid, default="'equilibrium'", &
                   choices="equilibrium|paris", &
-                  meaning="Growing tips stay at K_eq = K_IC while time goes on, or advance at the "// &
+               meaning="Growing tips stay at K_eq = K_IC while time goes on, or advance at the "// &
                   "ends of steps by the Paris-type law of the thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &

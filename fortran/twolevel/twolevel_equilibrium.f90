@@ -32,16 +32,18 @@ module twolevel_equilibrium
 contains
 
    !> Try a step: state and tips at its end. Where a tip would go on for more than one new piece,
-   !! `is_too_long`. Nothing is accepted yet; a report without convergence or a step that is too
-   !! long leaves the state before.
-   subroutine find_equilibrium(self, dt, timers, report, is_too_long, error)
+   !! `is_too_long`, unless growth is `unstable`: so short a step that nothing but growth happens in
+   !! it, until it arrests. Nothing is accepted yet; a report without convergence or a step that is
+   !! too long leaves the state before.
+   subroutine find_equilibrium(self, dt, is_unstable, timers, report, is_too_long, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
+      logical, intent(in) :: is_unstable
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       logical, intent(out) :: is_too_long
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: tries_max = 25
+      integer, parameter :: tries_max = 25, unstable_tries_max = 1000
       logical :: has_begun(size(self%tip)), moves(size(self%tip)), wants(size(self%tip))
       type(state_t) :: before
       type(tip_t) :: tip(size(self%tip))
@@ -56,7 +58,7 @@ contains
       has_begun = .false.
       before = self%state
       call self%segment%restart()
-      do k = 1, tries_max
+      do k = 1, merge(unstable_tries_max, tries_max, is_unstable)
          call place_tips(self)
          call self%try_step(dt, timers, report, error)
          if (allocated(error) .or. .not. report%converged) exit
@@ -65,9 +67,8 @@ contains
          call judge_tips(self, moves, wants)
          if (.not. any(moves)) then
             if (.not. any(wants)) return
-            is_too_long = any(wants .and. (has_begun .or. &
-                                           self%tip%drive%intensity > &
-                                           (1.0_rk + excess_max)*self%rules%toughness))
+            is_too_long = .not. is_unstable .and. any(wants .and. (has_begun .or. &
+                             self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
             if (is_too_long) exit
             has_begun = has_begun .or. wants
             call begin_segments(self, wants, before, timers, error)
@@ -76,7 +77,7 @@ contains
          end if
          self%state = before
       end do
-      if (k > tries_max) is_too_long = .true.
+      if (.not. allocated(error) .and. report%converged) is_too_long = .true.
       ! The cells that segments were begun with stay, closed, for the next try.
       self%state = before
       self%tip = tip

@@ -7,7 +7,7 @@ module twolevel_simulation
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_step_cut
+   use results_chronicle, only: event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_types, only: snapshot_t
@@ -143,26 +143,35 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: is_too_long, is_too_short
+      logical :: is_too_long, is_unstable
+      real(rk) :: wanted
 
       call self%windows%accept()
       self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
+      wanted = self%dt
+      is_unstable = .false.
       do
-         call find_equilibrium(self, self%dt, timers, self%report, is_too_long, error)
+         call find_equilibrium(self, self%dt, is_unstable, timers, self%report, is_too_long, error)
          if (allocated(error)) return
          if (self%report%converged .and. .not. is_too_long) exit
-         call self%stepper%cut(self%scene%time, self%dt, is_too_short)
-         call note_cut(self, is_too_long)
-         if (is_too_short) then
+         if (is_unstable) then
             call raise_error(error, "", "no equilibrium of growth, even with a time step of " &
                              //brief_text(self%dt, 4)//" s")
             return
          end if
+         call self%stepper%cut(self%scene%time, self%dt, is_unstable)
+         call note_cut(self, is_too_long)
       end do
       call self%book_step(self%dt)
       call accept_equilibrium(self)
-      call self%stepper%follow_growth(self%scene%time, &
-                                      maxval(self%tip%advance)/self%rules%increment)
+      if (is_unstable) then
+         call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
+                                       //brief_text(sum(self%tip%advance), 4)//" m in all")
+         self%stepper%next = wanted
+      else
+         call self%stepper%follow_growth(self%scene%time, &
+                                         maxval(self%tip%advance)/self%rules%increment)
+      end if
    end subroutine take_growing_step
 
    !> A step that did not converge, or in which tips would have gone on for too long, was cut.
