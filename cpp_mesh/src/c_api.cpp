@@ -117,7 +117,6 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.is_window = given->is_window != 0;
     spec.rosette_sectors = given->rosette_sectors;
     spec.rosette_radii.usual = given->rosette_radius;
-    spec.rosette_radii.leave_no_short_piece = !spec.is_window;
     if (given->end_radius != nullptr)
         spec.rosette_radii.at_end = radii_at_ends(n_fractures, given->end_radius);
     spec.fixed_points = points_from(given->n_fixed, given->fixed);

@@ -81,7 +81,7 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
                 if (fixed != tip && star[fixed].empty())
                     plan.radius = std::min(plan.radius, 0.5 * distance(at(tip), at(fixed)));
             plan.radius = std::min(plan.radius, 0.5 * domain.depth(at(tip)));
-            if (radii.leave_no_short_piece && plan.radius < own_length * (1.0 - 1e-9))
+            if (plan.radius < own_length * (1.0 - 1e-9))
                 plan.radius = std::min(plan.radius, own_length / (1.0 + least_piece));
             plans.push_back(plan);
         }

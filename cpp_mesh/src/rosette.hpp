@@ -23,9 +23,6 @@ struct RosettePlan {
 struct RosetteRadii {
     double usual = 0.0;                        // [m]
     std::vector<std::array<double, 2>> at_end; // by fracture: its start, its end
-    // Rings made smaller leave no short piece of their segment behind them. Windows do without
-    // this.
-    bool leave_no_short_piece = false;
 
     double wanted(int fracture, int end) const;
 };

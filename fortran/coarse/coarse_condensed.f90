@@ -25,6 +25,7 @@ module coarse_condensed
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
       !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]
       real(rk), allocatable :: stiffness(:, :)
+      real(rk), allocatable :: spring(:)  !< (6 n) part of its diagonal that is not the body's [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
       integer(ik) :: n = 0  !< fracture cells
@@ -36,6 +37,7 @@ module coarse_condensed
       integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
    contains
       procedure :: factorize
+      procedure :: support
       procedure :: condense
       procedure :: expand
    end type condensed_t
@@ -127,7 +129,21 @@ contains
          call turn_to_normals(self, schur(:, i))
       end do
       self%stiffness = schur
+      if (allocated(self%spring)) deallocate (self%spring)
+      allocate (self%spring(size(schur, 1)), source=0.0_rk)
    end subroutine find_stiffness
+
+   !> Springs on the unknowns of q, instead of those so far.
+   pure subroutine support(self, spring)
+      class(condensed_t), intent(inout) :: self
+      real(rk), intent(in) :: spring(:)  !< (6 n) [Pa]
+      integer(ik) :: i
+
+      do i = 1, size(spring, kind=ik)
+         self%stiffness(i, i) = self%stiffness(i, i) + (spring(i) - self%spring(i))
+      end do
+      self%spring = spring
+   end subroutine support
 
    !> Components x, y of jumps or forces become n, tau; tau is n turned by -90 degrees.
    pure subroutine turn_to_normals(self, v)

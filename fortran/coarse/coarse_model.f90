@@ -20,6 +20,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_tips, only: tip_springs
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
@@ -37,6 +38,7 @@ module coarse_model
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      real(rk), allocatable :: ahead(:)  !< (tips) how far the mesh goes on beyond each, closed [m]
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -69,6 +71,8 @@ contains
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
       if (.not. allocated(error)) call find_connections(mesh, self%connections)
+      if (allocated(self%ahead)) deallocate (self%ahead)
+      allocate (self%ahead(mesh%fracture%n_tips), source=0.0_rk)
       call self%condensed%solver%release()
       self%condensed%analysed = .false.
       self%condensed%dt = -1.0_rk
@@ -95,6 +99,7 @@ contains
                               /(model%rock%lame + model%rock%shear))
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
+      allocate (state%slip_before(2, n), source=0.0_rk)
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=initial%pressure)
       allocate (state%contact(2, n), source=state_stick)
@@ -144,6 +149,8 @@ contains
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if
+      if (n > 0) call self%condensed%support(tip_springs(mesh%fracture, self%rock, &
+                                                         self%condensed, self%ahead))
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known

@@ -111,6 +111,7 @@ contains
          report%reason = "the law of contact is not fulfilled on some fracture cell"
          return
       end if
+      state%slip_before = state%jump(2, :, :)
       do i = 1, condensed%n
          do end = 1, 2
             at = condensed%layout%at_jump(i, end)

@@ -11,6 +11,7 @@ module coarse_state
    type :: fracture_cells_t
       type(contact_law_t), allocatable :: law(:)  !< (n)
       real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
+      real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
    end type fracture_cells_t
 
@@ -23,6 +24,7 @@ module coarse_state
       real(rk), allocatable :: tractions(:)  !< of coarse_fields' corner_tractions [Pa]
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
+      real(rk), allocatable :: slip_before(:, :)  !< (2, n) [u]_tau at the last accepted time [m]
       !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
       real(rk), allocatable :: traction(:, :, :)
       integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open

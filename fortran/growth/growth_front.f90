@@ -40,6 +40,7 @@ module growth_front
       procedure(evaluate_tips), deferred :: evaluate
       procedure :: find_tips
       procedure :: grow_tips
+      procedure :: grow_by
    end type front_t
 
    abstract interface
@@ -71,9 +72,25 @@ contains
       end do
    end subroutine find_tips
 
-   !> One increment of the tips at their onset. They have to be evaluated before, and are after.
+   !> One increment of the tips at their onset, by the law of advances. They have to be evaluated
+   !! before, and are after.
    subroutine grow_tips(self, any_grew, timers, error)
       class(front_t), intent(inout) :: self
+      logical, intent(out) :: any_grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: advance(size(self%tip))
+
+      call plan_increment(self%tip, tips_at_onset(self%tip, self%rules%toughness, &
+                                                  self%rules%together), &
+                          self%rules%increment, self%rules%exponent, advance)
+      call self%grow_by(advance, any_grew, timers, error)
+   end subroutine grow_tips
+
+   !> Given advances of tips that have been evaluated; all are evaluated at the new ones.
+   subroutine grow_by(self, advance, any_grew, timers, error)
+      class(front_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips); 0: does not grow [m]
       logical, intent(out) :: any_grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
@@ -81,7 +98,7 @@ contains
       logical :: any_turned
       integer(ik) :: i, k
 
-      call advance_tips(self, any_grew)
+      call advance_tips(self, advance, any_grew)
       if (.not. any_grew) return
       call self%evaluate(timers, error)
       do k = 1, corrections
@@ -93,20 +110,18 @@ contains
       do i = 1, size(self%tip, kind=ik)
          call self%tip(i)%settle(-self%tip(i)%intensity%k2)
       end do
-   end subroutine grow_tips
+   end subroutine grow_by
 
-   !> Move the tips at their onset to where the next increment will probably end.
-   subroutine advance_tips(self, any_grew)
+   !> Move the tips to where their increments will probably end.
+   subroutine advance_tips(self, advance, any_grew)
       class(front_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips) [m]
       logical, intent(out) :: any_grew
-      real(rk) :: advance(size(self%tip)), kink, to(2)
+      real(rk) :: kink, to(2)
       integer(ik) :: i
 
       any_grew = .false.
       call self%tip%begin_increment()
-      call plan_increment(self%tip, tips_at_onset(self%tip, self%rules%toughness, &
-                                                  self%rules%together), &
-                          self%rules%increment, self%rules%exponent, advance)
       do i = 1, size(self%tip, kind=ik)
          if (.not. advance(i) > 0.0_rk) cycle
          associate (tip => self%tip(i))

@@ -6,7 +6,7 @@ module growth_network
    implicit none(type, external)
    private
 
-   public :: end_direction, end_gain, end_vertices, extend, fracture_length, move_end
+   public :: end_direction, end_gain, end_place, end_vertices, extend, fracture_length, move_end
    public :: network_of_scene, straighten_end, total_length
 
 contains
@@ -117,6 +117,16 @@ contains
          if (all(abs(network%xy(:, last + n*step) - end_before) <= 0.0_rk)) return
       end do
    end function end_vertices
+
+   !> Where one end of a fracture is [m].
+   pure function end_place(network, fracture, end) result(xy)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
+      real(rk) :: xy(2)
+
+      xy = network%xy(:, end_vertex(network, fracture, end))
+   end function end_place
 
    !> Number of the vertex at one end of a fracture.
    pure integer(ik) function end_vertex(network, fracture, end)

@@ -5,13 +5,14 @@ module mechanics_body
    use base_timers, only: phase_assemble, phase_factorize, phase_mesh, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
    use fine_contact, only: contact_t, new_contact
+   use fine_contact_transfer, only: transfer_contact
    use fine_elasticity, only: elasticity_t
    use fine_loads, only: fine_loads_t
    use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use mechanics_faces, only: face_conditions, face_pressure, given_slip, transfer_contact
+   use mechanics_faces, only: face_conditions, face_pressure, given_slip
    use mechanics_loads, only: body_loads, held_boundary
    use mechanics_outline, only: outline_of_scene, outline_t
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
@@ -194,12 +195,11 @@ contains
       call timers%stop(phase_assemble)
       if (allocated(error)) return
       associate (fine => self%model%mesh)
+         self%contact = new_contact(fine)
          if (present(fine_before) .and. present(contact_before)) then
             call timers%start(phase_transfer)
             call transfer_contact(fine_before, contact_before, fine, self%contact)
             call timers%stop(phase_transfer)
-         else
-            self%contact = new_contact(fine)
          end if
          self%given_jump = 0.0_rk*self%contact%jump
          call given_slip(scene, start, network, fine, self%given_jump)

@@ -361,6 +361,7 @@ contains
 
       call exchange(record, "enabled", growth%enabled, reading)
       call exchange(record, "intensities", growth%intensities, reading)
+      call exchange(record, "law", growth%law, reading)
       call exchange(record, "increment", growth%increment, reading, nothing=0.0_rk)
       call exchange(record, "exponent", growth%exponent, reading)
       call exchange(record, "threshold", growth%threshold, reading)

@@ -381,6 +381,10 @@ module scene_parameters
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
+      parameter_t("growth", "law", kind_choice, scenes=in_fluid, default="'equilibrium'", &
+                  choices="equilibrium|paris", &
+               meaning="Growing tips stay at K_eq = K_IC while time goes on, or advance at the "// &
+                  "ends of steps by the Paris-type law of the thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
                   meaning="Largest advance l_max of a tip at a time; 0: the default, which is "// &

@@ -154,6 +154,7 @@ module scene_types
    type :: growth_t
       logical :: enabled = .false.
       logical :: intensities = .false.  !< compute stress intensity factors (always with growth)
+      character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"
       real(rk) :: increment = 0.0_rk  !< l_max [m]
       real(rk) :: exponent = 0.35_rk  !< of the Paris-type law [-]
       real(rk) :: threshold = 0.5_rk  !< eps_p: growth is handed over at eps_p*dH [-]

@@ -192,15 +192,18 @@ contains
       end do
    end subroutine note_contact
 
-   !> Note all tips. Where any tip has just grown, all are as before that. One that has joined
-   !! something, or been joined, is no tip from then on.
-   pure subroutine note_tips(self)
+   !> Note all tips. Where any tip has just grown at this time, all are as before that, unless the
+   !! growth belongs to the step that led to the state. One that has joined something, or been
+   !! joined, is no tip from then on.
+   pure subroutine note_tips(self, grew_in_step)
       class(simulation_t), intent(inout) :: self
+      logical, intent(in), optional :: grew_in_step  !< default: no
       type(tip_row_t) :: row
       logical :: any_grew
       integer(ik) :: i
 
       any_grew = any(self%tip%advance > 0.0_rk)
+      if (present(grew_in_step)) any_grew = any_grew .and. .not. grew_in_step
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%has_state(is_before=any_grew)) cycle
          row = row_of_tip(self%time(), i, self%tip(i), any_grew)
@@ -225,7 +228,7 @@ contains
          shown%drive = tip%drive_before
       end if
       row%angle = shown%drive%angle
-      if (tip%advance > 0.0_rk) then
+      if (is_before .and. tip%advance > 0.0_rk) then
          shown%xy = tip%origin
          row%angle = tip%kink
       end if

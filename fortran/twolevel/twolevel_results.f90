@@ -55,7 +55,8 @@ contains
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
             if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
-            row%fracture_volume = sum(state%aperture*simulation%model%condensed%length)
+            row%fracture_volume = sum((state%aperture - simulation%model%cells%roughness) &
+                                      *simulation%model%condensed%length)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
             states = cell_states(simulation)
@@ -69,17 +70,16 @@ contains
       end associate
    end function history_of_levels
 
-   !> Seismic moment of the slip since a state before, per metre of thickness [N m].
-   pure real(rk) function slip_moment(simulation, slip_before) result(moment)
+   !> Seismic moment of the slip in the last step, per metre of thickness [N m].
+   pure real(rk) function slip_moment(simulation) result(moment)
       class(two_levels_t), intent(in) :: simulation
-      real(rk), intent(in) :: slip_before(:, :)  !< (2, fracture cells) [u]_tau [m]
       integer(ik) :: i
 
       moment = 0.0_rk
       do i = 1, simulation%mesh%fracture%n_cells
          moment = moment + simulation%model%rock%shear*0.5_rk &
                   *simulation%model%condensed%length(i) &
-                  *sum(abs(simulation%state%jump(2, :, i) - slip_before(:, i)))
+                  *sum(abs(simulation%state%jump(2, :, i) - simulation%state%slip_before(:, i)))
       end do
    end function slip_moment
 

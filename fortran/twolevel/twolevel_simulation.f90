@@ -7,10 +7,11 @@ module twolevel_simulation
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_step_cut
+   use results_chronicle, only: event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_types, only: snapshot_t
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_results, only: cell_states, count_unknowns, history_of_levels, probes_of_levels, &
                                slip_moment, snapshot_of_levels
@@ -94,11 +95,13 @@ contains
       before = self%state
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
+      else if (is_equilibrium(self)) then
+         call take_growing_step(self, timers, error)
       else
          call take_step(self, timers, error)
       end if
       if (allocated(error)) return
-      self%seismic_moment = self%seismic_moment + slip_moment(self, before%jump(2, :, :))
+      self%seismic_moment = self%seismic_moment + slip_moment(self)
       self%mass_error = self%mass_error + self%report%mass_error
       row = self%history()
       call watch_levels(self, self%report, self%mass_error, row%mass_error_relative)
@@ -111,7 +114,7 @@ contains
       self%has_new_mesh = .false.
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
-         if (.not. self%owes_state) then
+         if (.not. (self%owes_state .or. is_equilibrium(self))) then
             call self%stepper%step_done(self%scene%time, self%state%pressure(self%grown))
          end if
       end if
@@ -130,6 +133,63 @@ contains
       if (self%report%converged) return
       call raise_error(error, "", "the initial state was not found: "//self%report%reason)
    end subroutine find_initial_state
+
+   !> Tips grow in equilibrium, else by the law of advances at the ends of steps.
+   pure logical function is_equilibrium(self)
+      class(twolevel_simulation_t), intent(in) :: self
+
+      is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
+   end function is_equilibrium
+
+   !> One accepted step with the growth in it, cut as often as it takes.
+   subroutine take_growing_step(self, timers, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_too_long, is_unstable
+      real(rk) :: wanted
+
+      call self%windows%accept()
+      self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
+      wanted = self%dt
+      is_unstable = .false.
+      do
+         call find_equilibrium(self, self%dt, is_unstable, timers, self%report, is_too_long, error)
+         if (allocated(error)) return
+         if (self%report%converged .and. .not. is_too_long) exit
+         if (is_unstable) then
+            call raise_error(error, "", "no equilibrium of growth, even with a time step of " &
+                             //brief_text(self%dt, 4)//" s")
+            return
+         end if
+         call self%stepper%cut(self%scene%time, self%dt, is_unstable)
+         call note_cut(self, is_too_long)
+      end do
+      call self%book_step(self%dt)
+      call accept_equilibrium(self)
+      if (is_unstable) then
+         call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
+                                       //brief_text(sum(self%tip%advance), 4)//" m in all")
+         self%stepper%next = wanted
+      else
+         call self%stepper%follow_growth(self%scene%time, &
+                                         maxval(self%tip%advance)/self%rules%increment)
+      end if
+   end subroutine take_growing_step
+
+   !> A step that did not converge, or in which tips would have gone on for too long, was cut.
+   subroutine note_cut(self, is_too_long)
+      class(twolevel_simulation_t), intent(inout) :: self
+      logical, intent(in) :: is_too_long
+      character(len=:), allocatable :: reason
+
+      reason = "growth of more than a segment"
+      if (.not. is_too_long) reason = self%report%reason
+      self%summary%step_cuts = self%summary%step_cuts + 1
+      self%summary%newton_total = self%summary%newton_total + self%report%iterations
+      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
+                                    //brief_text(self%dt, 4)//" s: "//reason)
+   end subroutine note_cut
 
    !> One accepted step, cut as often as it takes.
    subroutine take_step(self, timers, error)
@@ -190,9 +250,15 @@ contains
       may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
       self%owes_state = .false.
       if (self%scene%growth%intensities) then
-         call self%evaluate(timers, error)
+         if (may_grow .and. is_equilibrium(self)) then
+            call note_equilibrium(self, error)
+         else
+            call self%evaluate(timers, error)
+         end if
          if (allocated(error)) return
-         if (may_grow) then
+         if (may_grow .and. is_equilibrium(self)) then
+            continue
+         else if (may_grow) then
             call follow_tips(self, timers, error)
             if (allocated(error)) return
          else
@@ -209,6 +275,20 @@ contains
          self%owes_state = .false.
       end if
    end subroutine grow
+
+   !> What has grown in the step that led to the present state.
+   subroutine note_equilibrium(self, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%note_tips(grew_in_step=.true.)
+      call self%note_growth()
+      call self%end_at_gain()
+      if (.not. self%has_new_mesh) return
+      self%has_new_mesh = .false.
+      call self%note_mesh(self%mesh)
+      call watch_mesh(self, error)
+   end subroutine note_equilibrium
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
    !! still to be found.

@@ -9,6 +9,7 @@ module twolevel_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
+   use growth_segment, only: segment_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
@@ -43,6 +44,8 @@ module twolevel_state
       logical :: undrained = .false.  !< the state is the undrained response to the load
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
+      type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
+      logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
@@ -50,9 +53,12 @@ module twolevel_state
       procedure :: mesh_levels
       procedure :: equilibrate
       procedure :: step
+      procedure :: try_step
+      procedure :: book_step
       procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
+      procedure :: remesh_coarse
    end type two_levels_t
 
 contains
@@ -80,7 +86,7 @@ contains
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
-      allocate (self%grown(0))
+      allocate (self%grown(0), self%segment(size(self%tip)))
    end subroutine mesh_levels
 
    !> How tips grow: they stop before they come nearer to anything than a coarse cell, for fluid
@@ -122,7 +128,8 @@ contains
 
       associate (fracture => self%mesh%fracture, cells => self%model%cells)
          allocate (cells%law(fracture%n_cells), cells%residual_aperture(fracture%n_cells))
-         allocate (cells%injection(fracture%n_cells), source=0.0_rk)
+         allocate (cells%injection(fracture%n_cells), cells%roughness(fracture%n_cells), &
+                   source=0.0_rk)
          do i = 1, fracture%n_cells
             associate (given => self%scene%fractures(fracture%cell_fracture(i)))
                cells%law(i) = law_of_fracture(given)
@@ -154,18 +161,38 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      associate (injection => self%model%cells%injection)
-         injection = matmul(self%share, rate(self%scene%injections, self%state%time, dt))
-         call self%model%advance(self%mesh, dt, self%state, timers, report, error)
-         if (allocated(error) .or. .not. report%converged) return
-         self%values_are_current = .false.
-         self%undrained = .false.
-         self%injected = self%injected + dt*sum(injection)
-      end associate
+      call self%try_step(dt, timers, report, error)
+      if (allocated(error) .or. .not. report%converged) return
+      call self%windows%accept()
+      call self%book_step(dt)
+   end subroutine step
+
+   !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
+   subroutine try_step(self, dt, timers, report, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      self%model%cells%injection = matmul(self%share, &
+                                          rate(self%scene%injections, self%state%time, dt))
+      call self%model%advance(self%mesh, dt, self%state, timers, report, error)
+      if (allocated(error) .or. .not. report%converged) return
+      self%values_are_current = .false.
+      self%undrained = .false.
+   end subroutine try_step
+
+   !> The fluid of an accepted step.
+   subroutine book_step(self, dt)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+
+      self%injected = self%injected + dt*sum(self%model%cells%injection)
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
       end if
-   end subroutine step
+   end subroutine book_step
 
    !> Coarse values at the mesh's nodes, for windows and probes.
    subroutine update_values(self)
@@ -176,7 +203,7 @@ contains
       allocate (self%coarse_values%nodal(3, self%mesh%n_nodes))
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
                         self%state%tractions, self%coarse_values%nodal)
-      self%coarse_values%dilation = self%model%cells%law%dilation
+      self%coarse_values%law = self%model%cells%law
       self%values_are_current = .true.
    end subroutine update_values
 
@@ -199,9 +226,6 @@ contains
       logical, intent(out) :: grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(mesher_t) :: mesher
-      type(mesh_t) :: mesh
-      type(mesh_map_t) :: map
       real(rk), allocatable :: centres(:, :)
       logical :: is_straightened
 
@@ -210,7 +234,22 @@ contains
                         self%coarse_network, centres, is_straightened)
          grew = size(centres, 2) > 0
          if (.not. grew) return
-         if (is_straightened) call self%windows%network_changed()
+      end associate
+      if (is_straightened) call self%windows%network_changed()
+      call self%remesh_coarse(centres, timers, error)
+   end subroutine grow_coarse
+
+   !> A mesh of the coarse network, new around the places where that has grown; the state goes along.
+   subroutine remesh_coarse(self, centres, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(mesher_t) :: mesher
+      type(mesh_t) :: mesh
+      type(mesh_map_t) :: map
+
+      associate (size_fracture => self%scene%discretization%size_fracture)
          call timers%start(phase_remesh)
          call remesh(self%mesher, self%coarse_network, centres, &
                      max(5.0_rk*self%rules%increment, 3.0_rk*size_fracture), size_fracture, &
@@ -223,7 +262,7 @@ contains
       call transfer_levels(self, mesh, map)
       call timers%stop(phase_transfer)
       call self%model%set_mesh(self%mesh, self%scene, timers, error)
-   end subroutine grow_coarse
+   end subroutine remesh_coarse
 
    !> Carry cells, state and wells over to a new coarse mesh.
    subroutine transfer_levels(self, mesh, map)
@@ -234,10 +273,12 @@ contains
       type(fracture_cells_t) :: cells
       real(rk) :: prefilled
       integer(ik) :: i
+      logical :: is_prefilled
 
-      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, cells)
-      call transfer_state(map, self%mesh, mesh, cells, &
-                          self%scene%growth%new_volume == "prefilled", self%state, state, prefilled)
+      is_prefilled = self%scene%growth%new_volume == "prefilled"
+      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, &
+                          is_prefilled, cells)
+      call transfer_state(map, self%mesh, mesh, cells, is_prefilled, self%state, state, prefilled)
       self%share = transfer_shares(map, self%share)
       self%grown = pack([(i, i=1, mesh%fracture%n_cells)], map%fracture_cell_old == 0)
       self%mesh = mesh

@@ -22,6 +22,7 @@ module twolevel_stepping
       procedure :: cut
       procedure :: step_done
       procedure :: network_grew
+      procedure :: follow_growth
    end type stepper_t
 
 contains
@@ -65,6 +66,22 @@ contains
       self%pressure = pressure
       self%next = merge(time%share_after_growth*time%step, time%step, self%is_short)
    end subroutine step_done
+
+   !> A step has been accepted in which a tip has advanced by a share of its segment: shorter or
+   !! longer steps, so that it is about a half. Steps differ by factors of two: each size costs a
+   !! factorization.
+   pure subroutine follow_growth(self, time, share)
+      class(stepper_t), intent(inout) :: self
+      type(time_t), intent(in) :: time
+      real(rk), intent(in) :: share  !< [-]
+      real(rk), parameter :: most = 0.75_rk, least = 0.35_rk
+
+      if (share > most) then
+         self%next = 0.5_rk*self%next
+      else if (share < least) then
+         self%next = min(2.0_rk*self%next, time%step)
+      end if
+   end subroutine follow_growth
 
    !> Growth has added fracture cells.
    pure subroutine network_grew(self, time)

@@ -2,9 +2,9 @@
 !!
 !! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or
 !! lost; old fracture cells keep their state as it is. A new fracture cell is closed, without slip,
-!! at the pressure of the cell that it grew from, and either empty ("conserved": the fluid that
-!! fills its residual aperture comes from the cells it is connected to, in the next step's balance)
-!! or "prefilled".
+!! at the pressure of the cell that it grew from. Its residual aperture is the roughness of its
+!! faces, which conducts fluid but holds none that is worth counting ("conserved"), or it is open
+!! and comes along filled ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
    use coarse_geometry, only: cell_area
@@ -19,25 +19,29 @@ module twolevel_transfer
 contains
 
    !> Properties of the fracture cells of the new mesh.
-   subroutine transfer_cells(map, mesh, before, new_aperture, after)
+   subroutine transfer_cells(map, mesh, before, new_aperture, is_prefilled, after)
       type(mesh_map_t), intent(in) :: map
       type(mesh_t), intent(in) :: mesh  !< the new one
       type(fracture_cells_t), intent(in) :: before
       real(rk), intent(in) :: new_aperture  !< residual aperture of new cells [m]
+      logical, intent(in) :: is_prefilled  !< it holds fluid from the start
       type(fracture_cells_t), intent(out) :: after
       integer(ik) :: i, old
 
       allocate (after%law(mesh%fracture%n_cells), after%residual_aperture(mesh%fracture%n_cells))
-      allocate (after%injection(mesh%fracture%n_cells), source=0.0_rk)
+      allocate (after%injection(mesh%fracture%n_cells), after%roughness(mesh%fracture%n_cells), &
+                source=0.0_rk)
       do i = 1, mesh%fracture%n_cells
          old = map%fracture_cell_old(i)
          if (old > 0) then
             after%law(i) = before%law(old)
             after%residual_aperture(i) = before%residual_aperture(old)
+            after%roughness(i) = before%roughness(old)
             after%injection(i) = before%injection(old)
          else
             after%law(i) = before%law(nearest_old(map, mesh, i))
             after%residual_aperture(i) = new_aperture
+            if (.not. is_prefilled) after%roughness(i) = new_aperture
          end if
       end do
    end subroutine transfer_cells
@@ -76,6 +80,7 @@ contains
       end do
 
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
+      allocate (after%slip_before(2, n), source=0.0_rk)
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
       prefilled = 0.0_rk
@@ -83,6 +88,7 @@ contains
          old = map%fracture_cell_old(i)
          if (old > 0) then
             after%jump(:, :, i) = before%jump(:, :, old)
+            after%slip_before(:, i) = before%slip_before(:, old)
             after%traction(:, :, i) = before%traction(:, :, old)
             after%contact(:, i) = before%contact(:, old)
             after%pressure(i) = before%pressure(old)
@@ -93,12 +99,9 @@ contains
          else
             after%pressure(i) = before%pressure(nearest_old(map, mesh, i))
             after%unknowns(3, end_block(mesh, i, both)) = after%pressure(i)
-            after%aperture(i) = 0.0_rk
-            if (is_prefilled) then
-               after%aperture(i) = cells%residual_aperture(i)
-               prefilled = prefilled + after%aperture(i)*(mesh%fracture%cell_s(2, i) &
-                                                          - mesh%fracture%cell_s(1, i))
-            end if
+            after%aperture(i) = cells%residual_aperture(i)
+            if (is_prefilled) prefilled = prefilled + after%aperture(i) &
+                                          *(mesh%fracture%cell_s(2, i) - mesh%fracture%cell_s(1, i))
          end if
       end do
    end subroutine transfer_state

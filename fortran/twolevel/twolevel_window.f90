@@ -1,32 +1,29 @@
 !> A window around a tip: a piece of the network on a fine mesh, loaded by the coarse level.
 !!
-!! The outer edge takes the coarse displacement, the rock the coarse pressure as initial stress. On
-!! fracture faces that the coarse level knows, the condition is one of
-!!   "contact"   the coarse level's contact state: open faces carry fluid pressure alone, slipping
-!!   ones
-!!               their friction with the opening tied to the slip, sticking ones keep the jump that
-!!               the window found last (the coarse one if it has found none yet);
-!!   "jump"      the coarse jump (Paper C);
-!!   "traction"  the coarse contact traction.
-!! Faces that only the fine level knows are open and carry the pressure of the coarse cell they grew
-!! from.
+!! The edge takes the coarse displacement, or, where it lies on a side of the body, what the scene
+!! gives there; the rock takes the coarse pressure as initial stress, the fracture faces what
+!! twolevel_faces says.
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use contact_states, only: state_open, state_slip
+   use contact_law, only: contact_law_t
    use coarse_rock, only: new_rock, rock_t
-   use coarse_state, only: fracture_cells_t, state_t
+   use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
-   use fine_faces, only: face_conditions_t, face_jump, face_loaded, face_slip, loaded_everywhere
+   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side
+   use fine_contact, only: contact_t
+   use fine_contact_transfer, only: transfer_contact
+   use fine_faces, only: face_conditions_t
    use fine_loads, only: fine_loads_t, no_loads
+   use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
-   use mesh_types, only: mesh_t, network_t
+   use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: scene_t
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
-   use twolevel_jumps, only: jump_record_t, recall_jump, record_jumps
+   use twolevel_faces, only: face_map_t, match_faces
    implicit none(type, external)
    private
 
@@ -38,7 +35,7 @@ module twolevel_window
    !> What a window takes from the coarse level.
    type :: coarse_values_t
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      real(rk), allocatable :: dilation(:)  !< (coarse fracture cells) tan(psi) [-]
+      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
    end type coarse_values_t
 
    !> One window.
@@ -51,13 +48,12 @@ module twolevel_window
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
-      type(jump_record_t) :: last_jump
+      type(contact_t), allocatable :: contact  !< of the last solution, its slip the history of the next
+      type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
       logical :: undrained = .false.  !< the model's constants are the undrained ones
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
-      !> (fracture cells) coarse fracture cell; negative: grown from it
-      integer(ik), allocatable :: coarse_face(:)
-      integer(ik), allocatable :: coarse_end(:)  !< (fracture cells) its nearer end
+      type(face_map_t) :: faces
    contains
       procedure :: build
       procedure :: set_rock
@@ -77,6 +73,7 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       real(rk) :: tip(2), half
+      integer(ik) :: side
 
       self%fracture = fracture
       self%end = end
@@ -97,6 +94,9 @@ contains
       spec%is_window = .true.
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
+      if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
+         self%contact_mesh = self%model%mesh
+      end if
       call build_mesh(spec, network, mesher, self%mesh, error)
       if (allocated(error)) return
       call self%set_rock(scene, .false., error)
@@ -104,7 +104,49 @@ contains
       self%tip = findloc(self%mesh%fracture%tip_fracture == fracture .and. &
                          self%mesh%fracture%tip_end == end, .true., dim=1)
       self%loads = no_loads(self%model%mesh)
+      do side = 1, side_count
+         if (on_body(self, scene, side)) then
+            call add_side_traction(self%model%mesh, side, scene%sides(side)%traction, &
+                                   self%loads%force)
+         end if
+      end do
    end subroutine build
+
+   !> A side of the window lies on that side of the body.
+   pure logical function on_body(self, scene, side)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      integer(ik), intent(in) :: side
+
+      select case (side)
+      case (1)
+         on_body = self%lower(1) <= scene%domain%x_min
+      case (2)
+         on_body = self%upper(1) >= scene%domain%x_max
+      case (3)
+         on_body = self%lower(2) <= scene%domain%y_min
+      case default
+         on_body = self%upper(2) >= scene%domain%y_max
+      end select
+   end function on_body
+
+   !> Which displacements are given on the window's edge: all, and those of the scene where it lies
+   !! on a side of the body.
+   pure function held_edge(self, scene) result(boundary)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(fine_boundary_t) :: boundary
+      integer(ik) :: axis, side
+
+      boundary = free_boundary(self%model%mesh)
+      do side = 1, side_count
+         do axis = 1, 2
+            if (on_body(self, scene, side) .and. &
+                .not. scene%sides(side)%displacement_given(axis)) cycle
+            call hold_side(self%model%mesh, side, axis, boundary)
+         end do
+      end do
+   end function held_edge
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
    !! between.
@@ -181,34 +223,8 @@ contains
                                             fine%xy(:, v))
          end do
       end associate
-      call match_faces(self, coarse)
+      self%faces = match_faces(self%model%mesh, coarse)
    end subroutine project
-
-   !> Which coarse fracture cell, and which of its ends, lies nearest to each fracture cell of the
-   !! window.
-   subroutine match_faces(self, coarse)
-      class(window_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: coarse
-      integer(ik) :: i, j
-      real(rk) :: distance, s, shortest
-
-      associate (here => self%mesh%fracture, there => coarse%fracture)
-         if (allocated(self%coarse_face)) deallocate (self%coarse_face, self%coarse_end)
-         allocate (self%coarse_face(here%n_cells), self%coarse_end(here%n_cells), source=0_ik)
-         do i = 1, here%n_cells
-            s = 0.5_rk*sum(here%cell_s(:, i))
-            shortest = huge(1.0_rk)
-            do j = 1, there%n_cells
-               if (there%cell_fracture(j) /= here%cell_fracture(i)) cycle
-               distance = max(there%cell_s(1, j) - s, s - there%cell_s(2, j))
-               if (distance >= shortest) cycle
-               shortest = distance
-               self%coarse_face(i) = merge(j, -j, distance <= 0.0_rk)
-               self%coarse_end(i) = merge(1, 2, s < 0.5_rk*sum(there%cell_s(:, j)))
-            end do
-         end do
-      end associate
-   end subroutine match_faces
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tip.
    subroutine intensity(self, scene, coarse, values, state, result, error)
@@ -234,97 +250,37 @@ contains
          end do
       end associate
       if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
-      call load_faces(self, scene%discretization%face_condition, coarse, values, state, conditions)
+      if (.not. allocated(self%contact) .or. allocated(self%contact_mesh)) then
+         call remember_contact(self, state)
+      end if
+      associate (face_condition => scene%discretization%face_condition)
+         conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
+         call self%faces%load(self%model%mesh, face_condition, state, self%loads)
+      end associate
       if (.not. same_conditions(self%model, conditions)) then
-         call self%model%prepare(conditions, error)
+         call self%model%prepare(conditions, error, held_edge(self, scene))
          if (allocated(error)) return
       end if
-      call self%model%solve(self%loads, self%displacement, error)
+      call self%model%solve(self%loads, self%displacement, error, self%contact)
       if (allocated(error)) return
-      call record_jumps(self%model%mesh, self%displacement, self%last_jump)
       call tip_intensity(self%model, self%loads, self%displacement, self%tip, result, error)
    end subroutine intensity
 
-   !> Conditions and loads on the fracture faces.
-   subroutine load_faces(self, face_condition, coarse, values, state, conditions)
+   !> Contact on a new mesh: that of the window before, and beyond it what the coarse level has.
+   subroutine remember_contact(self, state)
       class(window_t), intent(inout) :: self
-      character(len=*), intent(in) :: face_condition  !< "contact", "jump" or "traction"
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
-      type(face_conditions_t), intent(out) :: conditions
-      integer(ik) :: contact, i, j, end
+      type(contact_t) :: contact
 
-      conditions = loaded_everywhere(self%model%mesh)
-      do i = 1, self%mesh%fracture%n_cells
-         j = abs(self%coarse_face(i))
-         end = self%coarse_end(i)
-         self%loads%fluid_pressure(i) = state%pressure(j)
-         self%loads%traction(:, i) = 0.0_rk
-         self%loads%jump(:, :, i) = 0.0_rk
-         if (self%coarse_face(i) < 0) cycle
-         contact = state%contact(end, j)
-         self%loads%traction(:, i) = [state%traction(2, end, j), state%traction(1, end, j)]
-         select case (face_condition)
-         case ("contact")
-            if (contact == state_slip) then
-               conditions%condition(i) = face_slip
-               conditions%dilation(i) = sign(values%dilation(j), state%jump(2, end, j))
-            else if (contact /= state_open) then
-               conditions%condition(i) = face_jump
-               call keep_jump(self, coarse, state, i, j)
-            end if
-         case ("jump")
-            conditions%condition(i) = face_jump
-            call interpolate_jump(self, coarse, state, i, j)
-         case default  ! "traction": loaded, as all faces are to begin with
-            conditions%condition(i) = face_loaded
-         end select
-      end do
-   end subroutine load_faces
+      contact = self%faces%history(self%model%mesh, state)
+      if (allocated(self%contact_mesh)) then
+         call transfer_contact(self%contact_mesh, self%contact, self%model%mesh, contact)
+         deallocate (self%contact_mesh)
+      end if
+      self%contact = contact
+   end subroutine remember_contact
 
-   !> The window's last jump on a sticking face, or the coarse one where there is none.
-   subroutine keep_jump(self, coarse, state, i, j)
-      class(window_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: coarse
-      type(state_t), intent(in) :: state
-      integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-      real(rk) :: jump(2)
-      integer(ik) :: k
-      logical :: found
-
-      do k = 1, 3
-         call recall_jump(self%last_jump, self%mesh%fracture%cell_fracture(i), &
-                          self%model%mesh%face_s(k, i), jump, found)
-         if (.not. found) then
-            call interpolate_jump(self, coarse, state, i, j)
-            return
-         end if
-         associate (tau => self%model%mesh%face_tangent(:, i))
-            self%loads%jump(:, k, i) = [dot_product(tau, jump), tau(1)*jump(2) - tau(2)*jump(1)]
-         end associate
-      end do
-   end subroutine keep_jump
-
-   !> The coarse jump, linear along its cell, at the window's nodes. Zero at the tip of the network.
-   subroutine interpolate_jump(self, coarse, state, i, j)
-      class(window_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: coarse
-      type(state_t), intent(in) :: state
-      integer(ik), intent(in) :: i, j  !< fracture cell of the window, and of the coarse mesh
-      integer(ik) :: k
-      real(rk) :: t
-
-      associate (s => self%model%mesh%face_s(:, i), ends => coarse%fracture%cell_s(:, j))
-         do k = 1, 3
-            ! Jumps are known at the third points.
-            t = 3.0_rk*(s(k) - ends(1))/(ends(2) - ends(1)) - 1.0_rk
-            self%loads%jump(:, k, i) = (1.0_rk - t)*state%jump(2:1:-1, 1, j) &
-                                       + t*state%jump(2:1:-1, 2, j)
-         end do
-      end associate
-   end subroutine interpolate_jump
-
+   !> The matrix that the model has is that of these conditions.
    pure function same_conditions(model, conditions) result(same)
       type(fine_model_t), intent(in) :: model
       type(face_conditions_t), intent(in) :: conditions
@@ -332,7 +288,11 @@ contains
 
       same = model%ready
       if (same) same = all(model%conditions%condition == conditions%condition)
-      if (same) same = .not. any(abs(model%conditions%dilation - conditions%dilation) > 0.0_rk)
+      if (.not. same) return
+      associate (here => model%conditions%law%contact, there => conditions%law%contact)
+         same = .not. any(abs(here%friction - there%friction) > 0.0_rk .or. &
+                          abs(here%dilation - there%dilation) > 0.0_rk)
+      end associate
    end function same_conditions
 
 end module twolevel_window

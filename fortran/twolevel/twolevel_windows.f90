@@ -22,6 +22,7 @@ module twolevel_windows
    contains
       procedure :: begin
       procedure :: evaluate
+      procedure :: accept
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: n_unknowns
@@ -82,6 +83,18 @@ contains
          end associate
       end do
    end subroutine evaluate
+
+   !> The state that was evaluated last has become history: its slip is what the next one starts
+   !! from.
+   pure subroutine accept(self)
+      class(windows_t), intent(inout) :: self
+      integer(ik) :: i
+
+      if (.not. allocated(self%window)) return
+      do i = 1, size(self%window, kind=ik)
+         if (allocated(self%window(i)%contact)) call self%window(i)%contact%accept()
+      end do
+   end subroutine accept
 
    !> Windows that hold the last segment of a tip that has moved, as it was or as it is, must be
    !! meshed again.

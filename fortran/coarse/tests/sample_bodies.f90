@@ -212,6 +212,7 @@ contains
       associate (n => mesh%fracture%n_cells)
          allocate (cells%law(n), source=law)
          allocate (cells%residual_aperture(n), source=aperture)
+         allocate (cells%roughness(n), source=0.0_rk)
          allocate (cells%injection(n), source=0.0_rk)
       end associate
    end function uniform_cells

@@ -21,6 +21,7 @@ program test_twolevel_simulation
    call test_refused_step()
    call test_growth("conserved")
    call test_growth("prefilled")
+   call test_equilibrium()
    call test_cell_state()
    call checks%finish()
 
@@ -197,6 +198,42 @@ contains
          (given - simulation%injected - simulation%prefilled)/simulation%injected
    end subroutine test_growth
 
+   !> Tips in equilibrium: no accepted state beyond the toughness, tips that advance are at it, both
+   !! ends grow alike, and all fluid is accounted for.
+   subroutine test_equilibrium()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      real(rk) :: gain(2), ratio(2)
+      integer :: grown, step
+
+      call simulation%begin(symmetric_scene("conserved"), timers, error)
+      call checks%no_error(error, "equilibrium")
+      grown = 0
+      do step = 1, 8
+         call simulation%next_state(timers, error)
+         call checks%no_error(error, "a step in equilibrium")
+         if (allocated(error)) return
+         call simulation%grow(timers, error)
+         call checks%no_error(error, "growth in equilibrium")
+         ratio = simulation%tip%drive%intensity/simulation%scene%material%toughness
+         if (simulation%is_initial) cycle
+         call checks%is_true(maxval(ratio) < 1.006_rk, "at most the toughness")
+         if (any(simulation%tip%advance > 0.1_rk*increment)) then
+            grown = grown + 1
+            ! A new piece of a path begins with a twentieth of its length, and a kink.
+            call checks%is_true(maxval(ratio) > 0.98_rk .and. minval(ratio) > 0.8_rk, &
+                                "tips that advance are at it")
+         end if
+      end do
+      call checks%is_true(grown >= 3, "there is growth")
+      gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
+              end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
+      call checks%is_close(gain(1), gain(2), 0.05_rk*maxval(gain), "both ends gain alike")
+      call checks%is_close(simulation%mass_error/simulation%injected, 0.0_rk, 1.0e-10_rk, &
+                           "fluid is conserved")
+      print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
+   end subroutine test_equilibrium
+
    !> [m]
    function lengths(simulation) result(length)
       type(twolevel_simulation_t), intent(in) :: simulation
@@ -205,12 +242,13 @@ contains
       length = simulation%mesh%fracture%cell_s(2, :) - simulation%mesh%fracture%cell_s(1, :)
    end function lengths
 
-   !> Volume of the fractures [m2].
+   !> Volume of the fractures that holds fluid [m2].
    function volume(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
       real(rk) :: volume
 
-      volume = sum(simulation%state%aperture*lengths(simulation))
+      volume = sum((simulation%state%aperture - simulation%model%cells%roughness) &
+                   *lengths(simulation))
    end function volume
 
    !> Fluid that the fractures took up in a step by its compression, a c_p dp [m2].

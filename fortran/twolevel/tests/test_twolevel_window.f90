@@ -1,13 +1,14 @@
 !> Windows: where they lie in the coarse mesh, uniform stress without intensities, what holds on
-!! their faces, and jumps that outlive a new mesh.
+!! their faces, and what contact remembers from step to step and from mesh to mesh.
 program test_twolevel_window
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use contact_states, only: state_open, state_slip, state_stick
-   use fine_faces, only: face_jump, face_loaded, face_slip
+   use contact_states, only: state_slip, state_stick
+   use fine_contact, only: contact_t
+   use fine_faces, only: face_contact, face_jump, face_loaded
    use mesh_types, only: mesh_t
    use sample_bodies, only: cell_centre
    use sample_scenes, only: add_fracture, squeezed_body
@@ -29,7 +30,7 @@ program test_twolevel_window
    call test_projection()
    call test_uniform_stress()
    call test_conditions()
-   call test_kept_jumps()
+   call test_history()
    call checks%finish()
 
 contains
@@ -130,10 +131,9 @@ contains
 
       do i = 1, window%mesh%fracture%n_cells
          s = 0.5_rk*sum(window%mesh%fracture%cell_s(:, i))
-         associate (ends => coarse%fracture%cell_s(:, window%coarse_face(i)))
-            call checks%is_true(ends(1) <= s .and. s <= ends(2), "the coarse cell of a face")
-            call checks%is_true(window%coarse_end(i) == merge(1, 2, s < 0.5_rk*sum(ends)), &
-                                "the nearer end of the coarse cell")
+         associate (ends => coarse%fracture%cell_s(:, window%faces%coarse_cell(i)))
+            call checks%is_true(ends(1) <= s .and. s <= ends(2) .and. window%faces%is_inside(i), &
+                                "the coarse cell of a face")
          end associate
          if (window%model%mesh%face_tip(i) > 0) cycle
          do side = 1, 2
@@ -217,8 +217,8 @@ contains
       end associate
    end function undrained_strain
 
-   !> The coarse level's states become conditions: stick a given jump, slip tied opening, open
-   !! loads.
+   !> What the faces of a window take from the coarse level: the law of their cell, the pressure of
+   !! its fluid, and, in the comparisons, its jump or its traction at the nearer end.
    subroutine test_conditions()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -227,63 +227,68 @@ contains
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, degree, simulation)
-      ! The states alternate from end to end of the coarse cells; slip goes either way.
       do i = 1, size(simulation%state%contact, 2)
-         simulation%state%contact(:, i) = mod([2*i, 2*i + 1], 3_ik)
-         simulation%state%jump(2, :, i) = merge(1.0e-6_rk, -1.0e-6_rk, mod(i, 2_ik) == 0)
+         simulation%state%jump(:, 1, i) = 1.0e-7_rk*[i, 2*i]
+         simulation%state%jump(:, 2, i) = 1.0e-7_rk*[3*i, 4*i]
+         simulation%state%slip_before(:, i) = 1.0e-7_rk*[5*i, 6*i]
          simulation%state%pressure(i) = 1.0e6_rk*i
+         simulation%state%traction(:, :, i) = 1.0e5_rk*reshape([i, 2*i, 3*i, 4*i], [2, 2])
       end do
       call simulation%evaluate(timers, error)
-      call checks%no_error(error, "various states")
-      associate (window => simulation%windows%window(2), state => simulation%state)
-         do i = 1, window%mesh%fracture%n_cells
-            call check_condition(window, i, state%contact(window%coarse_end(i), &
-                                                          window%coarse_face(i)), &
-                                 state%jump(2, 1, window%coarse_face(i)))
-            call checks%is_close(window%loads%fluid_pressure(i), 1.0e6_rk*window%coarse_face(i), &
-                                 0.0_rk, "fluid pressure on a face")
-            associate (given => state%traction(:, window%coarse_end(i), window%coarse_face(i)))
-               call checks%is_close(window%loads%traction(1, i), given(2), 0.0_rk, &
-                                    "shear on a face")
-               call checks%is_close(window%loads%traction(2, i), given(1), 0.0_rk, &
-                                    "pressure on a face")
-            end associate
-         end do
-         call checks%is_true(any(window%model%conditions%condition == face_jump) &
-                             .and. any(window%model%conditions%condition == face_slip) &
-                             .and. any(window%model%conditions%condition == face_loaded), &
-                             "all three occur")
-      end associate
+      call checks%no_error(error, "contact")
+      call check_conditions(simulation, "contact", face_contact)
+      simulation%scene%discretization%face_condition = "jump"
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "jump")
+      call check_conditions(simulation, "jump", face_jump)
+      simulation%scene%discretization%face_condition = "traction"
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "traction")
+      call check_conditions(simulation, "traction", face_loaded)
    end subroutine test_conditions
 
-   subroutine check_condition(window, face, contact, slip)
-      type(window_t), intent(in) :: window
-      integer(ik), intent(in) :: face
-      integer(ik), intent(in) :: contact  !< state of the coarse level there
-      real(rk), intent(in) :: slip  !< of the coarse level [m]
+   subroutine check_conditions(simulation, name, condition)
+      type(twolevel_simulation_t), intent(in) :: simulation
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: condition  !< wanted
+      type(contact_t) :: history
+      integer(ik) :: end, i, j, k
+      real(rk) :: t
 
-      associate (condition => window%model%conditions%condition(face))
-         select case (contact)
-         case (state_stick)
-            call checks%is_true(condition == face_jump, "stick: given jump")
-         case (state_slip)
-            call checks%is_true(condition == face_slip, "slip: opening tied to it")
-            call checks%is_close(window%model%conditions%dilation(face), &
-                                 sign(tan(degree), slip), 1.0e-15_rk, &
-                                 "dilation with the sign of the slip")
-         case (state_open)
-            call checks%is_true(condition == face_loaded, "open: loaded")
-         case default
-            call checks%is_true(.false., "an unknown state")
-         end select
+      associate (window => simulation%windows%window(2), state => simulation%state)
+         associate (fine => window%model%mesh)
+            call checks%is_true(all(window%model%conditions%condition == condition), name)
+            history = window%faces%history(fine, state)
+            do i = 1, window%mesh%fracture%n_cells
+               j = window%faces%coarse_cell(i)
+               call checks%is_close(window%loads%fluid_pressure(i), 1.0e6_rk*j, 0.0_rk, &
+                                    name//": fluid pressure")
+               if (name == "contact") call checks%is_close( &
+                  window%model%conditions%law(i)%contact%friction, 5.0_rk, 0.0_rk, "friction")
+               end = merge(1, 2, sum(fine%face_s(:2, i)) < sum(window%faces%ends(:, i)))
+               if (name == "traction") call checks%is_true( &
+                  all(abs(window%loads%traction(:, i) &
+                          - state%traction([2, 1], end, j)) <= 0.0_rk), "traction")
+               do k = 1, 3
+                  ! From the third points of the coarse cell, along it.
+                  associate (ends => window%faces%ends(:, i))
+                     t = 3.0_rk*(fine%face_s(k, i) - ends(1))/(ends(2) - ends(1)) - 1.0_rk
+                  end associate
+                  if (name == "jump") then
+                     call checks%is_close(window%loads%jump(2, k, i), 1.0e-7_rk*j &
+                                          *(1.0_rk + 2.0_rk*t), 1.0e-18_rk, "opening")
+                  end if
+                  call checks%is_close(history%slip_before(k, i), 1.0e-7_rk*j*(5.0_rk + t), &
+                                       1.0e-18_rk, "slip before the step")
+               end do
+            end do
+         end associate
       end associate
-   end subroutine check_condition
+   end subroutine check_conditions
 
-   !> Faces that slipped and then stick keep the window's jump, also on a new mesh and round the
-   !! kink: the displacement stays as it is, and with it the intensities by its correlation. Those
-   !! by the interaction integral take the tractions that hold the faces instead of those that
-   !! were given.
-   subroutine test_kept_jumps()
+   !> A step in which nothing happens changes no intensity: the slip has become history, and the
+   !! faces, held by friction, stay where they are. A new mesh takes contact over.
+   subroutine test_history()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -296,33 +301,30 @@ contains
                           all(simulation%state%contact /= state_stick), "nothing sticks")
       before = simulation%tip%intensity
       call checks%is_true(minval(abs(before%k2)) > 1.0e5_rk, "there is an intensity")
-      simulation%state%contact = state_stick
+      call simulation%windows%accept()
       call simulation%evaluate(timers, error)
-      call checks%no_error(error, "sticking")
-      call compare(simulation, before, "the same mesh")
+      call checks%no_error(error, "nothing happens")
+      call compare(simulation, before, 1.0e-9_rk, "nothing happens")
       call simulation%windows%network_changed()
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "a new mesh")
-      call compare(simulation, before, "a new mesh")
-   end subroutine test_kept_jumps
+      call compare(simulation, before, 1.0e-5_rk, "a new mesh")
+   end subroutine test_history
 
-   !> All faces have given jumps, and both tips their earlier intensities.
-   subroutine compare(simulation, before, name)
+   !> Both tips have their earlier intensities.
+   subroutine compare(simulation, before, tolerance, name)
       type(twolevel_simulation_t), intent(in) :: simulation
       type(intensity_t), intent(in) :: before(2)
+      real(rk), intent(in) :: tolerance  !< relative to K_II [-]
       character(len=*), intent(in) :: name
       integer :: w
 
       do w = 1, 2
-         associate (window => simulation%windows%window(w), now => simulation%tip(w)%intensity)
-            call checks%is_true(all(window%model%conditions%condition == face_jump), &
-                                name//": jumps are given")
-            associate (scale => abs(before(w)%k2))
-               call checks%is_close(now%k1_dc, before(w)%k1_dc, 1.0e-9_rk*scale, name//": K_I")
-               call checks%is_close(now%k2_dc, before(w)%k2_dc, 1.0e-9_rk*scale, name//": K_II")
-               call checks%is_close(now%k1, before(w)%k1, 1.0e-2_rk*scale, name//": integral, K_I")
-               call checks%is_close(now%k2, before(w)%k2, 1.0e-2_rk*scale, name//": integral, K_II")
-            end associate
+         associate (now => simulation%tip(w)%intensity, scale => abs(before(w)%k2))
+            call checks%is_close(now%k1, before(w)%k1, tolerance*scale, name//": K_I")
+            call checks%is_close(now%k2, before(w)%k2, tolerance*scale, name//": K_II")
+            call checks%is_close(now%k1_dc, before(w)%k1_dc, tolerance*scale, name//": K_I, dc")
+            call checks%is_close(now%k2_dc, before(w)%k2_dc, tolerance*scale, name//": K_II, dc")
          end associate
       end do
    end subroutine compare

@@ -1,0 +1,131 @@
+!> Fracture cells at a tip, whose jumps the finite volumes do not resolve.
+!!
+!! Toward a tip the jump falls with the square root of the distance; it is linear in a fracture cell
+!! here. A crack then slips and opens as if it were longer or shorter by a share of its tip cells
+!! that does not fall with their size, and the error is of first order. That share depends on the
+!! mode and on Poisson's ratio nu, hardly on the mesh: -0.19 + 0.42 nu for opening and 0.11 + 0.42
+!! nu for slip, each within 0.03. Springs between the faces of the tip cells make it vanish; they
+!! also let a tip lie anywhere in its cell, so that the mesh need not follow each small advance: the
+!! softer the springs, the farther the tip is along.
+!!
+!! Their stiffness follows from the closed form of one crack in an infinite body under uniform
+!! pressure, and under uniform shear without friction: means over cracks of 20 cells at 20, 45 and
+!! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
+!! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
+!! the body unstable.
+module coarse_tips
+   use base_kinds, only: ik, rk
+   use coarse_condensed, only: condensed_t
+   use coarse_rock, only: rock_t
+   use mesh_types, only: fracture_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: tip_springs
+
+   real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
+
+contains
+
+   !> Stiffness added to that of the condensed body, by unknown of q.
+   pure function tip_springs(fracture, rock, condensed, ahead) result(spring)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(rock_t), intent(in) :: rock
+      type(condensed_t), intent(in) :: condensed
+      real(rk), intent(in) :: ahead(:)  !< (tips) how far the mesh goes on beyond each [m]
+      real(rk) :: spring(condensed%layout%count())  !< [Pa]
+      real(rk) :: at_end(2), left, share
+      integer(ik) :: cell, step, tip
+
+      spring = 0.0_rk
+      do tip = 1, fracture%n_tips
+         cell = tip_cell(fracture, tip)
+         step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+         at_end = in_tip_cell(rock)
+         left = ahead(tip)
+         do while (left >= (1.0_rk - least)*condensed%length(cell))  ! the tip is farther back
+            call add(cell, (1.0_rk/least - 1.0_rk)*within(rock))
+            left = max(0.0_rk, left - condensed%length(cell))
+            cell = cell + step
+            at_end = in_cell_behind(rock)
+         end do
+         share = 1.0_rk - left/condensed%length(cell)
+         call add(cell, at_end + (1.0_rk/share - 1.0_rk)*within(rock))
+         if (share < 1.0_rk) call add(cell + step, (1.0_rk - share)*in_cell_behind(rock))
+      end do
+
+   contains
+
+      !> Springs at both ends of a cell.
+      pure subroutine add(cell, stiffness)
+         integer(ik), intent(in) :: cell
+         real(rk), intent(in) :: stiffness(2)  !< n, tau [Pa]
+         integer(ik) :: end
+
+         do end = 1, 2
+            associate (at => condensed%layout%at_jump(cell, end))
+               spring(at:at + 1) = spring(at:at + 1) + stiffness
+            end associate
+         end do
+      end subroutine add
+
+   end function tip_springs
+
+   !> The fracture cell that ends at a tip; cells are stored along each fracture.
+   pure integer(ik) function tip_cell(fracture, tip)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: tip
+      integer(ik) :: cells(1)
+
+      cells = fracture%point_cells%of(fracture%tip_point(tip))
+      tip_cell = cells(1)
+   end function tip_cell
+
+   !> Where a tip is at the end of its cell: stiffness at either end of the cell [Pa].
+   pure function in_tip_cell(rock) result(spring)
+      type(rock_t), intent(in) :: rock
+      real(rk) :: spring(2)  !< n, tau
+
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[-0.0471_rk + nu*(0.095_rk + 0.038_rk*nu), &
+                                       0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
+      end associate
+   end function in_tip_cell
+
+   !> Where a tip is in its cell: what is added there, over what the tip lacks to the cell's end in
+   !! terms of what it has [Pa].
+   pure function within(rock) result(spring)
+      type(rock_t), intent(in) :: rock
+      real(rk) :: spring(2)  !< n, tau
+
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[0.156_rk - 0.03_rk*nu, 0.1752_rk - 0.104_rk*nu]
+      end associate
+   end function within
+
+   !> Where a tip is at the start of its cell: what is added in the cell behind it [Pa].
+   pure function in_cell_behind(rock) result(spring)
+      type(rock_t), intent(in) :: rock
+      real(rk) :: spring(2)  !< n, tau
+
+      associate (nu => poisson(rock))
+         spring = crack_modulus(rock)*[0.0133_rk + 0.049_rk*nu, &
+                                       0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
+      end associate
+   end function in_cell_behind
+
+   !> E', in plane strain E/(1 - nu^2) [Pa].
+   pure real(rk) function crack_modulus(rock)
+      type(rock_t), intent(in) :: rock
+
+      crack_modulus = 4.0_rk*rock%shear*(rock%lame + rock%shear)/(rock%lame + 2.0_rk*rock%shear)
+   end function crack_modulus
+
+   !> Poisson's ratio of the two-dimensional constants, as in plane strain [-].
+   pure real(rk) function poisson(rock)
+      type(rock_t), intent(in) :: rock
+
+      poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+   end function poisson
+
+end module coarse_tips

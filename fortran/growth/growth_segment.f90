@@ -1,0 +1,124 @@
+!> The straight piece that the path of a tip ends with, and how far along it the tip is.
+module growth_segment
+   use base_kinds, only: rk
+   implicit none(type, external)
+   private
+
+   public :: segment_t
+
+   !> A piece of a path. The tip goes from its start to its end; then the next one begins.
+   type :: segment_t
+      logical :: is_open = .false.  !< the tip is on its way along it
+      real(rk) :: start(2) = 0.0_rk  !< [m]
+      real(rk) :: direction(2) = 0.0_rk  !< unit vector
+      real(rk) :: length = 0.0_rk  !< [m]
+      real(rk) :: reached = 0.0_rk  !< how far the tip is [m]
+      real(rk) :: accepted = 0.0_rk  !< how far it was in the last accepted state [m]
+      real(rk) :: gain = 0.0_rk  !< of the whole path, in that state [m]
+      ! Excess of the tip over its toughness, relative to that, at the last two tries of a step.
+      real(rk), private :: tried(2) = 0.0_rk  !< [m]
+      real(rk), private :: excess(2) = 0.0_rk  !< [-]
+      integer, private :: tries = 0
+      real(rk), private :: slope = 0.0_rk  !< of the excess; 0: unknown [1/m]
+   contains
+      procedure :: open_segment
+      procedure :: place
+      procedure :: is_complete
+      procedure :: share
+      procedure :: restart
+      procedure :: improve
+      procedure :: accept
+   end type segment_t
+
+   !> Share of a segment that a tip goes along at least: what the mesh around it can hold.
+   real(rk), parameter :: least = 0.05_rk
+
+contains
+
+   !> Begin a piece from where a tip is.
+   pure subroutine open_segment(self, start, direction, length)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: start(2)  !< [m]
+      real(rk), intent(in) :: direction(2)  !< unit vector
+      real(rk), intent(in) :: length  !< [m]
+
+      self%is_open = .true.
+      self%start = start
+      self%direction = direction
+      self%length = length
+      self%reached = least*length
+      self%accepted = 0.0_rk
+      self%tries = 0
+   end subroutine open_segment
+
+   !> Where the tip is [m].
+   pure function place(self) result(xy)
+      class(segment_t), intent(in) :: self
+      real(rk) :: xy(2)
+
+      xy = self%start + self%reached*self%direction
+   end function place
+
+   !> The tip has come to the end of the piece.
+   elemental logical function is_complete(self)
+      class(segment_t), intent(in) :: self
+
+      is_complete = self%reached >= self%length
+   end function is_complete
+
+   !> Share of the piece that lies behind the tip; all of it where none is open [-].
+   elemental real(rk) function share(self)
+      class(segment_t), intent(in) :: self
+
+      share = 1.0_rk
+      if (self%is_open) share = self%reached/self%length
+   end function share
+
+   !> Back to the last accepted state, for another try of the step.
+   elemental subroutine restart(self)
+      class(segment_t), intent(inout) :: self
+
+      self%reached = max(self%accepted, least*self%length)
+      self%tries = 0
+   end subroutine restart
+
+   !> Go where the excess probably vanishes: back no farther than the last accepted state, and on no
+   !! farther than the end of the piece.
+   pure subroutine improve(self, excess, tolerance, has_moved)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]
+      real(rk), intent(in) :: tolerance  !< on that [-]
+      logical, intent(out) :: has_moved
+      real(rk) :: slope, to, usual
+
+      has_moved = .false.
+      self%tried(1) = self%tried(2)
+      self%excess(1) = self%excess(2)
+      self%tried(2) = self%reached
+      self%excess(2) = excess
+      self%tries = self%tries + 1
+      usual = -0.5_rk/self%length
+      if (self%tries > 1 .and. abs(self%tried(2) - self%tried(1)) > 1.0e-3_rk*self%length) then
+         slope = (self%excess(2) - self%excess(1))/(self%tried(2) - self%tried(1))
+         if (slope < 0.0_rk) self%slope = slope
+      end if
+      if (abs(excess) <= tolerance) return
+      slope = self%slope
+      if (.not. slope < 0.02_rk*usual) slope = 0.2_rk*usual
+      to = self%reached - excess/slope
+      to = min(self%length, max(self%accepted, least*self%length, to))
+      if (to > 0.97_rk*self%length) to = self%length  ! no sliver is left for the next step
+      has_moved = abs(to - self%reached) > 1.0e-3_rk*self%length
+      if (has_moved) self%reached = to
+   end subroutine improve
+
+   !> The present place is that of an accepted state.
+   elemental subroutine accept(self)
+      class(segment_t), intent(inout) :: self
+
+      self%accepted = self%reached
+      self%tries = 0
+      if (self%is_open .and. self%is_complete()) self%is_open = .false.
+   end subroutine accept
+
+end module growth_segment

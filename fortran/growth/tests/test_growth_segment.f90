@@ -1,0 +1,74 @@
+!> A tip on the last piece of its path: it goes where its excess vanishes, on each side of it.
+program test_growth_segment
+   use testing_checks, only: checks_t
+   use base_kinds, only: rk
+   use growth_segment, only: segment_t
+   implicit none(type, external)
+
+   real(rk), parameter :: tolerance = 1.0e-3_rk
+   type(checks_t) :: checks
+
+   call test_equilibrium()
+   call test_bounds()
+   call checks%finish()
+
+contains
+
+   !> The excess falls along the piece, (s/s0)^(-1/2) - 1: the tip ends at s0, and remembers it.
+   subroutine test_equilibrium()
+      type(segment_t) :: segment
+      real(rk), parameter :: wanted(3) = [0.3_rk, 0.55_rk, 0.8_rk]
+      logical :: has_moved
+      integer :: k, try
+
+      call segment%open_segment([1.0_rk, 2.0_rk], [0.6_rk, 0.8_rk], 1.0_rk)
+      do k = 1, size(wanted)
+         call segment%restart()
+         do try = 1, 12
+            call segment%improve(excess(segment%reached, wanted(k)), tolerance, has_moved)
+            if (.not. has_moved) exit
+         end do
+         call checks%is_close(excess(segment%reached, wanted(k)), 0.0_rk, 2.0_rk*tolerance, &
+                              "equilibrium")
+         call checks%is_true(try <= merge(12, 5, k == 1), "in few tries")
+         call segment%accept()
+      end do
+      call checks%is_close(norm2(segment%place() - [1.0_rk, 2.0_rk] &
+                                 - segment%reached*[0.6_rk, 0.8_rk]), 0.0_rk, 1.0e-15_rk, "place")
+      call checks%is_close(segment%share(), segment%reached, 1.0e-15_rk, "share of a length of 1")
+   end subroutine test_equilibrium
+
+   !> Below the toughness a tip goes back no farther than it was; far above it, it comes to the end
+   !! of its piece, which is then over.
+   subroutine test_bounds()
+      type(segment_t) :: segment
+      logical :: has_moved
+      integer :: try
+
+      call segment%open_segment([0.0_rk, 0.0_rk], [1.0_rk, 0.0_rk], 0.01_rk)
+      call segment%improve(2.0_rk, tolerance, has_moved)
+      call checks%is_true(has_moved, "goes on")
+      call segment%accept()
+      associate (before => segment%accepted)
+         do try = 1, 5
+            call segment%improve(-0.5_rk, tolerance, has_moved)
+         end do
+         call checks%is_close(segment%reached, before, 0.0_rk, "never back")
+      end associate
+      do try = 1, 50
+         call segment%improve(5.0_rk, tolerance, has_moved)
+         if (.not. has_moved) exit
+      end do
+      call checks%is_true(segment%is_complete() .and. .not. has_moved, "complete")
+      call segment%accept()
+      call checks%is_true(.not. segment%is_open, "over")
+      call checks%is_close(segment%share(), 1.0_rk, 0.0_rk, "all behind the tip")
+   end subroutine test_bounds
+
+   pure real(rk) function excess(s, s0)
+      real(rk), intent(in) :: s, s0  !< [m]
+
+      excess = sqrt(s0/s) - 1.0_rk
+   end function excess
+
+end program test_growth_segment

@@ -1,0 +1,152 @@
+!> Fracture faces of a window as the coarse level has them: their condition, their load, and what
+!! they have slipped before.
+!!
+!! The condition is one of
+!!   "contact"   the law of contact, which the window solves with the coarse level's fluid pressure
+!!               and history of slip, on old and on new faces;
+!!   "jump"      the coarse jump (Paper C);
+!!   "traction"  the coarse contact traction.
+!! With the last two, for comparison only, faces that the coarse level does not know are open.
+module twolevel_faces
+   use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
+   use contact_law, only: contact_law_t
+   use fine_contact, only: contact_t, new_contact
+   use fine_faces, only: face_conditions_t, face_contact, face_jump, loaded_everywhere
+   use fine_loads, only: fine_loads_t
+   use fine_mesh, only: fine_mesh_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: face_map_t, match_faces
+
+   !> Which coarse fracture cell each fracture cell of a window belongs to.
+   type :: face_map_t
+      integer(ik), allocatable :: coarse_cell(:)  !< the nearest one
+      logical, allocatable :: is_inside(:)  !< it lies in it; else it has grown from it
+      real(rk), allocatable :: ends(:, :)  !< (2, fracture cells) arc lengths of that one's ends [m]
+   contains
+      procedure :: conditions
+      procedure :: load
+      procedure :: history
+   end type face_map_t
+
+contains
+
+   !> The coarse fracture cell that is nearest to each fracture cell of the window, along its
+   !! fracture.
+   pure function match_faces(fine, coarse) result(map)
+      type(fine_mesh_t), intent(in) :: fine
+      type(mesh_t), intent(in) :: coarse
+      type(face_map_t) :: map
+      integer(ik) :: i, j
+      real(rk) :: distance, s, shortest
+
+      associate (here => fine%fracture, there => coarse%fracture)
+         allocate (map%coarse_cell(here%n_cells), source=0_ik)
+         allocate (map%is_inside(here%n_cells), source=.false.)
+         allocate (map%ends(2, here%n_cells), source=0.0_rk)
+         do i = 1, here%n_cells
+            s = 0.5_rk*sum(here%cell_s(:, i))
+            shortest = huge(1.0_rk)
+            do j = 1, there%n_cells
+               if (there%cell_fracture(j) /= here%cell_fracture(i)) cycle
+               distance = max(there%cell_s(1, j) - s, s - there%cell_s(2, j))
+               if (distance >= shortest) cycle
+               shortest = distance
+               map%coarse_cell(i) = j
+               map%is_inside(i) = distance <= 0.0_rk
+               map%ends(:, i) = there%cell_s(:, j)
+            end do
+         end do
+      end associate
+   end function match_faces
+
+   !> What holds on the faces.
+   pure function conditions(self, fine, name, law) result(found)
+      class(face_map_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
+      type(contact_law_t), intent(in) :: law(:)  !< of the coarse fracture cells
+      type(face_conditions_t) :: found
+      integer(ik) :: i
+
+      found = loaded_everywhere(fine)
+      do i = 1, fine%fracture%n_cells
+         select case (name)
+         case ("contact")
+            found%condition(i) = face_contact
+            found%law(i)%contact = law(self%coarse_cell(i))
+         case ("jump")
+            if (self%is_inside(i)) found%condition(i) = face_jump
+         end select
+      end do
+   end function conditions
+
+   !> Fluid pressure, and what the condition gives, from the state of the coarse level.
+   pure subroutine load(self, fine, name, state, loads)
+      class(face_map_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
+      type(state_t), intent(in) :: state
+      type(fine_loads_t), intent(inout) :: loads
+      integer(ik) :: i, k
+
+      do i = 1, fine%fracture%n_cells
+         associate (j => self%coarse_cell(i))
+            loads%fluid_pressure(i) = state%pressure(j)
+            if (.not. self%is_inside(i)) cycle
+            select case (name)
+            case ("jump")
+               do k = 1, 3
+                  loads%jump(1, k, i) = at_node(self, i, fine%face_s(k, i), state%jump(2, :, j))
+                  loads%jump(2, k, i) = at_node(self, i, fine%face_s(k, i), state%jump(1, :, j))
+               end do
+            case ("traction")
+               k = merge(1, 2, sum(fine%face_s(:2, i)) < sum(self%ends(:, i)))
+               loads%traction(:, i) = state%traction(2:1:-1, k, j)
+            end select
+         end associate
+      end do
+   end subroutine load
+
+   !> Contact as the coarse level has it: its jumps as first guess, and its slip before the step.
+   pure function history(self, fine, state) result(contact)
+      class(face_map_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      type(state_t), intent(in) :: state
+      type(contact_t) :: contact
+      integer(ik) :: i, k
+
+      contact = new_contact(fine)
+      do i = 1, fine%fracture%n_cells
+         if (.not. self%is_inside(i)) cycle
+         associate (j => self%coarse_cell(i))
+            do k = 1, 3
+               associate (s => fine%face_s(k, i))
+                  contact%jump(1, k, i) = at_node(self, i, s, state%jump(2, :, j))
+                  contact%jump(2, k, i) = at_node(self, i, s, state%jump(1, :, j))
+                  contact%slip_before(k, i) = at_node(self, i, s, state%slip_before(:, j))
+               end associate
+            end do
+         end associate
+      end do
+   end function history
+
+   !> A coarse jump at a node of a face, linear along its coarse cell, where it is known at the third
+   !! points.
+   pure real(rk) function at_node(self, face, s, jump)
+      class(face_map_t), intent(in) :: self
+      integer(ik), intent(in) :: face
+      real(rk), intent(in) :: s  !< of the node [m]
+      real(rk), intent(in) :: jump(2)  !< at the start and at the end of the coarse cell [m]
+      real(rk) :: t
+
+      associate (ends => self%ends(:, face))
+         t = 3.0_rk*(s - ends(1))/(ends(2) - ends(1)) - 1.0_rk
+      end associate
+      at_node = (1.0_rk - t)*jump(1) + t*jump(2)
+   end function at_node
+
+end module twolevel_faces
