@@ -37,8 +37,8 @@ module output_columns
 
    !> A word that a column or key may hold.
    type :: word_t
-      character(len=10) :: word = ""
-      character(len=100) :: meaning = ""
+      character(len=16) :: word = ""
+      character(len=160) :: meaning = ""
    end type word_t
 
    ! The tables keep their own layout.
