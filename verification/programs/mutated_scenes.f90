@@ -9,6 +9,7 @@
 program mutated_scenes
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
+   use app_size, only: check_size
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
@@ -17,8 +18,7 @@ program mutated_scenes
    use scene_sheet, only: sheet_t
    use scene_test_files, only: delete_file, put_bytes, same_scene
    use scene_types, only: scene_t
-   use scene_write, only: write_scene
-   use testing_files, only: file_text
+   use scene_write, only: scene_text
    use verification_files, only: integer_argument, text_argument
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
@@ -35,6 +35,7 @@ program mutated_scenes
 
    integer(c_int), parameter :: time_limit = 20_c_int  !< for one file [s]
    integer, parameter :: longest_message = 1000  !< characters
+   real(rk), parameter :: memory = 16.0e9_rk  !< of the machine that scenes are judged for [byte]
    type(mutator_t) :: mutator
    character(len=:), allocatable :: path, again, fault
    real(rk) :: began, ended, slowest
@@ -91,24 +92,21 @@ contains
       type(error_t), allocatable :: error
 
       call read_scene(path, scene, error, sheet)  ! as `check` does
+      if (.not. allocated(error)) call check_size(sheet, scene, memory, error)
       if (.not. allocated(error)) call check_geometry(sheet, scene, error)
       is_refused = allocated(error)
       if (is_refused) then
          call judge_message(error%message, fault)
          return
       end if
-      call write_scene(again, scene, error)
-      if (allocated(error)) then
-         fault = "scene.nml cannot be written: "//error%message
-         return
-      end if
+      call put_bytes(again, scene_text(scene))
       call read_scene(again, scene_again, error)  ! the geometry is the same if the scene is
       if (allocated(error)) then
          fault = "scene.nml cannot be read: "//error%message
          return
       end if
       if (.not. same_scene(scene, scene_again)) fault = "scene.nml is another scene"
-      call judge_text(scene_again, fault)
+      if (scene_text(scene_again) /= scene_text(scene)) fault = "scene.nml is another text"
       call judge_page(scene, fault)
    end subroutine judge
 
@@ -147,22 +145,6 @@ contains
          end if
       end do
    end subroutine judge_page
-
-   !> Written once more, the scene gives the same text.
-   subroutine judge_text(scene, fault)
-      type(scene_t), intent(in) :: scene
-      character(len=:), allocatable, intent(inout) :: fault
-      character(len=:), allocatable :: text
-      type(error_t), allocatable :: error
-
-      text = file_text(again)
-      call write_scene(again, scene, error)
-      if (allocated(error)) then
-         fault = "scene.nml cannot be written again: "//error%message
-      else if (file_text(again) /= text) then
-         fault = "scene.nml is another text when it is read and written again"
-      end if
-   end subroutine judge_text
 
    subroutine stop_with(reason)
       character(len=*), intent(in) :: reason
