@@ -26,7 +26,6 @@ module twolevel_simulation
    !> Both levels, the last step, and how the next one is chosen.
    type, extends(two_levels_t) :: twolevel_simulation_t
       logical :: is_initial = .false.  !< the present state is the one before the first step
-      logical :: has_new_mesh = .false.  !< the coarse mesh has grown since the present state
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
@@ -284,8 +283,7 @@ contains
       call self%note_tips(grew_in_step=.true.)
       call self%note_growth()
       call self%end_at_gain()
-      if (.not. self%has_new_mesh) return
-      self%has_new_mesh = .false.
+      if (.not. self%shows_growth) return
       call self%note_mesh(self%mesh)
       call watch_mesh(self, error)
    end subroutine note_equilibrium
