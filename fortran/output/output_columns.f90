@@ -267,8 +267,8 @@ module output_columns
       word_t("growth", "a tip has grown; the place is where it is now"), &
       word_t("joint", "a tip has met a fracture or the boundary"), &
       word_t("arrest", "a tip has stopped for good, for the reason in `detail`"), &
-     word_t("step_cut", "a time step did not converge, or tips would grow too far in it: it is "// &
-             "tried again, shorter"), &
+      word_t("step_cut", "a time step did not converge, or tips would grow too far in it: "// &
+             "it is tried again, shorter"), &
       word_t("unstable_growth", "tips have grown at constant time until they arrested"), &
       word_t("remesh", "the mesh has followed the growth")]
 

@@ -25,7 +25,7 @@ program test_output_describe
    end do
    call checks%is_true(all(event_words%word == [character(len=16) :: event_slip_onset, &
                                                 event_opening, event_growth, event_joint, &
-                                                event_arrest, event_step_cut, event_unstable, &
+                                                event_arrest, event_step_cut, &
                                                 event_unstable, event_remesh]), &
                        "the kinds of events")
    call checks%is_true(all(status_words%word == [character(len=10) :: status_finished, &
