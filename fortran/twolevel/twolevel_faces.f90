@@ -80,6 +80,8 @@ contains
             found%law(i)%contact = law(self%coarse_cell(i))
          case ("jump")
             if (self%is_inside(i)) found%condition(i) = face_jump
+         case default  ! "traction": loaded, as all faces are to begin with
+            continue
          end select
       end do
    end function conditions
@@ -106,6 +108,8 @@ contains
             case ("traction")
                k = merge(1, 2, sum(fine%face_s(:2, i)) < sum(self%ends(:, i)))
                loads%traction(:, i) = state%traction(2:1:-1, k, j)
+            case default  ! "contact" finds its own
+               continue
             end select
          end associate
       end do
@@ -134,8 +138,8 @@ contains
       end do
    end function history
 
-   !> A coarse jump at a node of a face, linear along its coarse cell, where it is known at the third
-   !! points.
+   !> A coarse jump at a node of a face, linear along its coarse cell, where it is known at the
+   !! third points.
    pure real(rk) function at_node(self, face, s, jump)
       class(face_map_t), intent(in) :: self
       integer(ik), intent(in) :: face

@@ -239,7 +239,8 @@ contains
       call self%remesh_coarse(centres, timers, error)
    end subroutine grow_coarse
 
-   !> A mesh of the coarse network, new around the places where that has grown; the state goes along.
+   !> A mesh of the coarse network, new around the places where that has grown; the state goes
+   !! along.
    subroutine remesh_coarse(self, centres, timers, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]

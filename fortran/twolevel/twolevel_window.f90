@@ -48,7 +48,8 @@ module twolevel_window
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
-      type(contact_t), allocatable :: contact  !< of the last solution, its slip the history of the next
+      !> Of the last solution; its slip is the history of the next.
+      type(contact_t), allocatable :: contact
       type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
       logical :: undrained = .false.  !< the model's constants are the undrained ones
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
