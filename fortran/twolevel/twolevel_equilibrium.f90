@@ -25,8 +25,8 @@ module twolevel_equilibrium
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
-   !> Excess of K_eq over K_IC, relative to that, beyond which no segment begins in a tried step: its
-   !! direction would be that of a state that never is.
+   !> Excess of K_eq over K_IC, relative to that, beyond which no segment begins in a tried step:
+   !! its direction would be that of a state that never is.
    real(rk), parameter :: excess_max = 0.2_rk
 
 contains
