@@ -25,7 +25,7 @@ module contact_law
    implicit none(type, external)
    private
 
-   public :: contact_equations, contact_law_t, contact_residual, is_valid
+   public :: contact_equations, contact_law_t, contact_residual, is_same, is_valid
 
    !> Parameters of the law.
    type :: contact_law_t
@@ -47,6 +47,15 @@ contains
          is_valid = all(numbers >= 0.0_rk .and. numbers <= huge(1.0_rk))
       end associate
    end function is_valid
+
+   !> Whether two laws have the same parameters, bit for bit.
+   elemental logical function is_same(law, other)
+      type(contact_law_t), intent(in) :: law, other
+
+      is_same = (law%bilateral .eqv. other%bilateral) &
+                .and. .not. (abs(law%friction - other%friction) > 0.0_rk .or. &
+                             abs(law%dilation - other%dilation) > 0.0_rk)
+   end function is_same
 
    !> Add to the weighted sum of laws whose faces meet. The sum is bilateral or not from the start.
    pure subroutine add_share(self, law, share)

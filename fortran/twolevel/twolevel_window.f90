@@ -7,7 +7,7 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use contact_law, only: contact_law_t
+   use contact_law, only: contact_law_t, is_same
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
@@ -289,11 +289,7 @@ contains
 
       same = model%ready
       if (same) same = all(model%conditions%condition == conditions%condition)
-      if (.not. same) return
-      associate (here => model%conditions%law%contact, there => conditions%law%contact)
-         same = .not. any(abs(here%friction - there%friction) > 0.0_rk .or. &
-                          abs(here%dilation - there%dilation) > 0.0_rk)
-      end associate
+      if (same) same = all(is_same(model%conditions%law%contact, conditions%law%contact))
    end function same_conditions
 
 end module twolevel_window

@@ -2,7 +2,7 @@
 program test_contact_law
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_valid
+   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid
    use contact_states, only: state_name, state_open, state_slip, state_stick
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    implicit none(type, external)
@@ -241,6 +241,10 @@ contains
 
       infinite = ieee_value(infinite, ieee_positive_inf)
       nan = ieee_value(nan, ieee_quiet_nan)
+      call checks%is_true(is_same(tied, tied) .and. .not. any(is_same(dilating, [rough, &
+                                                                                 smooth_dilating, &
+                                                                                 tied])), &
+                          "laws that differ in one parameter")
       call checks%is_true(all(is_valid([rough, dilating, smooth, tied])), "valid laws")
       call checks%is_true(.not. is_valid(contact_law_t(friction=-0.1_rk)), "negative friction")
       call checks%is_true(.not. is_valid(contact_law_t(friction=nan)), "friction that is no number")
