@@ -55,6 +55,7 @@ GROWING = varied(
     ("intensities = .true.", "enabled = .true., stop_gain = 0.015"),
     ("end = 18000.0", "end = 7200.0"),
 )
+GROWING_BY_PARIS = GROWING.replace("enabled = .true.", "enabled = .true., law = 'paris'")
 
 
 def _heed_interrupts() -> None:

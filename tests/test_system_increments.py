@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import pyvista
-from system_scene import GROWING, TOP, call, numbers, record, rows, run
+from system_scene import GROWING_BY_PARIS, TOP, call, numbers, record, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -83,7 +83,7 @@ def test_fields_of_as_many_increments_as_the_scene_wants(tmp_path: Path, most: i
 
 def test_each_increment_with_a_fluid(tmp_path: Path) -> None:
     """The first state on each mesh that has followed growth is there, whatever the interval."""
-    out = run(tmp_path, f"{GROWING}\n&output interval = 1.0e6 /\n")
+    out = run(tmp_path, f"{GROWING_BY_PARIS}\n&output interval = 1.0e6 /\n")
     check_states(out)
     moments = numbers(out / "history.csv", "time_s")
     remeshed = {float(r["time_s"]) for r in rows(out / "events.csv") if r["kind"] == "remesh"}

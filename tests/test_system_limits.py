@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from system_scene import GROWING, SCENE, TOP, call, numbers, record, varied
+from system_scene import GROWING_BY_PARIS, SCENE, TOP, call, numbers, record, varied
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -82,8 +82,10 @@ def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:
 
 
 def test_growth_that_lags_behind_is_warned_of(tmp_path: Path) -> None:
-    """The step of one hour is too long for the load: K_eq stays above K_IC after growth."""
-    status, _, _, warnings = run(tmp_path, GROWING)
+    """With the thesis' law a step of an hour is too long: K_eq stays above K_IC after growth."""
+    status, _, _, warnings = run(
+        tmp_path, GROWING_BY_PARIS.replace("rate = 5.0e-9", "rate = 5.0e-8")
+    )
     assert status == 0
     assert any(warning.startswith("K_eq over K_IC after growth 1.") for warning in warnings)
 

@@ -9,7 +9,18 @@ import time
 from pathlib import Path
 
 import pytest
-from system_scene import GROWING, SCENE, SOLVER, TOP, call, numbers, record, rows, start
+from system_scene import (
+    GROWING,
+    GROWING_BY_PARIS,
+    SCENE,
+    SOLVER,
+    TOP,
+    call,
+    numbers,
+    record,
+    rows,
+    start,
+)
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -104,7 +115,7 @@ def test_a_full_disk_is_told_and_leaves_no_half_file(
 
 def test_a_run_with_a_table_that_is_not_whole_has_failed(tmp_path: Path) -> None:
     """The limit lets all files pass but fractures.csv, whose last rows come at the very end."""
-    (tmp_path / "scene.nml").write_text(GROWING + "&output vtu = .false. /\n")
+    (tmp_path / "scene.nml").write_text(GROWING_BY_PARIS + "&output vtu = .false. /\n")
     done = subprocess.run(
         [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
         cwd=tmp_path,

@@ -54,14 +54,16 @@ contains
       estimate%unknowns = 4.0_rk*estimate%cells  ! two for each node of six-node triangles
       written = estimate%steps
       touching_cells = 0.0_rk
-      if (any(touches(scene%fractures))) touching_cells = estimate%fracture_cells
       if (scene%has_fluid()) then
+         touching_cells = estimate%fracture_cells
          estimate%steps = aint(scene%time%end/scene%time%step*(1.0_rk - 1.0e-9_rk)) + 1.0_rk
          estimate%unknowns = 3.0_rk*estimate%cells
          written = estimate%steps
          if (scene%output%interval > 0.0_rk) then
             written = min(written, scene%time%end/scene%output%interval)
          end if
+      else if (any(touches(scene%fractures))) then
+         touching_cells = estimate%fracture_cells
       end if
       estimate%bytes_of_cells = byte_per_cell*estimate%cells
       estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
@@ -86,6 +88,10 @@ contains
 
       if (scene%domain%shape == "disc") then
          area = pi*scene%domain%radius**2
+      else if (scene%domain%shape == "rectangle") then
+         associate (body => scene%domain)
+            area = (body%x_max - body%x_min)*(body%y_max - body%y_min)
+         end associate
       else
          outline = outline_of_scene(scene)
          area = abs(polygon_area(outline%corners))

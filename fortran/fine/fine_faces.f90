@@ -96,7 +96,8 @@ contains
          call raise_error(error, origin, "a fracture cell has an unknown face condition")
       else if (.not. sum(abs(conditions%dilation)) <= huge(1.0_rk)) then
          call raise_error(error, origin, "a dilation is not a finite number")
-      else if (.not. all(is_valid(conditions%law%contact))) then
+      else if (any(conditions%condition == face_contact)) then
+         if (all(is_valid(conditions%law%contact))) return
          call raise_error(error, origin, "friction and dilation must be finite and not negative")
       end if
    end subroutine check_conditions

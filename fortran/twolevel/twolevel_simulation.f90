@@ -13,8 +13,8 @@ module twolevel_simulation
    use simulation_types, only: snapshot_t
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_results, only: cell_states, count_unknowns, history_of_levels, probes_of_levels, &
-                               slip_moment, snapshot_of_levels
+   use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
+                               probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t
    use twolevel_wells, only: next_switch
@@ -283,6 +283,7 @@ contains
       call self%note_tips(grew_in_step=.true.)
       call self%note_growth()
       call self%end_at_gain()
+      if (any(self%tip%advance > 0.0_rk)) self%chronicle%has_new_network = .true.
       if (.not. self%shows_growth) return
       call self%note_mesh(self%mesh)
       call watch_mesh(self, error)
@@ -317,7 +318,7 @@ contains
       end do
    end subroutine follow_tips
 
-   !> The network as the coarse mesh has it, and that mesh.
+   !> The network, and the coarse mesh with it: tips in equilibrium are within its last cells.
    subroutine present_network(self, network, mesh)
       class(twolevel_simulation_t), intent(in) :: self
       type(network_t), intent(out) :: network
@@ -325,6 +326,9 @@ contains
 
       network = self%coarse_network
       mesh = self%mesh
+      if (.not. is_equilibrium(self)) return
+      network = self%network
+      call end_at_tips(network, mesh%fracture)
    end subroutine present_network
 
    !> The accepted state in a row of history.csv.

@@ -163,7 +163,7 @@ contains
 
       call self%try_step(dt, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
-      call self%windows%accept()
+      if (self%scene%growth%intensities) call self%windows%accept()
       call self%book_step(dt)
    end subroutine step
 

@@ -228,7 +228,9 @@ contains
       call checks%is_true(grown >= 3, "there is growth")
       gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
               end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
-      call checks%is_close(gain(1), gain(2), 0.05_rk*maxval(gain), "both ends gain alike")
+      ! The growth at the start is unstable: which end is ahead in it, windows alike but for their
+      ! meshes do not tell, and one ends a part of a segment farther.
+      call checks%is_close(gain(1), gain(2), 0.25_rk*increment, "both ends gain alike")
       call checks%is_close(simulation%mass_error/simulation%injected, 0.0_rk, 1.0e-10_rk, &
                            "fluid is conserved")
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
