@@ -81,7 +81,7 @@ SCENES = {
 FLUID = ("coarse_", "twolevel_")
 TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "growth_law")
 CONTACT = ("contact_law",)
-WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_jumps")
+WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
 FILES = ("output_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,

@@ -6,7 +6,7 @@ module twolevel_results
    use coarse_fields, only: cell_stresses, nodal_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
-   use mesh_types, only: fracture_mesh_t, network_t
+   use mesh_types, only: fracture_mesh_t
    use mesh_builder, only: locate
    use results_rows, only: history_row_t, probe_row_t
    use results_summary, only: summary_t
@@ -130,9 +130,6 @@ contains
 
       snapshot%time = simulation%state%time
       snapshot%mesh = simulation%mesh
-      if (simulation%scene%growth%law == "equilibrium") then
-         call end_at_tips(simulation%network, snapshot%mesh%fracture)
-      end if
       associate (state => simulation%state, n => simulation%mesh%n_cells, &
                  matrix => snapshot%matrix, fracture => snapshot%fracture)
          matrix%displacement = state%unknowns(:2, :n)
@@ -150,45 +147,20 @@ contains
          fracture%pressure = state%pressure
          fracture%state = cell_states(simulation)
       end associate
-      call leave_out(snapshot, snapshot%mesh%fracture%cell_s(2, :) &
-                     > snapshot%mesh%fracture%cell_s(1, :))
    end function snapshot_of_levels
 
-   !> Keep only some of the fracture cells: closed ones beyond the tips are none for the files.
-   pure subroutine leave_out(snapshot, keeps)
-      type(snapshot_t), intent(inout) :: snapshot
-      logical, intent(in) :: keeps(:)  !< (fracture cells)
-      integer(ik), allocatable :: kept(:)
-      integer(ik) :: i
-
-      if (all(keeps)) return
-      kept = pack([(i, i=1, size(keeps, kind=ik))], keeps)
-      associate (mesh => snapshot%mesh%fracture, fields => snapshot%fracture)
-         mesh%n_cells = size(kept)
-         mesh%cell_fracture = mesh%cell_fracture(kept)
-         mesh%cell_points = mesh%cell_points(:, kept)
-         mesh%cell_faces = mesh%cell_faces(:, kept)
-         mesh%cell_s = mesh%cell_s(:, kept)
-         fields%aperture = fields%aperture(kept)
-         fields%jump_n = fields%jump_n(kept)
-         fields%jump_t = fields%jump_t(kept)
-         fields%traction_n = fields%traction_n(kept)
-         fields%traction_t = fields%traction_t(kept)
-         fields%pressure = fields%pressure(kept)
-         fields%state = fields%state(kept)
-      end associate
-   end subroutine leave_out
-
-   !> Let the cells at the ends of fractures that have grown end where their tips are: those of the
-   !! coarse mesh go on beyond them, closed.
-   pure subroutine end_at_tips(network, fracture)
-      type(network_t), intent(in) :: network
+   !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
+   !! those of the coarse mesh go on beyond them, closed.
+   pure subroutine end_at_tips(simulation, fracture)
+      class(two_levels_t), intent(in) :: simulation
       type(fracture_mesh_t), intent(inout) :: fracture
       real(rk) :: first, last
       integer(ik) :: cell, end
 
+      if (.not. (simulation%scene%growth%enabled .and. &
+                 simulation%scene%growth%law == "equilibrium")) return
       do cell = 1, fracture%n_cells
-         associate (f => fracture%cell_fracture(cell))
+         associate (f => fracture%cell_fracture(cell), network => simulation%network)
             first = network%s_start(f)
             last = first + fracture_length(network, f)
             do end = 1, 2

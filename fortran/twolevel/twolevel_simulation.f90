@@ -328,7 +328,7 @@ contains
       mesh = self%mesh
       if (.not. is_equilibrium(self)) return
       network = self%network
-      call end_at_tips(network, mesh%fracture)
+      call end_at_tips(self, mesh%fracture)
    end subroutine present_network
 
    !> The accepted state in a row of history.csv.

@@ -203,17 +203,19 @@ def check_numbers(state: State, findings: Findings) -> None:
                 findings.wrong.append(f"{name} is no number {at(state)}")
 
 
-def law_of_cells(scene: Any, state: State) -> tuple[Numbers, Numbers, Numbers]:
-    """Friction, tangent of dilation and residual aperture of each fracture cell."""
+def law_of_cells(scene: Any, state: State) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Friction, tangent of dilation, residual aperture and roughness of each fracture cell."""
     fractures = groups(scene, "fracture")
     of_cell = [fractures[int(number) - 1] for number in state.cells["fracture"]]
     place = state.cells["s_m"]
     has_grown = (place < 0.0) | (place > [length_of(fracture) for fracture in of_cell])
     aperture = np.array([fracture["aperture"] for fracture in of_cell])
+    is_rough = scene["growth"]["new_volume"] == "conserved"  # and holds no fluid
     return (
         np.array([fracture["friction"] for fracture in of_cell]),
         np.tan(np.radians([fracture["dilation_deg"] for fracture in of_cell])),
         np.where(has_grown, scene["growth"]["new_aperture"], aperture),
+        np.where(has_grown & is_rough, scene["growth"]["new_aperture"], 0.0),
     )
 
 
@@ -232,7 +234,7 @@ def check_contact(
     asked for only where both ends must be the same.
     """
     cells = state.cells
-    friction, dilation, _ = law_of_cells(scene, state)
+    friction, dilation, _, _ = law_of_cells(scene, state)
     normal, shear = cells["traction_n_pa"], cells["traction_t_pa"]
     opening = cells["jump_n_m"] - dilation * np.abs(cells["jump_t_m"])
     # Jumps become stresses with the stiffness of a cell of rock.
@@ -265,12 +267,12 @@ def check_contact(
 
 def check_counts(scene: Any, state: State, findings: Findings) -> None:
     """Apertures, volume and counts of states follow from the cells."""
-    _, _, aperture = law_of_cells(scene, state)
+    _, _, aperture, roughness = law_of_cells(scene, state)
     cells, row = state.cells, state.history
     size = np.abs(cells["aperture_m"]).max()
     gap = np.abs(aperture + cells["jump_n_m"] - cells["aperture_m"]).max()
     findings.see("aperture", float(gap / size), at(state), ROUND_OFF)
-    volume = float((cells["aperture_m"] * state.lengths).sum())
+    volume = float(((cells["aperture_m"] - roughness) * state.lengths).sum())
     error = abs(volume - row["fracture_volume_m2"]) / (float(state.lengths.sum()) * float(size))
     findings.see("fracture volume", error, at(state), ROUND_OFF)
     for word in ("stick", "slip", "open"):
