@@ -24,7 +24,6 @@ module growth_segment
       procedure :: open_segment
       procedure :: place
       procedure :: is_complete
-      procedure :: share
       procedure :: restart
       procedure :: improve
       procedure :: accept
@@ -65,14 +64,6 @@ contains
 
       is_complete = self%reached >= self%length
    end function is_complete
-
-   !> Share of the piece that lies behind the tip; all of it where none is open [-].
-   elemental real(rk) function share(self)
-      class(segment_t), intent(in) :: self
-
-      share = 1.0_rk
-      if (self%is_open) share = self%reached/self%length
-   end function share
 
    !> Back to the last accepted state, for another try of the step.
    elemental subroutine restart(self)

@@ -387,20 +387,24 @@ module scene_parameters
                   "ends of steps by the Paris-type law of the thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
-                  meaning="Largest advance l_max of a tip at a time; 0: the default, which is "// &
+                  meaning="Largest advance l_max of a tip at a time, or length of a piece of "// &
+                  "its path; 0: the default, "// &
                   "the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
-                  meaning="Exponent m of advance = l_max (G/G_max)^m"), &
+                  meaning="Exponent m of advance = l_max (G/G_max)^m; with a fluid for law = "// &
+                  "'paris'"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
-                  meaning="Growth is handed to the coarse level at this share eps_p of dH"), &
+                 meaning="Growth is handed to the coarse level at this share eps_p of dH, with "// &
+                  "law = 'paris'"), &
       parameter_t("growth", "new_aperture", unit="m", default="1.0e-5", range=positive, &
                   scenes=in_fluid, &
-                  meaning="Residual aperture of new fracture cells"), &
+                  meaning="Residual aperture of new fracture cells: a roughness that conducts "// &
+                  "fluid but holds none, unless new_volume is 'prefilled'"), &
       parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
                   scenes=in_fluid, &
                   choices="conserved|prefilled", &
-                  meaning="Fluid of new cells: drawn from the connected cells, or appearing "// &
-                  "with them"), &
+                  meaning="Fluid of new cells: drawn from the connected cells as they open, or "// &
+                  "appearing with them"), &
       parameter_t("growth", "stop_gain", unit="m", range=positive, absent="no limit", &
                   meaning="The run ends when any fracture end has grown by this"), &
       parameter_t("probe", "name", kind_name, need=need_always, &

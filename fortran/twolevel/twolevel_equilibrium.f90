@@ -2,8 +2,8 @@
 !! advanced and K_eq <= K_IC, or advanced so far that K_eq = K_IC.
 !!
 !! Within a step the coarse level is solved from the state before with the tips where they are
-!! tried to be, the windows give the intensities there, and each tip goes on until its own vanish.
-!! A tip lies anywhere along the last straight piece of its path: the coarse mesh has a cell for all
+!! tried to be, the windows give the intensities there, and each tip goes on until its excess
+!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a cell for all
 !! of that piece, and its springs say how much of it is behind the tip (coarse_tips); so the coarse
 !! mesh changes once per piece, and neither its matrix nor the fluid's volume jumps. A piece begins
 !! in the direction in which K_II vanishes at its end (growth_path).
@@ -11,8 +11,8 @@ module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: state_t, step_report_t
    use base_tolerances, only: same_place
+   use coarse_state, only: state_t, step_report_t
    use growth_network, only: end_gain, end_place, extend, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
@@ -89,9 +89,8 @@ contains
    !> The tried state is accepted.
    subroutine accept_equilibrium(self)
       class(two_levels_t), intent(inout) :: self
-      integer(ik) :: i
-
       real(rk) :: gain
+      integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), segment => self%segment(i))

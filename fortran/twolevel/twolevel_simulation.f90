@@ -157,7 +157,7 @@ contains
          if (allocated(error)) return
          if (self%report%converged .and. .not. is_too_long) exit
          if (is_unstable) then
-            call raise_error(error, "", "no equilibrium of growth, even with a time step of " &
+            call raise_error(error, "", why_cut(self, is_too_long)//", even with a time step of " &
                              //brief_text(self%dt, 4)//" s")
             return
          end if
@@ -180,15 +180,22 @@ contains
    subroutine note_cut(self, is_too_long)
       class(twolevel_simulation_t), intent(inout) :: self
       logical, intent(in) :: is_too_long
-      character(len=:), allocatable :: reason
 
-      reason = "growth of more than a segment"
-      if (.not. is_too_long) reason = self%report%reason
       self%summary%step_cuts = self%summary%step_cuts + 1
       self%summary%newton_total = self%summary%newton_total + self%report%iterations
       call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
-                                    //brief_text(self%dt, 4)//" s: "//reason)
+                                    //brief_text(self%dt, 4)//" s: "//why_cut(self, is_too_long))
    end subroutine note_cut
+
+   !> Why a step is not accepted.
+   pure function why_cut(self, is_too_long) result(reason)
+      class(twolevel_simulation_t), intent(in) :: self
+      logical, intent(in) :: is_too_long
+      character(len=:), allocatable :: reason
+
+      reason = "growth finds no equilibrium within a segment"
+      if (.not. is_too_long) reason = self%report%reason
+   end function why_cut
 
    !> One accepted step, cut as often as it takes.
    subroutine take_step(self, timers, error)
@@ -253,17 +260,15 @@ contains
             call note_equilibrium(self, error)
          else
             call self%evaluate(timers, error)
+            if (allocated(error)) return
+            if (may_grow) then
+               call follow_tips(self, timers, error)
+            else
+               self%tip%advance = 0.0_rk
+               call self%note_tips()
+            end if
          end if
          if (allocated(error)) return
-         if (may_grow .and. is_equilibrium(self)) then
-            continue
-         else if (may_grow) then
-            call follow_tips(self, timers, error)
-            if (allocated(error)) return
-         else
-            self%tip%advance = 0.0_rk
-            call self%note_tips()
-         end if
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)

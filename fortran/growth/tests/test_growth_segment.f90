@@ -35,7 +35,7 @@ contains
       end do
       call checks%is_close(norm2(segment%place() - [1.0_rk, 2.0_rk] &
                                  - segment%reached*[0.6_rk, 0.8_rk]), 0.0_rk, 1.0e-15_rk, "place")
-      call checks%is_close(segment%share(), segment%reached, 1.0e-15_rk, "share of a length of 1")
+      call checks%is_close(segment%accepted, segment%reached, 0.0_rk, "accepted")
    end subroutine test_equilibrium
 
    !> Below the toughness a tip goes back no farther than it was; far above it, it comes to the end
@@ -62,7 +62,7 @@ contains
       call checks%is_true(segment%is_complete() .and. .not. has_moved, "complete")
       call segment%accept()
       call checks%is_true(.not. segment%is_open, "over")
-      call checks%is_close(segment%share(), 1.0_rk, 0.0_rk, "all behind the tip")
+      call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")
    end subroutine test_bounds
 
    pure real(rk) function excess(s, s0)

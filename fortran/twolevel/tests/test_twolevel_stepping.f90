@@ -15,6 +15,7 @@ program test_twolevel_stepping
    call test_switches()
    call test_cuts()
    call test_growth()
+   call test_equilibrium()
    call test_wells()
    call checks%finish()
 
@@ -52,6 +53,22 @@ contains
       call stepper%cut(time, dt, is_too_short)
       call checks%is_true(is_too_short, "below a tenth of the regular step")
    end subroutine test_cuts
+
+   !> In equilibrium a tip goes about half a segment in a step.
+   subroutine test_equilibrium()
+      type(stepper_t) :: stepper
+
+      stepper%next = 40.0_rk
+      call stepper%follow_growth(time, 0.9_rk)
+      call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "too far: half the step")
+      call stepper%follow_growth(time, 0.5_rk)
+      call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "as it should be: the same")
+      call stepper%follow_growth(time, 0.0_rk)
+      call checks%is_close(stepper%next, 40.0_rk, 0.0_rk, "no growth: twice the step")
+      call stepper%follow_growth(time, 0.1_rk)
+      call stepper%follow_growth(time, 0.1_rk)
+      call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "at most the regular step")
+   end subroutine test_equilibrium
 
    !> After growth steps are short until the pressure of the new cells changes by 1 % at most.
    subroutine test_growth()

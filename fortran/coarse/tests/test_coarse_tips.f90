@@ -1,0 +1,87 @@
+!> A crack on the coarse level is as long as it is, wherever its tips are in their cells: volume of
+!! opening and of slip against the closed forms of one crack in an infinite body, 2 pi s a^2/E' for
+!! the stress s that it releases.
+program test_coarse_tips
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_model, only: coarse_model_t, new_state
+   use coarse_state, only: state_t, step_report_t
+   use contact_law, only: contact_law_t
+   use mesh_builder, only: mesher_t
+   use mesh_types, only: mesh_t
+   use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
+   use scene_types, only: scene_t
+   implicit none(type, external)
+
+   real(rk), parameter :: pi = acos(-1.0_rk)
+   real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]
+   integer(ik), parameter :: n_cells = 20
+   type(checks_t) :: checks
+
+   call test_lengths(.true., 0.2_rk)
+   call test_lengths(.true., 0.45_rk)
+   call test_lengths(.false., 0.2_rk)
+   call test_lengths(.false., 0.45_rk)
+   call checks%finish()
+
+contains
+
+   !> The mesh goes on beyond both tips by up to more than a cell.
+   subroutine test_lengths(opens, poisson)
+      logical, intent(in) :: opens  !< else slips
+      real(rk), intent(in) :: poisson
+      real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
+      real(rk), parameter :: stress = 5.0e6_rk  ! released [Pa]
+      real(rk), parameter :: cell = 2.0_rk*a/n_cells  ! [m]
+      type(scene_t) :: scene
+      type(mesh_t) :: mesh
+      type(mesher_t) :: mesher
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk) :: half_length, modulus, volume
+      integer(ik) :: component
+      integer :: k
+
+      ! The fluid keeps its pressure: hardly porous rock, a very compressible fluid.
+      scene = porous_body()
+      scene%material%biot = 1.0e-6_rk
+      scene%material%porosity = 1.0e-6_rk
+      scene%material%poisson = poisson
+      scene%fluid%compressibility = 1.0e-3_rk
+      if (opens) then
+         scene%initial%pressure = stress
+      else  ! frictionless, at 45 degrees
+         call load_sides(scene, [-4.0_rk*stress, -2.0_rk*stress, 0.0_rk])
+      end if
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      if (.not. opens) scene%initial%pressure = 0.1_rk*stress
+      call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
+                                                        [2, 2, 1])), cell, 0.2_rk, mesher, mesh)
+      call checks%is_true(mesh%fracture%n_cells == n_cells, "cells along the crack")
+      model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization")
+      component = merge(1_ik, 2_ik, opens)
+      modulus = scene%material%young/(1.0_rk - poisson**2)
+      do k = 1, size(ahead)
+         model%ahead = ahead(k)*cell
+         call new_state(mesh, model%cells, scene%initial, model, state)
+         call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
+         call checks%no_error(error, "a crack")
+         call checks%is_true(report%converged, "a crack")
+         volume = abs(sum(0.5_rk*sum(state%jump(component, :, :), dim=1)*model%condensed%length))
+         half_length = sqrt(volume*modulus/(2.0_rk*pi*stress))
+         ! In cells; 0.03 is what meshes differ by, 0.02 the body's size and the fit.
+         call checks%is_close(half_length/cell, a/cell - ahead(k), 0.05_rk, "half-length in cells")
+         print "(a,l2,2(a,f5.2),a,f7.3)", "opens", opens, ", nu ", poisson, ", ahead ", ahead(k), &
+            ", off by", half_length/cell - a/cell + ahead(k)
+      end do
+   end subroutine test_lengths
+
+end program test_coarse_tips
