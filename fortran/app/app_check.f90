@@ -34,8 +34,10 @@ contains
          if (scene%has_fluid()) write (unit, "(a,i0)") "wells:        ", size(scene%injections)
          write (unit, "(a,i0)") "probes:       ", size(scene%probes)
          if (scene%has_fluid()) then
-            write (unit, "(a,es10.3,a,i0,a)") "time:        ", scene%time%end, " s in ", &
-               int(estimate%steps, lk), " regular steps"
+            write (unit, "(a,es10.3,a,i0,a)") "time:        ", scene%time%end, " s in "// &
+               trim(merge("about", "     ", scene%time%tolerance > 0.0_rk))//" ", &
+               int(estimate%steps, lk), trim(merge(" chosen steps ", " regular steps", &
+                                                   scene%time%tolerance > 0.0_rk))
          else
             write (unit, "(2(a,es10.3),a,i0,a)") "load factor: ", scene%load%from, " to", &
                scene%load%to, " in ", scene%load%steps, " steps"

@@ -9,7 +9,7 @@ module app_size
    use mechanics_outline, only: outline_of_scene, outline_t
    use mechanics_results, only: touches
    use scene_sheet, only: refuse, sheet_t
-   use scene_types, only: scene_t
+   use scene_types, only: scene_t, time_t
    implicit none(type, external)
    private
 
@@ -56,7 +56,7 @@ contains
       touching_cells = 0.0_rk
       if (scene%has_fluid()) then
          touching_cells = estimate%fracture_cells
-         estimate%steps = aint(scene%time%end/scene%time%step*(1.0_rk - 1.0e-9_rk)) + 1.0_rk
+         estimate%steps = number_of_steps(scene%time)
          estimate%unknowns = 3.0_rk*estimate%cells
          written = estimate%steps
          if (scene%output%interval > 0.0_rk) then
@@ -71,6 +71,18 @@ contains
       values = values + values_per_fracture_cell*estimate%fracture_cells*written
       estimate%bytes_of_tables = byte_per_value*values
    end function size_of_scene
+
+   !> Steps of a given length, or as many as it usually takes where they are chosen.
+   pure real(rk) function number_of_steps(time)
+      type(time_t), intent(in) :: time
+      real(rk), parameter :: usual = 100.0_rk
+
+      number_of_steps = usual
+      if (time%step > 0.0_rk) then
+         number_of_steps = aint(time%end/time%step*(1.0_rk - 1.0e-9_rk)) + 1.0_rk
+         if (time%tolerance > 0.0_rk) number_of_steps = max(usual, number_of_steps)
+      end if
+   end function number_of_steps
 
    !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
    !! from the fractures, up to half of that of the farthest point (size_field.cpp); the part of the

@@ -19,7 +19,7 @@ contains
          scene%time%end = 1.0_rk
          scene%time%step = 1.0_rk/real(scene%load%steps, rk)
       end if
-      call default(scene%output%interval, scene%time%step)
+      call choose_steps(scene)
       associate (d => scene%discretization)
          if (scene%has_fluid()) then
             call default(scene%growth%increment, d%fine_ratio*d%size_fracture)
@@ -34,6 +34,24 @@ contains
          call default(scene%fractures(i)%slip_taper, 0.5_rk*scene%fractures(i)%length())
       end do
    end subroutine resolve_defaults
+
+   !> Steps of a given length, or such that their error is small; fields as often as they are given,
+   !! or a hundred times.
+   pure subroutine choose_steps(scene)
+      type(scene_t), intent(inout) :: scene
+      real(rk), parameter :: usual_tolerance = 0.01_rk
+      logical :: is_free
+
+      associate (time => scene%time)
+         is_free = .not. time%step > 0.0_rk
+         if (is_free .or. (scene%has_fluid() .and. scene%growth%enabled .and. &
+                           scene%growth%law == "equilibrium")) then
+            call default(time%tolerance, usual_tolerance)
+         end if
+         call default(time%smallest_factor, merge(1.0e-9_rk, 1.0e-6_rk, is_free))
+         call default(scene%output%interval, merge(0.01_rk*time%end, time%step, is_free))
+      end associate
+   end subroutine choose_steps
 
    pure subroutine default(value, otherwise)
       real(rk), intent(inout) :: value  !< [any unit]

@@ -8,7 +8,7 @@ module scene_intervals
 
    public :: interval_t
    public :: holds, in_words
-   public :: at_least_one, at_least_zero, biot_range, dilation_range, newton_range, poisson_range
+   public :: at_least_one, at_least_zero, below_one, biot_range, dilation_range, newton_range, poisson_range
    public :: porosity_range
    public :: positive, rosette_range, share, steps_range, tolerance_range
    public :: passes_range
@@ -22,6 +22,7 @@ module scene_intervals
    type(interval_t), parameter :: positive = interval_t(lowest=0.0_rk, open_below=.true.)
    type(interval_t), parameter :: at_least_zero = interval_t(lowest=0.0_rk)
    type(interval_t), parameter :: at_least_one = interval_t(lowest=1.0_rk)
+   type(interval_t), parameter :: below_one = interval_t(0.0_rk, 1.0_rk)
    type(interval_t), parameter :: share = interval_t(0.0_rk, 1.0_rk, .true., .false.)
 
    !> Within it the drained bulk modulus is positive and finite.

@@ -4,9 +4,10 @@
 !> A new parameter is one entry here and one line in scene_exchange.
 module scene_parameters
    use base_kinds, only: rk
-   use scene_intervals, only: at_least_one, at_least_zero, biot_range, dilation_range, &
-                  interval_t, newton_range, passes_range, poisson_range, porosity_range, positive, &
-                              rosette_range, share, steps_range, tolerance_range
+   use scene_intervals, only: at_least_one, at_least_zero, below_one, biot_range, &
+                              dilation_range, interval_t, newton_range, passes_range, &
+                              poisson_range, porosity_range, positive, rosette_range, share, &
+                              steps_range, tolerance_range
    implicit none(type, external)
    private
 
@@ -308,14 +309,21 @@ module scene_parameters
                   meaning="Pore pressure before the load acts"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
                   meaning="End of the run"), &
-      parameter_t("time", "step", unit="s", need=need_always, range=positive, &
-                  at_most="end", &
-                  meaning="Regular time step"), &
+      parameter_t("time", "step", unit="s", range=positive, at_most="end", &
+                  absent="as long as tolerance allows", &
+                  meaning="The time step; with a tolerance the longest one"), &
+      parameter_t("time", "tolerance", range=below_one, derived=.true., &
+                  absent="0.01, or 0 with step alone", &
+                 meaning="Error in time that a step may make, over the range of pressure, slip "// &
+                  "and opening so far; 0: the default, 0.01 without step or with growth in "// &
+                  "equilibrium"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
-                  meaning="Share of the regular step that follows growth"), &
-      parameter_t("time", "smallest_factor", default="1.0e-6", range=share, &
+                  meaning="Share of step that follows growth with law = 'paris'"), &
+      parameter_t("time", "smallest_factor", range=below_one, derived=.true., &
                   at_most="growth_factor", &
-                  meaning="Share of the regular step below which a cut step ends the run"), &
+                  absent="1e-6, or 1e-9 without step", &
+                  meaning="Share of step, or of end without it, below which a cut step ends "// &
+                  "the run; 0: the default"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &

@@ -131,9 +131,12 @@ module scene_types
    !> Time steps.
    type :: time_t
       real(rk) :: end = 0.0_rk  !< [s]
-      real(rk) :: step = 0.0_rk  !< regular step [s]
-      real(rk) :: share_after_growth = 0.01_rk  !< of the regular step, right after growth [-]
-      real(rk) :: smallest_factor = 1.0e-6_rk  !< of the regular step; below it a run ends [-]
+      real(rk) :: step = 0.0_rk  !< regular or longest step; 0: none is given [s]
+      real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: every step is `step` [-]
+      real(rk) :: share_after_growth = 0.01_rk  !< of the longest step, right after growth [-]
+      real(rk) :: smallest_factor = 0.0_rk  !< of the longest step; below it a run ends [-]
+   contains
+      procedure :: longest
    end type time_t
 
    !> Meshes and solvers of both levels.
@@ -204,6 +207,13 @@ module scene_types
    end type scene_t
 
 contains
+
+   !> No step is longer [s].
+   pure real(rk) function longest(self)
+      class(time_t), intent(in) :: self
+
+      longest = merge(self%step, self%end, self%step > 0.0_rk)
+   end function longest
 
    !> Else it is mechanics only.
    pure logical function has_fluid(self)

@@ -65,6 +65,10 @@ module simulation_describe
     "  growth is done no tip should exceed K_IC; 2 % is what fluid and growth, which take turns,", &
     "  may leave. More means that growth lags behind the load, and times and pressures of growth", &
       "  depend on the step.", &
+      "* **Error in time**: of each step by itself. Steps that the program chooses are held to", &
+      "  the tolerance of &time; those that a scene gives may miss a tenth of what has", &
+      "  happened so far without a warning. The first step after the start, or after a well's", &
+      "  switch, has nothing to be compared with.", &
       "", &
       "## What is doubted", &
       "", &

@@ -10,7 +10,7 @@ module simulation_limits
    public :: verdict_fine, verdict_stop, verdict_warning
    public :: limit_angle, limit_aperture, limit_contact, limit_forward_error, limit_jump
    public :: limit_keq, limit_k_error, limit_k_methods, limit_mass, limit_pressure_load
-   public :: limit_pressure_stiffness, limit_strain
+   public :: limit_pressure_stiffness, limit_strain, limit_time_error
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -32,7 +32,8 @@ module simulation_limits
    integer, parameter :: limit_forward_error = 1, limit_mass = 2, limit_contact = 3, &
                          limit_aperture = 4, limit_jump = 5, limit_strain = 6, &
                          limit_pressure_load = 7, limit_pressure_stiffness = 8, &
-                         limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, limit_keq = 12
+                         limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
+                         limit_keq = 12, limit_time_error = 13
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -81,7 +82,11 @@ module simulation_limits
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
               "Largest K_eq, over K_IC, of the tips that may grow, when growth in the state is "// &
               "done", &
-              "shorten the step: growth lags behind the load")]
+              "shorten the step: growth lags behind the load"), &
+      limit_t("error in time of a step", "-", with_fluid, 0.1_rk, never, &
+              "Estimated error of a time step in the mean pressure, slip or opening, over the "// &
+              "range that these have gone through", &
+              "shorten the step, or leave it out: then the error decides about it")]
    !&>
 
 contains

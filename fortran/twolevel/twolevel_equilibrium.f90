@@ -12,12 +12,13 @@ module twolevel_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: step_report_t
    use growth_network, only: end_gain, end_place, extend, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
    use twolevel_state, only: two_levels_t
+   use twolevel_stepping, only: trial_t
    implicit none(type, external)
    private
 
@@ -29,23 +30,25 @@ module twolevel_equilibrium
    !! its direction would be that of a state that never is.
    real(rk), parameter :: excess_max = 0.2_rk
 
+   !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
+   real(rk), parameter :: onset_lack = 5.0e-3_rk
+
 contains
 
-   !> Try a step: state and tips at its end. Where a tip would go on for more than one new piece,
-   !! `is_too_long`, unless growth is `unstable`: so short a step that nothing but growth happens in
-   !! it, until it arrests. Nothing is accepted yet; a report without convergence or a step that is
-   !! too long leaves the state before.
-   subroutine find_equilibrium(self, dt, is_unstable, timers, report, is_too_long, error)
+   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece goes
+   !! too far, unless the step is the last try: so short that nothing but growth happens in it, until
+   !! that arrests. Nothing is accepted yet; a step that does not show an equilibrium leaves the
+   !! state before.
+   subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(in) :: is_unstable
+      logical, intent(in) :: is_last
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
-      logical, intent(out) :: is_too_long
+      type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
       logical :: has_begun(size(self%tip)), moves(size(self%tip)), wants(size(self%tip))
-      type(state_t) :: before
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
       type(network_t) :: network
@@ -54,32 +57,49 @@ contains
       tip = self%tip
       segment = self%segment
       network = self%network
-      is_too_long = .false.
       has_begun = .false.
-      before = self%state
+      self%before = self%state
       call self%segment%restart()
-      do k = 1, merge(unstable_tries_max, tries_max, is_unstable)
+      do k = 1, merge(unstable_tries_max, tries_max, is_last)
          call place_tips(self)
          call self%try_step(dt, timers, report, error)
-         if (allocated(error) .or. .not. report%converged) exit
+         if (allocated(error)) exit
+         trial%converged = report%converged
+         if (.not. trial%converged) then
+            trial%reason = report%reason
+            exit
+         end if
+         if (.not. is_last .and. k == 1 .and. errs_much(self, dt)) then
+            trial%time_error = self%step_error(dt)
+            exit
+         end if
          call self%evaluate(timers, error)
          if (allocated(error)) exit
+         if (.not. is_last) then
+            trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
+                                self%tip%drive%intensity/self%rules%toughness, &
+                                self%tip%arrested .or. self%segment%gain > 0.0_rk)
+            if (trial%onset < 1.0_rk) exit
+         end if
          call judge_tips(self, moves, wants)
          if (.not. any(moves)) then
-            if (.not. any(wants)) return
-            is_too_long = .not. is_unstable .and. any(wants .and. (has_begun .or. &
+            if (.not. any(wants)) then
+               trial%time_error = self%step_error(dt)
+               trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
+               return
+            end if
+            trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
-            if (is_too_long) exit
+            if (trial%goes_too_far) exit
             has_begun = has_begun .or. wants
-            call begin_segments(self, wants, before, timers, error)
+            call begin_segments(self, wants, timers, error)
             if (allocated(error)) exit
-            before = self%state
          end if
-         self%state = before
+         self%state = self%before
       end do
-      if (.not. allocated(error) .and. report%converged) is_too_long = .true.
+      trial%goes_too_far = trial%goes_too_far .or. k > tries_max
       ! The cells that segments were begun with stay, closed, for the next try.
-      self%state = before
+      self%state = self%before
       self%tip = tip
       self%segment = segment
       self%network = network
@@ -89,19 +109,52 @@ contains
    !> The tried state is accepted.
    subroutine accept_equilibrium(self)
       class(two_levels_t), intent(inout) :: self
-      real(rk) :: gain
+
+      self%tip%advance = advances(self)
+      where (self%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
+      self%segment%gain = self%segment%gain + self%tip%advance
+      call self%segment%accept()
+   end subroutine accept_equilibrium
+
+   !> How far the tips are beyond the last accepted state [m].
+   function advances(self)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: advances(size(self%tip))
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), segment => self%segment(i))
-            if (segment%accepted > 0.0_rk) tip%kink = 0.0_rk  ! it went straight on
-            gain = end_gain(self%network, self%start, tip%fracture, tip%end)
-            tip%advance = gain - segment%gain
-            segment%gain = gain
-         end associate
+         advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
+                       - self%segment(i)%gain
       end do
-      call self%segment%accept()
-   end subroutine accept_equilibrium
+   end function advances
+
+   !> The step cannot be taken, whatever the tips do in it.
+   logical function errs_much(self, dt)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: much = 4.0_rk  ! the tips as they were make it look worse than it is
+
+      errs_much = .false.
+      if (self%scene%time%tolerance > 0.0_rk) then
+         errs_much = self%step_error(dt) > much*self%scene%time%tolerance
+      end if
+   end function errs_much
+
+   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to grow,
+   !! or where it does so at the end of the step. Tips that have grown before are not asked.
+   pure function onset(before, after, has_grown)
+      real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
+      logical, intent(in) :: has_grown(:)
+      real(rk) :: onset
+      integer :: i
+
+      onset = 1.0_rk
+      do i = 1, size(before)
+         if (has_grown(i) .or. before(i) > 1.0_rk - onset_lack) cycle
+         if (after(i) <= 1.0_rk + tolerance) cycle
+         onset = min(onset, (1.0_rk - before(i))/(after(i) - before(i)))
+      end do
+   end function onset
 
    !> Put the tips of both levels where their segments say.
    subroutine place_tips(self)
@@ -151,10 +204,9 @@ contains
 
    !> New segments for tips, which stand at the ends of their paths: their directions are found in
    !! the tried state; then the coarse level, back in the state before the step, gets their cells.
-   subroutine begin_segments(self, wants, before, timers, error)
+   subroutine begin_segments(self, wants, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: wants(:)  !< (tips)
-      type(state_t), intent(in) :: before
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: centres(:, :)
@@ -176,7 +228,7 @@ contains
          end associate
       end do
       if (.not. any(is_new)) then
-         self%state = before
+         self%state = self%before
          return
       end if
       call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new), any_grew, timers, error)
@@ -190,9 +242,10 @@ contains
             centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])
          end associate
       end do
-      self%state = before
+      self%state = self%before
       if (size(centres, 2) == 0) return
       call self%remesh_coarse(centres, timers, error)
+      self%before = self%state
       self%has_new_mesh = .true.
    end subroutine begin_segments
 

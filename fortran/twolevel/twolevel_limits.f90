@@ -5,16 +5,16 @@ module twolevel_limits
    use base_number, only: brief_text
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
-   use scene_types, only: scene_t
    use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
                                 limit_jump, limit_keq, limit_mass, limit_pressure_load, &
                                 limit_pressure_stiffness, limit_strain
    use simulation_watch, only: worst_place
+   use twolevel_scales, only: pressure_scale
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
-   public :: pressure_scale, watch_levels, watch_mesh, watch_windows
+   public :: watch_levels, watch_mesh, watch_windows
 
 contains
 
@@ -125,35 +125,6 @@ contains
          call self%watch%see(limit_keq, drive(i)/toughness, when, self%tip(i)%xy)
       end associate
    end subroutine watch_windows
-
-   !> The largest pressure that can be expected in a scene: that of its loads or of its state before
-   !! them, and with growth what opens the longest fracture against its toughness [Pa]; 0 if it has
-   !! none of these.
-   pure real(rk) function pressure_scale(scene) result(scale)
-      type(scene_t), intent(in) :: scene
-      real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
-      real(rk) :: extent, longest
-      integer :: i
-
-      associate (d => scene%domain)
-         extent = min(d%x_max - d%x_min, d%y_max - d%y_min)
-      end associate
-      scale = abs(scene%initial%pressure)
-      do i = 1, size(scene%sides)
-         associate (side => scene%sides(i))
-            scale = max(scale, maxval(abs(side%traction)), abs(side%normal_traction), &
-                        abs(side%shear_traction), abs(side%pressure), &
-                        scene%material%young*maxval(abs(side%displacement))/extent)
-         end associate
-      end do
-      longest = 0.0_rk
-      do i = 1, size(scene%fractures)
-         longest = max(longest, scene%fractures(i)%length())
-      end do
-      if (scene%growth%enabled .and. longest > 0.0_rk) then
-         scale = max(scale, scene%material%toughness/sqrt(half_pi*longest))
-      end if
-   end function pressure_scale
 
    !> Of a fracture cell [m].
    pure function middle(self, cell) result(xy)

@@ -10,13 +10,14 @@ module twolevel_simulation
    use results_chronicle, only: event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
+   use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: stepper_t
+   use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_wells, only: next_switch
    implicit none(type, external)
    private
@@ -25,6 +26,9 @@ module twolevel_simulation
 
    !> Both levels, the last step, and how the next one is chosen.
    type, extends(two_levels_t) :: twolevel_simulation_t
+      logical :: has_begun = .false.  !< the first state has been asked for
+      logical :: is_after_switch = .false.  !< of a well: the last step
+      logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
@@ -53,6 +57,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       self%end_time = scene%time%end
+      call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (.not. allocated(error)) call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
@@ -88,14 +93,12 @@ contains
       type(history_row_t) :: row
       logical :: is_first
 
-      is_first = .not. self%stepper%next > 0.0_rk
+      is_first = .not. self%has_begun
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
-      if (is_first) self%stepper%next = self%scene%time%step
+      self%has_begun = .true.
       before = self%state
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
-      else if (is_equilibrium(self)) then
-         call take_growing_step(self, timers, error)
       else
          call take_step(self, timers, error)
       end if
@@ -114,7 +117,7 @@ contains
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
          if (.not. (self%owes_state .or. is_equilibrium(self))) then
-            call self%stepper%step_done(self%scene%time, self%state%pressure(self%grown))
+            call self%stepper%settle(self%state%pressure(self%grown))
          end if
       end if
       call note_state(self, row%mass_error_relative)
@@ -129,6 +132,7 @@ contains
       call self%equilibrate(timers, self%report, error)
       if (allocated(error)) return
       self%report%mass_error = 0.0_rk
+      call self%follow_trend(at_rest=.true.)
       if (self%report%converged) return
       call raise_error(error, "", "the initial state was not found: "//self%report%reason)
    end subroutine find_initial_state
@@ -140,88 +144,107 @@ contains
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step with the growth in it, cut as often as it takes.
-   subroutine take_growing_step(self, timers, error)
-      class(twolevel_simulation_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      logical :: is_too_long, is_unstable
-      real(rk) :: wanted
-
-      call self%windows%accept()
-      self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
-      wanted = self%dt
-      is_unstable = .false.
-      do
-         call find_equilibrium(self, self%dt, is_unstable, timers, self%report, is_too_long, error)
-         if (allocated(error)) return
-         if (self%report%converged .and. .not. is_too_long) exit
-         if (is_unstable) then
-            call raise_error(error, "", why_cut(self, is_too_long)//", even with a time step of " &
-                             //brief_text(self%dt, 4)//" s")
-            return
-         end if
-         call self%stepper%cut(self%scene%time, self%dt, is_unstable)
-         call note_cut(self, is_too_long)
-      end do
-      call self%book_step(self%dt)
-      call accept_equilibrium(self)
-      if (is_unstable) then
-         call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
-                                       //brief_text(sum(self%tip%advance), 4)//" m in all")
-         self%stepper%next = wanted
-      else
-         call self%stepper%follow_growth(self%scene%time, &
-                                         maxval(self%tip%advance)/self%rules%increment)
-      end if
-   end subroutine take_growing_step
-
-   !> A step that did not converge, or in which tips would have gone on for too long, was cut.
-   subroutine note_cut(self, is_too_long)
-      class(twolevel_simulation_t), intent(inout) :: self
-      logical, intent(in) :: is_too_long
-
-      self%summary%step_cuts = self%summary%step_cuts + 1
-      self%summary%newton_total = self%summary%newton_total + self%report%iterations
-      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
-                                    //brief_text(self%dt, 4)//" s: "//why_cut(self, is_too_long))
-   end subroutine note_cut
-
-   !> Why a step is not accepted.
-   pure function why_cut(self, is_too_long) result(reason)
-      class(twolevel_simulation_t), intent(in) :: self
-      logical, intent(in) :: is_too_long
-      character(len=:), allocatable :: reason
-
-      reason = "growth finds no equilibrium within a segment"
-      if (.not. is_too_long) reason = self%report%reason
-   end function why_cut
-
-   !> One accepted step, cut as often as it takes.
+   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not judged,
+   !! and where tips find no equilibrium in it either, growth is unstable: nothing but that happens,
+   !! until it arrests.
    subroutine take_step(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      character(len=24) :: number
-      logical :: is_too_short
+      type(trial_t) :: trial
+      logical :: is_last, is_too_short, is_unstable
+      real(rk) :: wanted
 
+      if (self%scene%growth%intensities) call self%windows%accept()
       self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
+      wanted = self%dt
+      self%is_after_switch = self%ends_at_switch
+      is_too_short = .false.
+      is_last = .false.
+      is_unstable = .false.
       do
-         call self%step(self%dt, timers, self%report, error)
-         if (allocated(error) .or. self%report%converged) return
-         call self%stepper%cut(self%scene%time, self%dt, is_too_short)
-         write (number, "(es10.3)") self%dt
-         self%summary%step_cuts = self%summary%step_cuts + 1
-         self%summary%newton_total = self%summary%newton_total + self%report%iterations
-         call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
-                                       //trim(adjustl(number))//" s: "//self%report%reason)
-         if (is_too_short) then
-            call raise_error(error, "", self%report%reason//", even with a time step of " &
-                             //trim(adjustl(number))//" s")
+         call try_length(self, is_last, trial, timers, error)
+         if (allocated(error)) return
+         if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
+         if (is_last .or. (is_too_short .and. .not. trial%converged)) then
+            call raise_error(error, "", trial%why_cut()//", even with a time step of " &
+                             //brief_text(self%dt, 4)//" s")
             return
          end if
+         is_last = is_too_short
+         is_unstable = is_last .and. trial%goes_too_far
+         if (.not. is_last) call cut_step(self, trial, is_too_short)
       end do
+      if (self%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
+         call self%watch%see(limit_time_error, trial%time_error, last_state(self))
+      end if
+      call accept_step(self, trial, is_unstable)
+      if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
    end subroutine take_step
+
+   !> The equations are solved and tips in equilibrium, whatever the error in time.
+   pure logical function solves(trial)
+      type(trial_t), intent(in) :: trial
+
+      solves = trial%converged .and. .not. trial%goes_too_far
+   end function solves
+
+   !> Try a step of the present length. The last try is taken if its equations are solved.
+   subroutine try_length(self, is_last, trial, timers, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      logical, intent(in) :: is_last
+      type(trial_t), intent(out) :: trial
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (is_equilibrium(self)) then
+         call find_equilibrium(self, self%dt, is_last, timers, self%report, trial, error)
+      else
+         self%before = self%state
+         call self%try_step(self%dt, timers, self%report, error)
+         trial%converged = self%report%converged
+         if (allocated(error)) return
+         if (trial%converged) then
+            trial%time_error = self%step_error(self%dt)
+            if (.not. (is_last .or. self%stepper%takes(trial))) self%state = self%before
+         else
+            trial%reason = self%report%reason
+         end if
+      end if
+   end subroutine try_length
+
+   !> A tried step was not taken.
+   subroutine cut_step(self, trial, is_too_short)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(trial_t), intent(in) :: trial
+      logical, intent(out) :: is_too_short
+
+      call self%stepper%cut(trial, self%dt, is_too_short)
+      self%summary%step_cuts = self%summary%step_cuts + 1
+      self%summary%newton_total = self%summary%newton_total + self%report%iterations
+      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
+                                    //brief_text(self%dt, 4)//" s: "//trial%why_cut())
+   end subroutine cut_step
+
+   !> A tried step is taken.
+   subroutine accept_step(self, trial, is_unstable)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(trial_t), intent(in) :: trial
+      logical, intent(in) :: is_unstable
+
+      self%ends_at_switch = next_switch(self%scene, self%before%time) &
+                            <= self%state%time*(1.0_rk + same_time)
+      call self%book_step(self%dt)
+      self%tip%advance = 0.0_rk
+      if (is_equilibrium(self)) call accept_equilibrium(self)
+      call self%stepper%step_done(trial, self%dt)
+      call self%trend%accept(self%before, self%state, self%dt)
+      if (.not. is_unstable) return
+      call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
+                                    //brief_text(sum(self%tip%advance), 4)//" m in all")
+      ! The rates of such a step mean nothing for the next.
+      call self%follow_trend(at_rest=.false.)
+   end subroutine accept_step
 
    !> An accepted state: contact and the run's largest values.
    subroutine note_state(self, mass_error_relative)
@@ -316,7 +339,7 @@ contains
             call self%note_mesh(self%mesh)
             call watch_mesh(self, error)
             if (allocated(error)) return
-            call self%stepper%network_grew(self%scene%time)
+            call self%stepper%network_grew()
          end if
          self%owes_state = allocated(self%ending) .and. self%stepper%is_short
          if (coarse_grew .or. allocated(self%ending)) return

@@ -5,6 +5,7 @@ module twolevel_state
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use coarse_fields, only: nodal_values
+   use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
@@ -16,7 +17,9 @@ module twolevel_state
    use simulation_laws, only: law_of_fracture
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
+   use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
+   use twolevel_trend, only: trend_t
    use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
@@ -38,6 +41,8 @@ module twolevel_state
       type(mesh_t) :: mesh  !< the coarse one
       type(coarse_model_t) :: model
       type(state_t) :: state
+      type(state_t) :: before  !< the step that led there, on the same mesh
+      type(trend_t) :: trend  !< rates of the last accepted step
       type(windows_t) :: windows
       type(coarse_values_t) :: coarse_values
       logical :: values_are_current = .false.
@@ -51,9 +56,10 @@ module twolevel_state
       real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
    contains
       procedure :: mesh_levels
+      procedure :: follow_trend
       procedure :: equilibrate
-      procedure :: step
       procedure :: try_step
+      procedure :: step_error
       procedure :: book_step
       procedure :: update_values
       procedure :: evaluate
@@ -87,7 +93,23 @@ contains
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
       allocate (self%grown(0), self%segment(size(self%tip)))
+      call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
+
+   !> Rates are known from now on: none at rest, else those of the next step.
+   subroutine follow_trend(self, at_rest)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: at_rest
+      real(rk) :: length
+      integer :: i
+
+      length = 0.0_rk
+      do i = 1, size(self%scene%fractures)
+         length = length + self%scene%fractures(i)%length()
+      end do
+      call self%trend%begin(self%state, at_rest, pressure_scale(self%scene), &
+                            self%scene%material%young, length)
+   end subroutine follow_trend
 
    !> How tips grow: they stop before they come nearer to anything than a coarse cell, for fluid
    !! has no law yet at joints.
@@ -149,23 +171,9 @@ contains
 
       self%values_are_current = .false.
       self%undrained = .true.
-      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%step, self%state, &
+     call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%longest(), self%state, &
                                   timers, report, error)
    end subroutine equilibrate
-
-   !> One step of the coarse level. Nothing changes unless it converges.
-   subroutine step(self, dt, timers, report, error)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< [s]
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-
-      call self%try_step(dt, timers, report, error)
-      if (allocated(error) .or. .not. report%converged) return
-      if (self%scene%growth%intensities) call self%windows%accept()
-      call self%book_step(dt)
-   end subroutine step
 
    !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
    subroutine try_step(self, dt, timers, report, error)
@@ -182,6 +190,20 @@ contains
       self%values_are_current = .false.
       self%undrained = .false.
    end subroutine try_step
+
+   !> Error in time of the state that a step of length dt has led to, relative [-].
+   function step_error(self, dt) result(error)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: error
+      real(rk) :: area(self%mesh%n_cells)
+      integer(ik) :: c
+
+      do c = 1, self%mesh%n_cells
+         area(c) = cell_area(self%mesh, c)
+      end do
+      error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
+   end function step_error
 
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
@@ -285,6 +307,7 @@ contains
       self%mesh = mesh
       self%model%cells = cells
       self%state = state
+      call self%trend%transfer(map)
       self%prefilled = self%prefilled + prefilled
       self%values_are_current = .false.
       call self%windows%coarse_changed()

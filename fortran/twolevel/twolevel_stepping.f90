@@ -1,5 +1,13 @@
-!> The length of time steps: cut where a step does not converge, short after growth until the
-!! pressure at the new tips has settled, and back by doubling.
+!> The length of time steps. A step is tried; what it shows decides whether it is taken, is cut and
+!! tried again, and how long the next one is.
+!!
+!! A step is cut where its equations are not solved, where its error in time exceeds the tolerance,
+!! where tips would grow too far in it, and to where a tip begins to grow. With a tolerance steps
+!! are as long as that, and the growth of the tips, allow; without one they are the scene's.
+!! Lengths differ by factors of two where there is a choice: each costs a factorization.
+!!
+!! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
+!! until the pressure at the new tips has settled.
 module twolevel_stepping
    use base_kinds, only: rk
    use base_tolerances, only: same_value
@@ -7,25 +15,62 @@ module twolevel_stepping
    implicit none(type, external)
    private
 
-   public :: stepper_t
+   public :: stepper_t, trial_t
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
 
+   !> First step with a tolerance, as a share of the scene's time: so short that little happens.
+   real(rk), parameter :: first_share = 1.0e-7_rk
+
+   !> Share of a segment that a tip goes along in a step at most.
+   real(rk), parameter :: most = 0.75_rk
+
+   !> What a tried step has shown.
+   type :: trial_t
+      logical :: converged = .false.  !< its equations are solved
+      logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
+      real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
+      real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
+      character(len=:), allocatable :: reason  !< why the equations were not solved
+   contains
+      procedure :: why_cut
+   end type trial_t
+
    !> What decides about the next step.
    type :: stepper_t
       real(rk) :: next = 0.0_rk  !< to try [s]
+      real(rk) :: longest = huge(1.0_rk)  !< [s]
+      real(rk) :: shortest = 0.0_rk  !< below it a step is too short [s]
+      real(rk) :: after_growth = 0.0_rk  !< after an increment of growth [s]
+      real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: not judged [-]
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
    contains
+      procedure :: begin
       procedure :: step_to
+      procedure :: takes
       procedure :: cut
       procedure :: step_done
+      procedure :: settle
       procedure :: network_grew
-      procedure :: follow_growth
    end type stepper_t
 
 contains
+
+   !> From the scene's choices.
+   subroutine begin(self, time)
+      class(stepper_t), intent(out) :: self
+      type(time_t), intent(in) :: time
+
+      self%tolerance = time%tolerance
+      self%shortest = time%smallest_factor*time%longest()
+      self%longest = time%longest()
+      self%after_growth = time%share_after_growth*time%longest()
+      self%next = self%longest
+      if (self%tolerance > 0.0_rk) self%next = min(self%longest, first_share*time%end)
+   end subroutine begin
 
    !> The step to try, so that none straddles a switch of the wells.
    pure real(rk) function step_to(self, left)
@@ -37,60 +82,110 @@ contains
       if (left < step_to*(1.0_rk + same_value)) step_to = left
    end function step_to
 
-   !> A step has not converged: try half of it, unless that is too short.
-   pure subroutine cut(self, time, dt, is_too_short)
+   !> A tried step may be accepted.
+   pure logical function takes(self, trial)
+      class(stepper_t), intent(in) :: self
+      type(trial_t), intent(in) :: trial
+
+      takes = trial%converged .and. .not. trial%goes_too_far .and. .not. trial%onset < 1.0_rk
+      if (self%tolerance > 0.0_rk) takes = takes .and. trial%time_error <= self%tolerance
+   end function takes
+
+   !> A step is not taken: try a shorter one, unless that is too short.
+   pure subroutine cut(self, trial, dt, is_too_short)
       class(stepper_t), intent(inout) :: self
-      type(time_t), intent(in) :: time
+      type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
 
-      dt = 0.5_rk*dt
-      is_too_short = dt < time%smallest_factor*time%step
+      if (trial%converged .and. trial%onset < 1.0_rk) then
+         dt = max(0.01_rk, trial%onset)*dt
+      else if (trial%converged .and. .not. trial%goes_too_far) then
+         dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
+      else
+         dt = 0.5_rk*dt
+      end if
+      is_too_short = dt < self%shortest
       self%next = dt
    end subroutine cut
 
-   !> A step has been accepted.
-   pure subroutine step_done(self, time, pressure)
+   !> A step of length dt has been accepted.
+   pure subroutine step_done(self, trial, dt)
       class(stepper_t), intent(inout) :: self
-      type(time_t), intent(in) :: time
+      type(trial_t), intent(in) :: trial
+      real(rk), intent(in) :: dt  !< [s]
+      integer, parameter :: most_powers = 2  ! a step is at most 4 times the last one
+      integer :: power
+
+      if (self%tolerance > 0.0_rk) then
+         power = max(-1, min(most_powers, powers(self, trial)))
+         self%next = min(2.0_rk**power*dt, self%longest)
+      else
+         power = 1
+         if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
+         self%next = min(2.0_rk**power*self%next, self%longest)
+      end if
+   end subroutine step_done
+
+   !> By how many powers of two a step should be longer than one that has shown this.
+   pure integer function powers(self, trial)
+      class(stepper_t), intent(in) :: self
+      type(trial_t), intent(in) :: trial
+      integer, parameter :: any_number = 60
+      real(rk), parameter :: aim = 0.5_rk  ! share of the tolerance
+
+      powers = any_number
+      if (self%tolerance > 0.0_rk .and. trial%time_error > 0.0_rk) then
+         powers = min(powers, lower_power(sqrt(aim*self%tolerance/trial%time_error)))
+      end if
+      if (trial%advance > 0.0_rk) powers = min(powers, lower_power(most/trial%advance))
+   end function powers
+
+   !> The largest power of two that is not above a ratio.
+   pure integer function lower_power(ratio)
+      real(rk), intent(in) :: ratio  !< [-]
+      integer, parameter :: largest = 60
+
+      lower_power = floor(log(max(2.0_rk**(-largest), min(2.0_rk**largest, ratio)))/log(2.0_rk))
+   end function lower_power
+
+   !> After a step with growth by increments: are the pressures of the new cells at rest?
+   pure subroutine settle(self, pressure)
+      class(stepper_t), intent(inout) :: self
       real(rk), intent(in) :: pressure(:)  !< of the cells that the last growth has added [Pa]
 
-      if (.not. self%is_short) then
-         self%next = min(2.0_rk*self%next, time%step)
-         return
-      end if
+      if (.not. self%is_short) return
       if (allocated(self%pressure)) then
          if (size(pressure) == size(self%pressure)) self%is_short = &
             maxval(abs(pressure - self%pressure)) > settled*maxval(abs(pressure))
       end if
       self%pressure = pressure
-      self%next = merge(time%share_after_growth*time%step, time%step, self%is_short)
-   end subroutine step_done
+      self%next = merge(self%after_growth, self%longest, self%is_short)
+   end subroutine settle
 
-   !> A step has been accepted in which a tip has advanced by a share of its segment: shorter or
-   !! longer steps, so that it is about a half. Steps differ by factors of two: each size costs a
-   !! factorization.
-   pure subroutine follow_growth(self, time, share)
+   !> An increment of growth has added fracture cells.
+   pure subroutine network_grew(self)
       class(stepper_t), intent(inout) :: self
-      type(time_t), intent(in) :: time
-      real(rk), intent(in) :: share  !< [-]
-      real(rk), parameter :: most = 0.75_rk, least = 0.35_rk
-
-      if (share > most) then
-         self%next = 0.5_rk*self%next
-      else if (share < least) then
-         self%next = min(2.0_rk*self%next, time%step)
-      end if
-   end subroutine follow_growth
-
-   !> Growth has added fracture cells.
-   pure subroutine network_grew(self, time)
-      class(stepper_t), intent(inout) :: self
-      type(time_t), intent(in) :: time
 
       self%is_short = .true.
-      self%next = time%share_after_growth*time%step
+      self%next = self%after_growth
       if (allocated(self%pressure)) deallocate (self%pressure)
    end subroutine network_grew
+
+   !> Why a step was not taken.
+   pure function why_cut(self) result(words)
+      class(trial_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      if (.not. self%converged) then
+         words = self%reason
+      else if (self%goes_too_far) then
+         words = "growth finds no equilibrium within a segment"
+      else if (self%onset < 1.0_rk) then
+         words = "a tip begins to grow in it"
+      else
+         words = "its error in time is too large"
+      end if
+   end function why_cut
 
 end module twolevel_stepping

@@ -106,9 +106,10 @@ contains
       end do
       if (a%initial%fracture_pressure /= b%initial%fracture_pressure) return
       if (.not. same(a%initial%pressure, b%initial%pressure)) return
-      if (.not. same([a%time%end, a%time%step, a%time%share_after_growth, a%time%smallest_factor], &
+      if (.not. same([a%time%end, a%time%step, a%time%share_after_growth, a%time%smallest_factor, &
+                      a%time%tolerance], &
                      [b%time%end, b%time%step, b%time%share_after_growth, &
-                      b%time%smallest_factor])) return
+                      b%time%smallest_factor, b%time%tolerance])) return
       if (.not. same_loading(a, b)) return
       if (.not. same_levels(a, b)) return
       if (a%output%vtu .neqv. b%output%vtu) return

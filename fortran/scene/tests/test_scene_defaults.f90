@@ -3,7 +3,7 @@ program test_scene_defaults
    use testing_checks, only: checks_t
    use base_kinds, only: rk
    use scene_defaults, only: resolve_defaults
-   use scene_types, only: fracture_t, scene_t
+   use scene_types, only: fracture_t, scene_t, time_t
    implicit none(type, external)
    type(checks_t) :: checks
 
@@ -36,6 +36,17 @@ contains
       call resolve_defaults(scene)
       call checks%is_close(scene%growth%increment, 0.125_rk, 0.0_rk, "the fine mesh size")
       call checks%is_close(scene%output%interval, 3.0_rk, 0.0_rk, "the regular step")
+      call checks%is_close(scene%time%tolerance, 0.0_rk, 0.0_rk, "steps are given")
+      scene%growth%enabled = .true.
+      call resolve_defaults(scene)
+      call checks%is_close(scene%time%tolerance, 0.01_rk, 0.0_rk, "but tips are in equilibrium")
+      scene%growth%enabled = .false.
+      scene%time = time_t(end=9.0_rk)
+      scene%output%interval = 0.0_rk
+      call resolve_defaults(scene)
+      call checks%is_close(scene%time%tolerance, 0.01_rk, 0.0_rk, "steps are chosen")
+      call checks%is_close(scene%time%smallest_factor, 1.0e-9_rk, 0.0_rk, "down to tiny ones")
+      call checks%is_close(scene%output%interval, 0.09_rk, 0.0_rk, "a hundred times")
       scene%output%interval = 5.0_rk
       scene%growth%increment = 0.2_rk
       call resolve_defaults(scene)

@@ -130,7 +130,7 @@ contains
       call checks%no_error(error, "the smallest scene")
       if (allocated(error)) return
       call exactly([scene%time%share_after_growth, scene%time%smallest_factor], &
-                   [time%share_after_growth, time%smallest_factor], "default times")
+                   [time%share_after_growth, 1.0e-6_rk], "default times")
       call exactly([scene%discretization%fine_ratio, scene%discretization%newton_tolerance, &
                     scene%discretization%size_fracture, scene%discretization%window], &
                    [discretization%fine_ratio, discretization%newton_tolerance, &

@@ -25,6 +25,7 @@ contains
       scene%sides(4)%traction(2) = -from_above
       scene%time%end = 3600.0_rk
       scene%time%step = 60.0_rk
+      scene%time%smallest_factor = 1.0e-6_rk
       scene%discretization%size_fracture = 0.05_rk
       scene%discretization%size_boundary = 0.4_rk
       scene%discretization%window = 0.3_rk

@@ -115,7 +115,7 @@ contains
       pressure = simulation%state%pressure
       time = simulation%state%time
       simulation%model%settings%iterations_max = 0
-      call simulation%step(scene%time%step, timers, report, error)
+      call step(simulation, report, error)
       call checks%no_error(error, "a refused step is no error")
       call checks%is_true(.not. report%converged, "refused step")
       call checks%is_close(simulation%state%time, time, 0.0_rk, "time stands still")
@@ -125,6 +125,19 @@ contains
       call checks%is_close(simulation%leaked, 0.0_rk, 0.0_rk, "nothing leaks")
       call checks%is_true(simulation%undrained, "still the initial state")
    end subroutine test_refused_step
+
+   !> A step of the scene's length, taken if it converges.
+   subroutine step(simulation, report, error)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (dt => simulation%scene%time%step)
+         call simulation%try_step(dt, timers, report, error)
+         if (report%converged) call simulation%book_step(dt)
+      end associate
+      call simulation%windows%accept()
+   end subroutine step
 
    !> Both ends grow alike, and all fluid is accounted for: what the wells gave and what new cells
    !! brought along is what rock and fractures have gained.
@@ -136,7 +149,7 @@ contains
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk) :: compressed, gain(2), given, leaked
-      integer :: growths, step
+      integer :: growths, steps
       logical :: any_grew, grew
 
       scene = symmetric_scene(new_volume)
@@ -148,9 +161,9 @@ contains
       compressed = 0.0_rk
       leaked = 0.0_rk
       growths = 0
-      do step = 1, 8
+      do steps = 1, 8
          before = simulation%state
-         call simulation%step(scene%time%step, timers, report, error)
+         call step(simulation, report, error)
          call checks%is_true(report%converged, new_volume//": a step converges")
          compressed = compressed + compression(simulation, before)
          leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
@@ -168,7 +181,7 @@ contains
       call checks%is_true(growths == 3, new_volume//": three growths")
       ! A step after the last growth fills its cells.
       before = simulation%state
-      call simulation%step(scene%time%step, timers, report, error)
+      call step(simulation, report, error)
       call checks%is_true(report%converged, new_volume//": the last step")
       compressed = compressed + compression(simulation, before)
       leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
@@ -182,7 +195,7 @@ contains
                            //": and in the same direction")
       given = given + volume(simulation) + compressed + sum(simulation%state%content) &
               - sum(first%content)
-      call checks%is_close(simulation%injected, (step + 1)*scene%time%step*1.0e-7_rk, &
+      call checks%is_close(simulation%injected, (steps + 1)*scene%time%step*1.0e-7_rk, &
                            1.0e-19_rk, new_volume//": injected")
       call checks%is_close(given, simulation%injected + simulation%prefilled, &
                            1.0e-12_rk*simulation%injected, new_volume &

@@ -1,21 +1,26 @@
-!> Lengths of time steps: at switches, after cuts, and after growth.
+!> Lengths of time steps: at switches, after cuts, by error and growth, and after increments.
 program test_twolevel_stepping
    use testing_checks, only: checks_t
    use base_kinds, only: rk
    use scene_types, only: injection_t, scene_t, time_t
-   use twolevel_stepping, only: stepper_t
+   use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_wells, only: next_switch, rate
    implicit none(type, external)
 
-   type(time_t), parameter :: time = time_t(end=1.0e4_rk, step=100.0_rk, &
-                                            share_after_growth=0.01_rk, smallest_factor=0.1_rk)
-   real(rk), parameter :: nothing_new(0) = [real(rk) ::]
+   !> Steps of a given length, and such that their error is small.
+   type(time_t), parameter :: given = time_t(end=1.0e4_rk, step=100.0_rk, &
+                                             share_after_growth=0.01_rk, smallest_factor=0.1_rk)
+   type(time_t), parameter :: chosen = time_t(end=1.0e6_rk, tolerance=0.01_rk, &
+                                              smallest_factor=1.0e-9_rk)
    type(checks_t) :: checks
 
    call test_switches()
    call test_cuts()
-   call test_growth()
-   call test_equilibrium()
+   call test_error_in_time()
+   call test_decay()
+   call test_advance()
+   call test_onset()
+   call test_increments()
    call test_wells()
    call checks%finish()
 
@@ -25,7 +30,7 @@ contains
    subroutine test_switches()
       type(stepper_t) :: stepper
 
-      stepper%next = 100.0_rk
+      call stepper%begin(given)
       call checks%is_close(stepper%step_to(250.0_rk), 100.0_rk, 0.0_rk, "far from a switch")
       call checks%is_close(stepper%step_to(40.0_rk), 40.0_rk, 0.0_rk, "to the switch")
       call checks%is_close(stepper%step_to(100.0_rk + 1.0e-8_rk), 100.0_rk + 1.0e-8_rk, 0.0_rk, &
@@ -35,57 +40,166 @@ contains
    !> Steps are halved, and doubled again once they are accepted, up to the regular one.
    subroutine test_cuts()
       type(stepper_t) :: stepper
+      type(trial_t) :: failed, good
       real(rk) :: dt
       logical :: is_too_short
 
-      stepper%next = 100.0_rk
+      failed%reason = "a reason"
+      good%converged = .true.
+      call stepper%begin(given)
+      call checks%is_true(.not. stepper%takes(failed), "not without convergence")
+      call checks%is_true(failed%why_cut() == "a reason", "the reason is told")
       dt = stepper%step_to(1.0e4_rk)
-      call stepper%cut(time, dt, is_too_short)
-      call stepper%cut(time, dt, is_too_short)
+      call stepper%cut(failed, dt, is_too_short)
+      call stepper%cut(failed, dt, is_too_short)
       call checks%is_close(dt, 25.0_rk, 0.0_rk, "cut twice")
       call checks%is_true(.not. is_too_short, "not too short")
-      call stepper%step_done(time, nothing_new)
+      call stepper%step_done(good, dt)
       call checks%is_close(stepper%next, 50.0_rk, 0.0_rk, "doubled")
-      call stepper%step_done(time, nothing_new)
-      call stepper%step_done(time, nothing_new)
+      call stepper%step_done(good, dt)
+      call stepper%step_done(good, dt)
       call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "the regular step")
       dt = 15.0_rk
-      call stepper%cut(time, dt, is_too_short)
+      call stepper%cut(failed, dt, is_too_short)
       call checks%is_true(is_too_short, "below a tenth of the regular step")
    end subroutine test_cuts
 
-   !> In equilibrium a tip goes about half a segment in a step.
-   subroutine test_equilibrium()
+   !> The first step is tiny; then the error, which goes with the square of the step, is between an
+   !! eighth and the whole of the tolerance.
+   subroutine test_error_in_time()
       type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+      integer :: k
 
-      stepper%next = 40.0_rk
-      call stepper%follow_growth(time, 0.9_rk)
+      call stepper%begin(chosen)
+      call checks%is_close(stepper%next, 0.1_rk, 1.0e-12_rk, "the first step")
+      do k = 1, 40
+         dt = stepper%step_to(huge(1.0_rk))
+         trial = trial_t(converged=.true., time_error=0.01_rk*(dt/1000.0_rk)**2)
+         if (stepper%takes(trial)) then
+            call stepper%step_done(trial, dt)
+         else
+            call stepper%cut(trial, dt, is_too_short)
+         end if
+         call checks%is_true(stepper%next <= 4.0_rk*dt, "at most four times the last one")
+      end do
+      call checks%is_true(stepper%takes(trial), "error below the tolerance")
+      call checks%is_close(trial%time_error, 0.0056_rk, 0.0044_rk, "and not far below")
+      trial%time_error = 0.02_rk
+      dt = 64.0_rk
+      call checks%is_true(.not. stepper%takes(trial), "too large an error")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 32.0_rk, 0.0_rk, "half as long")
+      trial%time_error = 1.0_rk
+      dt = 64.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 4.0_rk, 0.0_rk, "as short as the error asks for")
+   end subroutine test_error_in_time
+
+   !> y' = -(y - 1)/tau over six decades of tau, by backward Euler with these steps: the error of the
+   !! solution stays near the tolerance, and it takes some fifty steps.
+   subroutine test_decay()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt, dt_before, error, rate_before, tau, time, y, y_new
+      logical :: is_too_short
+      integer :: decade, steps
+
+      do decade = -4, 2
+         tau = 1.0e6_rk*10.0_rk**decade
+         call stepper%begin(chosen)
+         time = 0.0_rk
+         y = 0.0_rk
+         rate_before = 0.0_rk
+         dt_before = 0.0_rk
+         error = 0.0_rk
+         steps = 0
+         do while (time < chosen%end)
+            dt = stepper%step_to(chosen%end - time)
+            steps = steps + 1
+            y_new = (y + dt/tau)/(1.0_rk + dt/tau)
+            trial = trial_t(converged=.true., &
+                            time_error=dt/(dt + dt_before)*abs(y_new - y - dt*rate_before))
+            if (.not. stepper%takes(trial)) then
+               call stepper%cut(trial, dt, is_too_short)
+               cycle
+            end if
+            call stepper%step_done(trial, dt)
+            time = time + dt
+            rate_before = (y_new - y)/dt
+            dt_before = dt
+            y = y_new
+            error = max(error, abs(y - (1.0_rk - exp(-time/tau))))
+         end do
+         call checks%is_true(error < 4.0_rk*chosen%tolerance, "error of a decay")
+         call checks%is_true(steps < 100, "steps of a decay")
+         print "(a,es8.1,a,f7.4,a,i0,a)", "decay in ", tau, " s: error ", error, " in ", steps, &
+            " steps"
+      end do
+   end subroutine test_decay
+
+   !> In equilibrium a tip goes at most three quarters of a segment in a step.
+   subroutine test_advance()
+      type(stepper_t) :: stepper
+      real(rk), parameter :: far = 0.9_rk, half = 0.5_rk
+
+      call stepper%begin(chosen)
+      call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
       call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "too far: half the step")
-      call stepper%follow_growth(time, 0.5_rk)
+      call stepper%step_done(trial_t(converged=.true., advance=half), 20.0_rk)
       call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "as it should be: the same")
-      call stepper%follow_growth(time, 0.0_rk)
-      call checks%is_close(stepper%next, 40.0_rk, 0.0_rk, "no growth: twice the step")
-      call stepper%follow_growth(time, 0.1_rk)
-      call stepper%follow_growth(time, 0.1_rk)
-      call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "at most the regular step")
-   end subroutine test_equilibrium
+      call stepper%step_done(trial_t(converged=.true.), 20.0_rk)
+      call checks%is_close(stepper%next, 80.0_rk, 0.0_rk, "no growth: four times the step")
+      call stepper%begin(given)
+      stepper%next = 40.0_rk
+      call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
+      call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "also where steps are given")
+   end subroutine test_advance
 
-   !> After growth steps are short until the pressure of the new cells changes by 1 % at most.
-   subroutine test_growth()
+   !> A step ends where a tip begins to grow.
+   subroutine test_onset()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+
+      call stepper%begin(chosen)
+      trial = trial_t(converged=.true., onset=0.3_rk)
+      dt = 10.0_rk
+      call checks%is_true(.not. stepper%takes(trial), "an onset within the step")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 3.0_rk, 1.0e-14_rk, "the step to the onset")
+   end subroutine test_onset
+
+   !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
+   subroutine test_increments()
       type(stepper_t) :: stepper
 
-      stepper%next = 100.0_rk
-      call stepper%network_grew(time)
-      call checks%is_close(stepper%next, 1.0_rk, 0.0_rk, "short after growth")
-      call stepper%step_done(time, [1.0e6_rk, 2.0e6_rk])
-      call checks%is_true(stepper%is_short, "nothing to compare with yet")
-      call stepper%step_done(time, [1.5e6_rk, 2.0e6_rk])
-      call checks%is_close(stepper%next, 1.0_rk, 0.0_rk, "not settled")
-      call stepper%step_done(time, [1.51e6_rk, 2.0e6_rk])
-      call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "settled")
-   end subroutine test_growth
+      call stepper%begin(given)
+      call stepper%network_grew()
+      call checks%is_close(stepper%next, 1.0_rk, 0.0_rk, "a hundredth")
+      call step_after(stepper, [10.0e6_rk, 5.0e6_rk])
+      call checks%is_true(stepper%is_short, "nothing to compare with")
+      call step_after(stepper, [10.2e6_rk, 5.0e6_rk])
+      call checks%is_true(stepper%is_short, "2 % of change")
+      call checks%is_close(stepper%next, 1.0_rk, 0.0_rk, "short again")
+      call step_after(stepper, [10.2e6_rk, 5.05e6_rk])
+      call checks%is_true(.not. stepper%is_short, "settled")
+      call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "back to the regular step")
+   end subroutine test_increments
 
-   !> A step has the rate of its middle; a well runs from its start to its end.
+   !> A step of the scene after an increment.
+   subroutine step_after(stepper, pressure)
+      type(stepper_t), intent(inout) :: stepper
+      real(rk), intent(in) :: pressure(:)  !< of the new cells [Pa]
+
+      call stepper%step_done(trial_t(converged=.true.), stepper%next)
+      call stepper%settle(pressure)
+   end subroutine step_after
+
+   !> A well starts, stops, and gives its mean rate to a step.
    subroutine test_wells()
       type(scene_t) :: scene
 

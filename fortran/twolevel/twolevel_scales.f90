@@ -1,0 +1,41 @@
+!> What size the results of a scene with a fluid can be expected to have.
+module twolevel_scales
+   use base_kinds, only: rk
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: pressure_scale
+
+contains
+
+   !> The largest pressure that can be expected in a scene: that of its loads or of its state before
+   !! them, and with growth what opens the longest fracture against its toughness [Pa]; 0 if it has
+   !! none of these.
+   pure real(rk) function pressure_scale(scene) result(scale)
+      type(scene_t), intent(in) :: scene
+      real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
+      real(rk) :: extent, longest
+      integer :: i
+
+      associate (d => scene%domain)
+         extent = min(d%x_max - d%x_min, d%y_max - d%y_min)
+      end associate
+      scale = abs(scene%initial%pressure)
+      do i = 1, size(scene%sides)
+         associate (side => scene%sides(i))
+            scale = max(scale, maxval(abs(side%traction)), abs(side%normal_traction), &
+                        abs(side%shear_traction), abs(side%pressure), &
+                        scene%material%young*maxval(abs(side%displacement))/extent)
+         end associate
+      end do
+      longest = 0.0_rk
+      do i = 1, size(scene%fractures)
+         longest = max(longest, scene%fractures(i)%length())
+      end do
+      if (scene%growth%enabled .and. longest > 0.0_rk) then
+         scale = max(scale, scene%material%toughness/sqrt(half_pi*longest))
+      end if
+   end function pressure_scale
+
+end module twolevel_scales

@@ -1,0 +1,179 @@
+!> How fast a state changes, and the error that a time step makes.
+!!
+!! Backward Euler with a step h is off by h**2/2 times the second derivative, which follows from the
+!! rate of the step and that of the one before, of length h_b: in each step the error is
+!! h/(h + h_b) (change - h (rate before)). Its mean over the rock, and over the fractures, is judged:
+!! of the pressure against the range that pressure has gone through so far, of slip and opening
+!! likewise. A mean, for each cell that a tip passes, or where contact changes, sees a jump however
+!! short the step is.
+module twolevel_trend
+   use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
+   use mesh_types, only: mesh_map_t
+   implicit none(type, external)
+   private
+
+   public :: trend_t
+
+   !> Ranges are taken to be at least this share of what the loads would make [-].
+   real(rk), parameter :: least = 1.0e-2_rk
+
+   !> Rates of the last accepted step, of length `dt`; false where the rate is not known.
+   type :: trend_t
+      real(rk) :: dt = 0.0_rk  !< [s]
+      real(rk), allocatable :: rock(:)  !< (cells) of the pressure [Pa/s]
+      real(rk), allocatable :: fracture(:)  !< (fracture cells) of the pressure [Pa/s]
+      real(rk), allocatable :: jump(:, :)  !< (2, fracture cells) mean opening, slip [m/s]
+      logical, allocatable :: knows_rock(:), knows_fracture(:)
+      real(rk) :: pressure(2) = 0.0_rk  !< lowest and highest so far [Pa]
+      real(rk) :: jumps(2) = 0.0_rk  !< lowest and highest so far [m]
+      real(rk) :: least_pressure = 0.0_rk  !< that ranges are taken for at least [Pa]
+      real(rk) :: least_jump = 0.0_rk  !< [m]
+   contains
+      procedure :: begin
+      procedure :: is_known
+      procedure :: step_error
+      procedure :: accept
+      procedure :: transfer
+   end type trend_t
+
+contains
+
+   !> A state of rest, or one of which no rate is known.
+   subroutine begin(self, state, at_rest, pressure_scale, stiffness, length)
+      class(trend_t), intent(out) :: self
+      type(state_t), intent(in) :: state
+      logical, intent(in) :: at_rest  !< else the load acts from the first step on
+      real(rk), intent(in) :: pressure_scale  !< of the loads [Pa]
+      real(rk), intent(in) :: stiffness  !< of the rock [Pa]
+      real(rk), intent(in) :: length  !< of the fractures [m]
+
+      associate (n => size(state%content), m => size(state%pressure))
+         allocate (self%rock(n), self%fracture(m), self%jump(2, m), source=0.0_rk)
+         allocate (self%knows_rock(n), self%knows_fracture(m), source=at_rest)
+      end associate
+      self%least_pressure = least*pressure_scale
+      self%least_jump = self%least_pressure*length/stiffness
+      self%pressure = [huge(1.0_rk), -huge(1.0_rk)]
+      if (at_rest) call see(self, state)
+   end subroutine begin
+
+   !> There has been a step to compare with.
+   pure logical function is_known(self)
+      class(trend_t), intent(in) :: self
+
+      is_known = self%dt > 0.0_rk
+   end function is_known
+
+   !> Error of a step from `before` to `after`, relative to the ranges [-]; 0 where no rate is known.
+   pure real(rk) function step_error(self, before, after, dt, area, length)
+      class(trend_t), intent(in) :: self
+      type(state_t), intent(in) :: before, after
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: area(:)  !< of the cells [m2]
+      real(rk), intent(in) :: length(:)  !< of the fracture cells [m]
+      real(rk) :: error
+      type(trend_t) :: seen
+      integer(ik) :: n
+
+      n = size(self%rock, kind=ik)
+      seen%pressure = self%pressure
+      seen%jumps = self%jumps
+      call see(seen, after)
+      error = max(average(after%unknowns(3, :n) - before%unknowns(3, :n) - dt*self%rock, &
+                          area, self%knows_rock), &
+                  average(after%pressure - before%pressure - dt*self%fracture, &
+                          length, self%knows_fracture))
+      step_error = relative(error, max(self%least_pressure, width(seen%pressure)))
+      error = max(average(mean(after, 1) - mean(before, 1) - dt*self%jump(1, :), &
+                          length, self%knows_fracture), &
+                  average(mean(after, 2) - mean(before, 2) - dt*self%jump(2, :), &
+                          length, self%knows_fracture))
+      step_error = max(step_error, relative(error, max(self%least_jump, width(seen%jumps))))
+      step_error = dt/(dt + self%dt)*step_error
+   end function step_error
+
+   !> A step has been accepted.
+   pure subroutine accept(self, before, after, dt)
+      class(trend_t), intent(inout) :: self
+      type(state_t), intent(in) :: before, after
+      real(rk), intent(in) :: dt  !< [s]
+      integer(ik) :: n
+
+      n = size(self%rock, kind=ik)
+      self%rock = (after%unknowns(3, :n) - before%unknowns(3, :n))/dt
+      self%fracture = (after%pressure - before%pressure)/dt
+      self%jump(1, :) = (mean(after, 1) - mean(before, 1))/dt
+      self%jump(2, :) = (mean(after, 2) - mean(before, 2))/dt
+      self%knows_rock = .true.
+      self%knows_fracture = .true.
+      self%dt = dt
+      call see(self, after)
+   end subroutine accept
+
+   !> Carry the rates over to a new mesh; those of its new cells are not known.
+   pure subroutine transfer(self, map)
+      class(trend_t), intent(inout) :: self
+      type(mesh_map_t), intent(in) :: map
+      integer(ik) :: i
+
+      associate (old => map%cell_old)
+         self%knows_rock = [(old(i) > 0, i=1, size(old, kind=ik))]
+         self%rock = [(merge(self%rock(max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
+                       i=1, size(old, kind=ik))]
+      end associate
+      associate (old => map%fracture_cell_old)
+         self%knows_fracture = [(old(i) > 0, i=1, size(old, kind=ik))]
+         self%fracture = [(merge(self%fracture(max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
+                           i=1, size(old, kind=ik))]
+         self%jump = reshape([(merge(self%jump(:, max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
+                               i=1, size(old, kind=ik))], [2, size(old)])
+      end associate
+   end subroutine transfer
+
+   !> Widen the ranges by those of a state.
+   pure subroutine see(self, state)
+      class(trend_t), intent(inout) :: self
+      type(state_t), intent(in) :: state
+
+      associate (rock => state%unknowns(3, :size(state%content)))
+         self%pressure(1) = min(self%pressure(1), minval(rock), minval(state%pressure))
+         self%pressure(2) = max(self%pressure(2), maxval(rock), maxval(state%pressure))
+      end associate
+      self%jumps(1) = min(self%jumps(1), minval(state%jump))
+      self%jumps(2) = max(self%jumps(2), maxval(state%jump))
+   end subroutine see
+
+   !> Opening (1) or slip (2) of the fracture cells: means of their ends [m].
+   pure function mean(state, component)
+      type(state_t), intent(in) :: state
+      integer, intent(in) :: component
+      real(rk) :: mean(size(state%pressure))
+
+      mean = 0.5_rk*sum(state%jump(component, :, :), dim=1)
+   end function mean
+
+   pure real(rk) function width(bounds)
+      real(rk), intent(in) :: bounds(2)
+
+      width = bounds(2) - bounds(1)
+   end function width
+
+   !> Mean magnitude of what is known; 0 if nothing is.
+   pure real(rk) function average(values, weight, counts)
+      real(rk), intent(in) :: values(:), weight(:)
+      logical, intent(in) :: counts(:)
+
+      average = 0.0_rk
+      if (any(counts)) average = sum(weight*abs(values), mask=counts)/sum(weight, mask=counts)
+   end function average
+
+   !> An error in terms of a scale; 0 if there is neither.
+   pure real(rk) function relative(error, scale)
+      real(rk), intent(in) :: error, scale
+
+      relative = 0.0_rk
+      if (error > 0.0_rk) relative = error/max(scale, tiny(1.0_rk))
+   end function relative
+
+end module twolevel_trend
