@@ -8,8 +8,8 @@ module scene_intervals
 
    public :: interval_t
    public :: holds, in_words
-   public :: at_least_one, at_least_zero, below_one, biot_range, dilation_range, newton_range, poisson_range
-   public :: porosity_range
+   public :: at_least_one, at_least_zero, below_one, biot_range, dilation_range, newton_range
+   public :: poisson_range, porosity_range
    public :: positive, rosette_range, share, steps_range, tolerance_range
    public :: passes_range
 
