@@ -264,11 +264,12 @@ module output_columns
    type(word_t), parameter :: event_words(*) = [ &
       word_t("slip_onset", "a fracture slips for the first time"), &
       word_t("opening", "a fracture opens for the first time"), &
+      word_t("growth_onset", "a tip begins to grow; `detail` says how well the time is known"), &
       word_t("growth", "a tip has grown; the place is where it is now"), &
       word_t("joint", "a tip has met a fracture or the boundary"), &
       word_t("arrest", "a tip has stopped for good, for the reason in `detail`"), &
-      word_t("step_cut", "a time step did not converge, or tips would grow too far in it: "// &
-             "it is tried again, shorter"), &
+      word_t("step_cut", "a time step did not converge, erred too much, or tips would begin to "// &
+             "grow or grow too far in it: it is tried again, shorter"), &
       word_t("unstable_growth", "tips have grown at constant time until they arrested"), &
       word_t("remesh", "the mesh has followed the growth")]
 

@@ -22,7 +22,7 @@ module twolevel_equilibrium
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, find_equilibrium
+   public :: accept_equilibrium, find_equilibrium, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 

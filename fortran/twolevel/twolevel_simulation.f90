@@ -7,13 +7,14 @@ module twolevel_simulation
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_step_cut, event_unstable
+   use results_chronicle, only: event_growth_onset, event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
+   use twolevel_onset, only: approach_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
@@ -33,6 +34,7 @@ module twolevel_simulation
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
+      type(approach_t), allocatable :: approach(:)  !< (tips) to their first growth
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
    contains
@@ -59,7 +61,9 @@ contains
       self%end_time = scene%time%end
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
-      if (.not. allocated(error)) call watch_mesh(self, error)
+      if (allocated(error)) return
+      allocate (self%approach(size(self%tip)))
+      call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
@@ -292,6 +296,7 @@ contains
             end if
          end if
          if (allocated(error)) return
+         if (is_equilibrium(self)) call note_onsets(self)
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)
@@ -316,6 +321,29 @@ contains
       call self%note_mesh(self%mesh)
       call watch_mesh(self, error)
    end subroutine note_equilibrium
+
+   !> Tips begin to grow at the end of the step before the one in which they advance.
+   subroutine note_onsets(self)
+      class(twolevel_simulation_t), intent(inout) :: self
+      real(rk) :: error
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), approach => self%approach(i))
+            if (approach%is_over) cycle
+            approach%is_over = self%segment(i)%gain > 0.0_rk
+            if (approach%is_over) then
+               error = approach%uncertainty(approach%drive_error + tolerance*self%rules%toughness)
+               call self%chronicle%add_event(approach%time, event_growth_onset, &
+                                             "known to "//brief_text(error, 3)//" s", &
+                                             tip%fracture, tip%origin)
+            else
+               call approach%follow(self%state%time, tip%drive%intensity, &
+                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]))
+            end if
+         end associate
+      end do
+   end subroutine note_onsets
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
    !! still to be found.
