@@ -3,10 +3,10 @@
 !!
 !! Within a step the coarse level is solved from the state before with the tips where they are
 !! tried to be, the windows give the intensities there, and each tip goes on until its excess
-!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a cell for all
-!! of that piece, and its springs say how much of it is behind the tip (coarse_tips); so the coarse
-!! mesh changes once per piece, and neither its matrix nor the fluid's volume jumps. A piece begins
-!! in the direction in which K_II vanishes at its end (growth_path).
+!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a
+!! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips); so
+!! the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps. A
+!! piece begins in the direction in which K_II vanishes at its end (growth_path).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -36,8 +36,8 @@ module twolevel_equilibrium
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece goes
-   !! too far, unless the step is the last try: so short that nothing but growth happens in it, until
-   !! that arrests. Nothing is accepted yet; a step that does not show an equilibrium leaves the
+   !! too far, unless the step is the last try: so short that nothing but growth happens in it,
+   !! until that arrests. Nothing is accepted yet; a step that does not show an equilibrium leaves the
    !! state before.
    subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
@@ -140,8 +140,8 @@ contains
       end if
    end function errs_much
 
-   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to grow,
-   !! or where it does so at the end of the step. Tips that have grown before are not asked.
+   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to
+   !! grow, or where it does so at the end of the step. Tips that have grown before are not asked.
    pure function onset(before, after, has_grown)
       real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
       logical, intent(in) :: has_grown(:)

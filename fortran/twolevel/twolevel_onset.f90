@@ -1,5 +1,5 @@
-!> A tip on its way to the toughness: how fast its intensity rises, and so how well the time is known
-!! at which it begins to grow.
+!> A tip on its way to the toughness: how fast its intensity rises, and so how well the time is
+!! known at which it begins to grow.
 module twolevel_onset
    use base_kinds, only: rk
    implicit none(type, external)
@@ -25,7 +25,7 @@ module twolevel_onset
 contains
 
    !> Take note of an accepted state. A step h after one of length h_b errs by h/(h + h_b) (change -
-   !! h (rate before)), as in twolevel_trend; the first one, from rest, has no other to compare with.
+   !! h (rate before)), as in twolevel_trend; the first one, from rest, has none to compare with.
    elemental subroutine follow(self, time, drive, drive_error)
       class(approach_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]

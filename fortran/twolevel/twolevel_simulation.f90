@@ -148,8 +148,8 @@ contains
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not judged,
-   !! and where tips find no equilibrium in it either, growth is unstable: nothing but that happens,
+   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not
+   !! judged, and where tips find no equilibrium in it either, growth is unstable: nothing but that happens,
    !! until it arrests.
    subroutine take_step(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self

@@ -171,7 +171,8 @@ contains
       call refuse(21, "  step=7200.0 /", ":21: &time: step is 7200.0 but must be at most "// &
                   "end, 3600.0"//doc)
       call refuse(21, "  step=60.0 growth_factor=1e-7 smallest_factor=1e-6 /", &
-                  ":21: &time: smallest_factor is 1.0e-6 but must be at most growth_factor, 1.0e-7"//doc)
+                  ":21: &time: smallest_factor is 1.0e-6 but must be at most growth_factor, "// &
+                  "1.0e-7"//doc)
       call refuse(19, "  start=10.0 end=5.0 /", ":19: &injection: end is 5.0 but must be after "// &
                   "start, 10.0"//doc)
       call refuse(18, "&injection fracture='g1' rate=5.0e-9", ":18: &injection: fracture is "// &
