@@ -33,6 +33,9 @@ module twolevel_equilibrium
    !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
+   !> A step that errs this much with the tips where they were cannot be taken, whatever they do [-].
+   real(rk), parameter :: much = 4.0_rk
+
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece goes
@@ -69,9 +72,9 @@ contains
             trial%reason = report%reason
             exit
          end if
-         if (.not. is_last .and. k == 1 .and. errs_much(self, dt)) then
+         if (k == 1 .and. .not. is_last) then
             trial%time_error = self%step_error(dt)
-            exit
+            if (self%errs(trial%time_error/much)) exit
          end if
          call self%evaluate(timers, error)
          if (allocated(error)) exit
@@ -86,7 +89,8 @@ contains
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
-               return
+               if (is_last .or. .not. self%errs(trial%time_error)) return
+               exit
             end if
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
@@ -127,18 +131,6 @@ contains
                        - self%segment(i)%gain
       end do
    end function advances
-
-   !> The step cannot be taken, whatever the tips do in it.
-   logical function errs_much(self, dt)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), parameter :: much = 4.0_rk  ! the tips as they were make it look worse than it is
-
-      errs_much = .false.
-      if (self%scene%time%tolerance > 0.0_rk) then
-         errs_much = self%step_error(dt) > much*self%scene%time%tolerance
-      end if
-   end function errs_much
 
    !> Share of the step after which the first tip reaches the toughness; 1 where none begins to
    !! grow, or where it does so at the end of the step. Tips that have grown before are not asked.

@@ -210,7 +210,7 @@ contains
          if (allocated(error)) return
          if (trial%converged) then
             trial%time_error = self%step_error(self%dt)
-            if (.not. (is_last .or. self%stepper%takes(trial))) self%state = self%before
+            if (.not. is_last .and. self%errs(trial%time_error)) self%state = self%before
          else
             trial%reason = self%report%reason
          end if

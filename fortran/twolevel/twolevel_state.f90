@@ -60,6 +60,7 @@ module twolevel_state
       procedure :: equilibrate
       procedure :: try_step
       procedure :: step_error
+      procedure :: errs
       procedure :: book_step
       procedure :: update_values
       procedure :: evaluate
@@ -204,6 +205,16 @@ contains
       end do
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
    end function step_error
+
+   !> The error of a step is larger than the scene tolerates.
+   pure logical function errs(self, error)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: error  !< relative [-]
+
+      associate (tolerance => self%scene%time%tolerance)
+         errs = tolerance > 0.0_rk .and. error > tolerance
+      end associate
+   end function errs
 
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
