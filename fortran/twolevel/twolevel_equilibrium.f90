@@ -4,9 +4,9 @@
 !! Within a step the coarse level is solved from the state before with the tips where they are
 !! tried to be, the windows give the intensities there, and each tip goes on until its excess
 !! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a
-!! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips); so
-!! the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps. A
-!! piece begins in the direction in which K_II vanishes at its end (growth_path).
+!! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips);
+!! so the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps.
+!! A piece begins in the direction in which K_II vanishes at its end (growth_path).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -33,15 +33,16 @@ module twolevel_equilibrium
    !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
-   !> A step that errs this much with the tips where they were cannot be taken, whatever they do [-].
+   !> A step that errs this much with the tips where they were cannot be taken, whatever they do
+   !! [-].
    real(rk), parameter :: much = 4.0_rk
 
 contains
 
-   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece goes
-   !! too far, unless the step is the last try: so short that nothing but growth happens in it,
-   !! until that arrests. Nothing is accepted yet; a step that does not show an equilibrium leaves the
-   !! state before.
+   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
+   !! goes too far, unless the step is the last try: so short that nothing but growth happens in
+   !! it, until that arrests. Nothing is accepted yet; a step that does not show an equilibrium
+   !! leaves the state before.
    subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]

@@ -149,8 +149,8 @@ contains
    end function is_equilibrium
 
    !> One accepted step, cut as often as it takes. In the shortest one errors in time are not
-   !! judged, and where tips find no equilibrium in it either, growth is unstable: nothing but that happens,
-   !! until it arrests.
+   !! judged, and where tips find no equilibrium in it either, growth is unstable: nothing but that
+   !! happens, until it arrests.
    subroutine take_step(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers

@@ -252,8 +252,8 @@ contains
    end subroutine test_equilibrium
 
    !> Steps chosen by their error, with tries that are not taken: time goes on by the step that was
-   !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the first
-   !! state with growth follows one in which they have reached it.
+   !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the
+   !! first state with growth follows one in which they have reached it.
    subroutine test_chosen_steps(law)
       character(len=*), intent(in) :: law  !< of growth
       type(scene_t) :: scene
