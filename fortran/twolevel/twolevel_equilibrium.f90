@@ -215,9 +215,10 @@ contains
             to = end_place(self%coarse_network, tip%fracture, tip%end)
             is_new(i) = .not. norm2(to - tip%xy) > same_place*self%rules%increment
             if (is_new(i)) cycle
-            ! An earlier try of this step has begun it.
+            ! An earlier try of this step has begun it, and its path has learned from that.
+            tip = self%begun(i)
             call extend(self%network, tip%fracture, tip%end, to)
-            call segment%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), norm2(to - tip%xy))
+            call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
          end associate
       end do
       if (.not. any(is_new)) then
@@ -231,6 +232,7 @@ contains
          associate (tip => self%tip(i))
             if (.not. (is_new(i) .and. tip%advance > 0.0_rk)) cycle
             call self%segment(i)%open_segment(tip%origin, tip%direction, norm2(tip%xy - tip%origin))
+            self%begun(i) = tip
             call extend(self%coarse_network, tip%fracture, tip%end, tip%xy)
             centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])
          end associate

@@ -11,6 +11,7 @@ module twolevel_state
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
    use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
@@ -50,6 +51,7 @@ module twolevel_state
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
+      type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
@@ -93,7 +95,7 @@ contains
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
-      allocate (self%grown(0), self%segment(size(self%tip)))
+      allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
 
