@@ -68,7 +68,8 @@ def grow(simulation: Simulation, report: Progress) -> None:
     turn = 0.0
     slope: Numbers | None = None
     while gained < scene.gain - 1e-9:
-        length = min(length, scene.gain - gained)
+        if gained + 1.5 * length > scene.gain:  # no tiny piece at the end
+            length = scene.gain - gained
         fixed = not wing  # the first piece has the direction of the criterion
         piece = add_piece(simulation, wing, end, length, direction + turn, step, slope, fixed)
         state, step = piece.state, piece.step
