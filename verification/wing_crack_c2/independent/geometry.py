@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -26,10 +26,6 @@ class Resolution:
     first_step: float = 1.0  # [s]
     step_growth: float = 1.3
     side_cells: int = 10  # on a side of the body
-
-    def finer(self, **changes: float) -> Resolution:
-        """The same with other values."""
-        return replace(self, **changes)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

@@ -182,8 +182,8 @@ class Body:
         self.spread = np.zeros((self.count, outer + count))  # effects on cells from those on groups
         self.spread[:outer, :outer] = np.eye(outer)
         self.spread[np.arange(outer, self.count), outer + group] = 1.0
-        span = self.gather @ (lengths * np.exp(1j * cells.angle[outer:]) / lengths)
-        centre, angle = self.gather @ cells.centre[outer:], np.angle(span)
+        centre = self.gather @ cells.centre[outer:]
+        angle = np.angle(self.gather @ np.exp(1j * cells.angle[outer:]))
         copies = images(self.scene.supports, self.scene.half_width)
         self.far = []
         for target, some, points, lines in (
