@@ -12,6 +12,7 @@ module twolevel_onset
       logical :: is_over = .false.  !< the tip has grown
       logical :: is_followed = .false.  !< there is a last state
       real(rk) :: time = 0.0_rk  !< [s]
+      real(rk) :: onset = 0.0_rk  !< when K_eq was at the toughness, else the last time [s]
       real(rk) :: drive = 0.0_rk  !< K_eq [Pa m^1/2]
       real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
       real(rk) :: rate = 0.0_rk  !< of it in the last step [Pa m^1/2/s]
@@ -26,14 +27,20 @@ contains
 
    !> Take note of an accepted state. A step h after one of length h_b errs by h/(h + h_b) (change -
    !! h (rate before)), as in twolevel_trend; the first one, from rest, has none to compare with.
-   elemental subroutine follow(self, time, drive, drive_error)
+   elemental subroutine follow(self, time, drive, drive_error, toughness)
       class(approach_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
       real(rk), intent(in) :: drive  !< K_eq [Pa m^1/2]
       real(rk), intent(in) :: drive_error  !< by the meshes, as estimated [Pa m^1/2]
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk) :: step
 
       step = time - self%time
+      if (.not. self%is_followed .or. drive < toughness) then
+         self%onset = time
+      else if (self%drive < toughness) then
+         self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
+      end if
       if (self%is_followed .and. step > 0.0_rk) then
          if (self%step > 0.0_rk) then
             self%error = self%error + step/(step + self%step) &

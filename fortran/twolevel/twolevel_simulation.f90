@@ -322,7 +322,7 @@ contains
       call watch_mesh(self, error)
    end subroutine note_equilibrium
 
-   !> Tips begin to grow at the end of the step before the one in which they advance.
+   !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
    subroutine note_onsets(self)
       class(twolevel_simulation_t), intent(inout) :: self
       real(rk) :: error
@@ -334,12 +334,13 @@ contains
             approach%is_over = self%segment(i)%gain > 0.0_rk
             if (approach%is_over) then
                error = approach%uncertainty(approach%drive_error + tolerance*self%rules%toughness)
-               call self%chronicle%add_event(approach%time, event_growth_onset, &
+               call self%chronicle%add_event(approach%onset, event_growth_onset, &
                                              "known to "//brief_text(error, 3)//" s", &
                                              tip%fracture, tip%origin)
             else
                call approach%follow(self%state%time, tip%drive%intensity, &
-                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]))
+                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &
+                                    self%rules%toughness)
             end if
          end associate
       end do
