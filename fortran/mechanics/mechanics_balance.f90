@@ -18,15 +18,18 @@ contains
 
    !> Take the load from the present factor, at which the tips have been evaluated, to that at which
    !! the next tip is at its toughness: up, no farther than a limit, or down, no farther than where
-   !! the programme begins. `holds` is false where at the limit no tip is there yet.
+   !! the programme begins. `holds` is false where at the limit no tip is there yet. Where not even
+   !! at the beginning the tips are held, growth is `loose`, and the load is where it started from.
    !!
    !! Intensities are linear in the factor between changes of contact, and proportional to it where
    !! all loads are: then the first or second try is the last.
-   subroutine balance_load(self, limit, timers, holds, slope, error)
+   subroutine balance_load(self, started, limit, timers, holds, is_loose, slope, error)
       class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: started  !< the factor of the last accepted state [-]
       real(rk), intent(in) :: limit  !< the largest factor, on the way of the load [-]
       type(timers_t), intent(inout) :: timers
       logical, intent(out) :: holds
+      logical, intent(out) :: is_loose  !< loads that do not change with the factor drive the tips
       real(rk), intent(out) :: slope(:)  !< (tips) dK_eq/df at that factor [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries = 60, guesses = 3
@@ -36,6 +39,7 @@ contains
       integer :: k
 
       holds = .false.
+      is_loose = .false.
       has_low = .false.
       has_high = .false.
       slope = self%tip%drive%intensity/nonzero(self%factor)
@@ -50,9 +54,21 @@ contains
             has_low = .true.
          else
             if (is_at(self%scene%load%from)) then
-               call raise_error(error, "", "growth goes on without a load: no load factor holds "// &
-                                "the tips")
-               return
+               call self%respond(started, timers, error)
+               if (allocated(error)) return
+               is_loose = self%largest_excess() >= 0.0_rk
+               if (is_loose) then
+                  holds = .true.
+                  slope = self%tip%drive%intensity/nonzero(self%factor)
+                  return
+               end if
+               next = self%reading()  ! K rises towards both ends: this is the place to rise from
+               low = next
+               has_low = .true.
+               last = next
+               call self%respond(limit, timers, error)
+               if (allocated(error)) return
+               cycle
             end if
             high = next
             has_high = .true.
@@ -72,8 +88,13 @@ contains
             factor = self%factor/(1.0_rk + max(-0.5_rk, self%largest_excess()))
          else if (k <= guesses) then
             factor = next%factor + (next%factor - last%factor)*extrapolation(last, next)
-         else
-            factor = merge(limit, self%scene%load%from, has_low)
+         else if (has_low) then
+            factor = self%factor + 2.0_rk*(self%factor - started)
+            if (.not. (factor - self%factor)*(limit - self%scene%load%from) > 0.0_rk &
+                .or. k > 2*guesses) factor = limit
+         else  ! in steps: K may rise again where the load has fallen far
+            factor = self%scene%load%from + 0.7_rk*(self%factor - self%scene%load%from)
+            if (k > 10*guesses) factor = self%scene%load%from
          end if
          factor = within(factor, self%scene%load%from, limit)
          last = next

@@ -1,6 +1,6 @@
-!> Growth in equilibrium under a load that never falls by itself: where the longer network would
-!! bear less, growth is unstable. It goes through the same networks at the load where it began,
-!! until they bear that again.
+!> Unstable growth: under a load that never falls by itself where the longer network would bear
+!! less, and under any where no load factor holds the tips. It goes through networks in equilibrium
+!! but at the load where it began, until they bear that again.
 module mechanics_dead_load
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -50,17 +50,18 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: borne, share
 
-      if (.not. (increment%has_grown .and. body%scene%load%control == "dead")) return
+      if (.not. increment%has_grown) return
       associate (load => body%scene%load)
          borne = body%factor
-         if ((body%factor - self%factor)*(load%to - load%from) < 0.0_rk) then
+         if (increment%is_loose .or. (load%control == "dead" .and. &
+                                (body%factor - self%factor)*(load%to - load%from) < 0.0_rk)) then
             if (.not. self%is_unstable) then
                call body%chronicle%add_event(self%factor, event_unstable, "unstable growth begins")
                self%is_unstable = .true.
                self%length = 0.0_rk
                self%released = 0.0_rk
             end if
-            call body%respond(self%factor, timers, error)
+            if (.not. increment%is_loose) call body%respond(self%factor, timers, error)
             if (allocated(error)) return
             call add_growth(self, body, 1.0_rk)
          else if (self%is_unstable) then

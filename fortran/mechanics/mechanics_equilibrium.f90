@@ -41,6 +41,7 @@ module mechanics_equilibrium
       type(segment_t), allocatable :: segment(:)  !< (tips)
       logical :: has_grown = .false.
       logical :: holds = .false.  !< tips are at their toughness still, at the present load
+      logical :: is_loose = .false.  !< no load factor holds them: K_eq > K_IC
       logical :: prefers_one = .false.  !< that one of the tips grow alone, in this group
       real(rk) :: preference = 0.0_rk  !< that of the group, per increment, over K_IC [-]
       real(rk) :: misfit = 0.0_rk  !< largest 1 - K_eq/K_IC of a tip that has advanced [-]
@@ -50,6 +51,7 @@ module mechanics_equilibrium
       integer(ik), allocatable, private :: known_group(:)
       real(rk), allocatable, private :: matrix(:, :)  !< dK_i/da_j [Pa m^-1/2]
       real(rk), private :: known_since = 0.0_rk  !< increments ago
+      real(rk), private :: started = 0.0_rk  !< load factor of the state before [-]
       real(rk), allocatable, private :: pace(:)  !< (tips) the last advance over the largest [-]
       ! The state before, from which each try begins.
       type(network_t), private :: network
@@ -84,6 +86,7 @@ contains
       self%network = body%network
       self%tip = body%tip
       self%segment_before = self%segment
+      self%started = body%factor
       self%has_grown = .false.
       self%misfit = 0.0_rk
       self%alike = alike(self, body)
@@ -200,8 +203,10 @@ contains
       real(rk) :: slope(size(body%tip))
 
       self%holds = .false.
+      self%is_loose = .false.
       if (.not. body%largest_excess() >= 0.0_rk) return
-      call balance_load(body, limit, timers, self%holds, slope, error)
+      call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
+                           error)
    end subroutine settle_load
 
    !> How far the tips of a group go. Not done: another group has to be tried.
@@ -217,7 +222,7 @@ contains
       integer, parameter :: tries = 10
       type(tip_t) :: begun(size(body%tip))
       integer(ik) :: kind(size(group))
-      real(rk), dimension(size(group)) :: advance, before, lack, lack_before, outcome, room
+      real(rk), dimension(size(group)) :: advance, before, intensity, lack, last_intensity, room
       real(rk) :: slope(size(body%tip)), share, share_held, share_missed, factor_before
       logical :: is_placed
       integer :: try
@@ -251,14 +256,16 @@ contains
          end if
          is_placed = .false.
          factor_before = body%factor
-         call balance_load(body, limit, timers, self%holds, slope, error)
+         call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
+                           error)
          if (allocated(error)) return
-         lack = body%rules%toughness - body%tip(group)%drive%intensity
+         intensity = body%tip(group)%drive%intensity
+         lack = needed_intensity(body) - intensity
          if (try > 1 .and. size(group) > 1) then
-            outcome = lack_before - lack - slope(group)*(body%factor - factor_before)
-            call learn_from_trial(self%matrix, share*advance - before, outcome)
+            call learn_from_trial(self%matrix, share*advance - before, intensity - last_intensity &
+                                  - slope(group)*(body%factor - factor_before))
          end if
-         lack_before = lack
+         last_intensity = intensity
          before = share*advance
          if (.not. self%holds) then
             if (body%largest_excess() >= -tolerance) exit
@@ -294,6 +301,13 @@ contains
       call keep_paths(self, body, group, share*advance)
    end subroutine find_advances
 
+   !> What tips that grow have: K_IC, or where nothing holds them the largest K_eq of all [Pa m^1/2].
+   pure real(rk) function needed_intensity(body)
+      class(loaded_body_t), intent(in) :: body
+
+      needed_intensity = body%rules%toughness*(1.0_rk + max(0.0_rk, body%largest_excess()))
+   end function needed_intensity
+
    !> What has been found for a group holds for it still.
    pure logical function knows(self, group)
       class(increment_t), intent(in) :: self
@@ -328,10 +342,11 @@ contains
          call body%evaluate(timers, error)
          if (allocated(error)) return
       end if
-      call balance_load(body, limit, timers, self%holds, slope, error)
+      call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
+                           error)
       if (allocated(error)) return
       intensity = body%tip(group)%drive%intensity
-      lack = body%rules%toughness - intensity
+      lack = needed_intensity(body) - intensity
       self%known_group = group
       self%known_since = 0.0_rk
       if (allocated(self%matrix)) deallocate (self%matrix)
