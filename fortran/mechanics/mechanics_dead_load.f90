@@ -49,12 +49,13 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: borne, share
+      logical :: bears_less
 
       if (.not. increment%has_grown) return
       associate (load => body%scene%load)
          borne = body%factor
-         if (increment%is_loose .or. (load%control == "dead" .and. &
-                                (body%factor - self%factor)*(load%to - load%from) < 0.0_rk)) then
+         bears_less = (body%factor - self%factor)*(load%to - load%from) < 0.0_rk
+         if (increment%is_loose .or. (load%control == "dead" .and. bears_less)) then
             if (.not. self%is_unstable) then
                call body%chronicle%add_event(self%factor, event_unstable, "unstable growth begins")
                self%is_unstable = .true.

@@ -113,7 +113,8 @@ contains
             call settle_load(self, body, limit, timers, error)
             is_done = .true.
          else
-            call find_advances(self, body, limit, attempt == attempts, group, timers, is_done, error)
+            call find_advances(self, body, limit, attempt == attempts, group, timers, is_done, &
+                               error)
          end if
          if (allocated(error) .or. is_done) exit
       end do
@@ -206,7 +207,7 @@ contains
       self%is_loose = .false.
       if (.not. body%largest_excess() >= 0.0_rk) return
       call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
-                           error)
+                        error)
    end subroutine settle_load
 
    !> How far the tips of a group go. Not done: another group has to be tried.
@@ -219,7 +220,7 @@ contains
       type(timers_t), intent(inout) :: timers
       logical, intent(out) :: is_done
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: tries = 10
+      integer, parameter :: tries = 15
       type(tip_t) :: begun(size(body%tip))
       integer(ik) :: kind(size(group))
       real(rk), dimension(size(group)) :: advance, before, intensity, lack, last_intensity, room
@@ -245,7 +246,8 @@ contains
          if (.not. self%prefers_one .and. &
              maxval(means(kind, lack)) > tolerance*body%rules%toughness) then
             advance = room
-            call correct(self, group, kind, lack, slope(group), room, body%rules%increment, advance)
+            call correct(self, group, kind, lack, slope(group), room, body%rules%increment, &
+                         needed_intensity(body), advance)
          end if
       end if
       do try = 1, tries
@@ -293,7 +295,8 @@ contains
             group = pack(group, means(kind, lack) <= tolerance*body%rules%toughness)
             return
          end if
-         call correct(self, group, kind, lack, slope(group), room, body%rules%increment, advance)
+         call correct(self, group, kind, lack, slope(group), room, body%rules%increment, &
+                      needed_intensity(body), advance)
          if (all(abs(advance - before) <= 1.0e-3_rk*room)) exit
       end do
       self%misfit = maxval(merge(lack, 0.0_rk, advance > 0.0_rk))/body%rules%toughness
@@ -301,7 +304,7 @@ contains
       call keep_paths(self, body, group, share*advance)
    end subroutine find_advances
 
-   !> What tips that grow have: K_IC, or where nothing holds them the largest K_eq of all [Pa m^1/2].
+   !> What tips that grow have: K_IC, or where nothing holds them the largest K_eq [Pa m^1/2].
    pure real(rk) function needed_intensity(body)
       class(loaded_body_t), intent(in) :: body
 
@@ -343,7 +346,7 @@ contains
          if (allocated(error)) return
       end if
       call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
-                           error)
+                        error)
       if (allocated(error)) return
       intensity = body%tip(group)%drive%intensity
       lack = needed_intensity(body) - intensity
@@ -420,7 +423,7 @@ contains
    end subroutine keep_paths
 
    !> Better advances. Tips that would go back, or not as far as a mesh can hold, stay.
-   subroutine correct(self, group, kind, lack, slope, room, increment, advance)
+   subroutine correct(self, group, kind, lack, slope, room, increment, needed, advance)
       class(increment_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
       integer(ik), intent(in) :: kind(:)  !< of each, from 1
@@ -428,7 +431,9 @@ contains
       real(rk), dimension(size(group)), intent(in) :: slope  !< dK_eq/df [Pa m^1/2]
       real(rk), dimension(size(group)), intent(in) :: room  !< to the ends of the pieces [m]
       real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: needed  !< intensity of tips that grow [Pa m^1/2]
       real(rk), dimension(size(group)), intent(inout) :: advance  !< [m]
+      real(rk), parameter :: back = 0.25_rk  ! of an advance is left at least
       real(rk), dimension(maxval(kind)) :: gain, lack_of, room_of, slope_of
       real(rk) :: matrix(maxval(kind), maxval(kind))
       real(rk), allocatable :: change(:)
@@ -442,19 +447,13 @@ contains
       room_of = of_kinds(kind, room)
       gain = of_kinds(kind, means(kind, advance))
       ! One that stays goes on again where it is not behind.
-      is_free = gain > 0.0_rk .or. lack_of <= 0.1_rk*tolerance*maxval(abs(lack))
-      do
-         free = pack([(k, k=1, size(gain, kind=ik))], is_free)
-         leader = maxloc(gain(free)/room_of(free), dim=1, kind=ik)
-         allocate (change(size(free)))
-         call corrected_advances(lack_of(free), matrix(free, free), slope_of(free), leader, change)
-         if (all(gain(free) + change > 0.0_rk) .or. size(free) == 1) exit
-         k = free(minloc(gain(free) + change, dim=1))
-         gain(k) = 0.0_rk
-         is_free(k) = .false.
-         deallocate (change)
-      end do
-      gain(free) = gain(free) + change
+      is_free = gain > 0.0_rk .or. lack_of <= tolerance*needed
+      free = pack([(k, k=1, size(gain, kind=ik))], is_free)
+      leader = maxloc(gain(free)/room_of(free), dim=1, kind=ik)
+      allocate (change(size(free)))
+      call corrected_advances(lack_of(free), matrix(free, free), slope_of(free), leader, change)
+      ! The matrix may be that of quite other places: back in steps.
+      gain(free) = min(room_of(free), max(gain(free) + change, back*gain(free)))
       advance = fitted(gain(kind), room, self%segment(group)%accepted, increment)
    end subroutine correct
 

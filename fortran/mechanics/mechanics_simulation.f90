@@ -31,7 +31,6 @@ module mechanics_simulation
       type(increment_t) :: increment
       type(dead_load_t) :: dead_load
       logical :: was_bifurcation = .false.  !< in the last increment
-      real(rk) :: largest_misfit = 0.0_rk  !< of the increments so far [-]
       type(snapshot_t), allocatable :: good  !< of the last accepted state
    contains
       procedure :: begin
@@ -218,7 +217,7 @@ contains
          call self%dead_load%begin_increment(self)
          call self%increment%take(self, limit, timers, error)
          if (.not. allocated(error)) call self%dead_load%end_increment(self, self%increment, &
-                                                                      timers, error)
+                                                                       timers, error)
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
             self%ending = "a piece of the body has come loose"
             if (allocated(error)) deallocate (error)
@@ -268,12 +267,13 @@ contains
                                           brief_text(100.0_rk*increment%preference, 3)//" % of K")
          end if
          self%was_bifurcation = is_bifurcation
-         self%largest_misfit = max(self%largest_misfit, increment%misfit)
          if (increment%misfit > largest_misfit) then
             call self%chronicle%add_remark("warning: K_eq of a growing tip is "// &
                                            brief_text(100.0_rk*increment%misfit, 3)// &
                                            " % below K_IC at load factor "// &
                                            brief_text(self%factor, 6))
+            call self%summary%warn("some growing tips are more than 1 % below K_IC (run.log "// &
+                                   "tells where); give a smaller increment")
          end if
       end associate
    end subroutine note_competition

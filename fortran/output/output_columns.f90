@@ -270,8 +270,7 @@ module output_columns
       word_t("step_cut", "a time step did not converge, or tips would grow too far in it: "// &
              "it is tried again, shorter"), &
       word_t("unstable_growth", "tips have grown at constant time until they arrested; without "// &
-             "a fluid at a dead load, a row where it begins and one where it ends, with the "// &
-             "energy released"), &
+             "a fluid a row where it begins and one where it ends, with the energy released"), &
       word_t("bifurcation", "tips grow alike, but any difference between them would grow: one "// &
              "of them could run ahead of the others"), &
       word_t("remesh", "the mesh has followed the growth")]

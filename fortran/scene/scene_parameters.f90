@@ -386,8 +386,9 @@ module scene_parameters
                   meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "law", kind_choice, default="'equilibrium'", &
                   choices="equilibrium|paris", &
-                  meaning="Growing tips stay at K_eq = K_IC as time goes on or the load changes, "// &
-                  "or advance by steps, at one load, by the Paris-type law of the thesis"), &
+                  meaning="Growing tips stay at K_eq = K_IC as time goes on or the load "// &
+                  "changes, or advance by steps, at one load, by the Paris-type law of the "// &
+                  "thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
                   meaning="Largest advance l_max of a tip at a time, or length of a piece of "// &
