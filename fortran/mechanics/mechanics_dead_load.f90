@@ -21,10 +21,13 @@ module mechanics_dead_load
       logical, private :: is_unstable = .false.
       real(rk), private :: length = 0.0_rk  !< of growth since it began [m]
       real(rk), private :: released = 0.0_rk  !< energy beyond that of new faces since then [J/m]
+      character(len=:), allocatable, private :: end  !< what is to be told of it once accepted
+      real(rk), private :: end_factor = 0.0_rk  !< where that was [-]
       real(rk), allocatable, private :: energy(:)  !< G of the tips before the increment [J/m2]
    contains
       procedure :: begin_increment
       procedure :: end_increment
+      procedure :: tell
       procedure :: stop_growth
    end type dead_load_t
 
@@ -72,8 +75,8 @@ contains
             if (abs(borne - self%factor) > 0.0_rk) share = (self%factor - self%borne) &
                                                            /(borne - self%borne)
             call add_growth(self, body, share)
-            call body%chronicle%add_event(self%factor, event_unstable, "unstable growth ends: "// &
-                                          words(self))
+            self%end = "unstable growth ends: "//words(self)
+            self%end_factor = self%factor
             self%is_unstable = .false.
          end if
          self%borne = borne
@@ -100,6 +103,16 @@ contains
       self%length = self%length + share*sum(body%tip%advance)
       self%released = self%released + share*dot_product(surplus, body%tip%advance)
    end subroutine add_growth
+
+   !> Where unstable growth has ended in the increment that led to the accepted state, say so.
+   subroutine tell(self, body)
+      class(dead_load_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+
+      if (.not. allocated(self%end)) return
+      call body%chronicle%add_event(self%end_factor, event_unstable, self%end)
+      deallocate (self%end)
+   end subroutine tell
 
    !> The scene is over: unstable growth ends with it.
    subroutine stop_growth(self, body)

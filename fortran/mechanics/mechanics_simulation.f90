@@ -31,6 +31,9 @@ module mechanics_simulation
       type(increment_t) :: increment
       type(dead_load_t) :: dead_load
       logical :: was_bifurcation = .false.  !< in the last increment
+      ! Of the accepted state, while the next one is found already.
+      type(network_t) :: shown_network
+      type(mesh_t) :: shown_mesh
       type(snapshot_t), allocatable :: good  !< of the last accepted state
    contains
       procedure :: begin
@@ -195,50 +198,48 @@ contains
    end subroutine grow
 
    !> Note the tips of the present state; where some are at their toughness, let them grow by an
-   !! increment to the next one.
+   !! increment to the next one, which is accepted by next_state.
    subroutine grow_in_equilibrium(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: limit
 
-      self%has_increment = .false.
-      if (self%owes_state) then  ! the tips of this one have been noted
-         self%owes_state = .false.
-         return
-      end if
-      if (.not. self%increment%has_grown) then
+      if (self%has_increment) then
+         call note_increment(self)
+      else
          self%tip%advance = 0.0_rk
          call self%note_tips()
       end if
-      self%increment%has_grown = .false.
-      limit = self%scene%load%to
-      if (self%has_onset) then
+      self%has_increment = .false.
+      self%shown_network = self%network
+      self%shown_mesh = self%body%mesh
+      if (.not. allocated(self%ending) .and. self%has_onset) then
          call self%dead_load%begin_increment(self)
-         call self%increment%take(self, limit, timers, error)
-         if (.not. allocated(error)) call self%dead_load%end_increment(self, self%increment, &
-                                                                       timers, error)
+         call self%increment%take(self, self%scene%load%to, timers, error)
+         if (.not. allocated(error)) then
+            call self%dead_load%end_increment(self, self%increment, timers, error)
+         end if
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
             self%ending = "a piece of the body has come loose"
             if (allocated(error)) deallocate (error)
             call self%note_growth()
             call self%note_mesh(self%body%mesh)
             self%summary%increments = self%summary%increments + 1
-            call self%dead_load%stop_growth(self)
-            return
+            self%shown_network = self%network
+            self%shown_mesh = self%body%mesh
          end if
          if (allocated(error)) return
+         self%has_increment = self%increment%has_grown .and. .not. self%is_cut
          self%has_onset = self%increment%holds
       end if
-      if (self%increment%has_grown) then
-         call note_increment(self)
-      else if (next_step(self%scene%load, self%factor) > self%scene%load%steps) then
-         self%ending = "the scene's last load factor"
+      if (.not. self%has_increment .and. &
+          next_step(self%scene%load, self%factor) > self%scene%load%steps) then
+         if (.not. allocated(self%ending)) self%ending = "the scene's last load factor"
       end if
       if (allocated(self%ending)) call self%dead_load%stop_growth(self)
    end subroutine grow_in_equilibrium
 
-   !> The tips have grown, and their new state is found.
+   !> The tips have grown in the increment that led to the present state.
    subroutine note_increment(self)
       class(mechanics_simulation_t), intent(inout) :: self
 
@@ -246,10 +247,9 @@ contains
       call self%note_growth()
       call self%note_mesh(self%body%mesh)
       call note_competition(self)
+      call self%dead_load%tell(self)
       self%summary%increments = self%summary%increments + 1
-      self%has_increment = .true.
       call self%end_at_gain()
-      self%owes_state = allocated(self%ending)
    end subroutine note_increment
 
    !> Tips of which one could run ahead, and states that miss the equilibrium.
@@ -286,6 +286,9 @@ contains
 
       network = self%network
       mesh = self%body%mesh
+      if (.not. (is_equilibrium(self) .and. allocated(self%shown_network%xy))) return
+      network = self%shown_network
+      mesh = self%shown_mesh
    end subroutine present_network
 
    !> The accepted state in a row of history.csv.
@@ -313,11 +316,11 @@ contains
       if (allocated(self%good)) fields = self%good
    end subroutine snapshot
 
-   !> What stands for the time: the load factor [-].
+   !> What stands for the time: the accepted load factor [-].
    pure real(rk) function time(self)
       class(mechanics_simulation_t), intent(in) :: self
 
-      time = self%factor
+      time = self%accepted_factor
    end function time
 
    !> The last accepted load factor.
