@@ -449,7 +449,7 @@ contains
       ! One that stays goes on again where it is not behind.
       is_free = gain > 0.0_rk .or. lack_of <= tolerance*needed
       free = pack([(k, k=1, size(gain, kind=ik))], is_free)
-      leader = maxloc(gain(free)/room_of(free), dim=1, kind=ik)
+      leader = minloc(lack_of(free), dim=1, kind=ik)  ! has no need to go back
       allocate (change(size(free)))
       call corrected_advances(lack_of(free), matrix(free, free), slope_of(free), leader, change)
       ! The matrix may be that of quite other places: back in steps.
