@@ -223,6 +223,7 @@ contains
          call exchange(record, "from", scene%load%from, reading)
          call exchange(record, "to", scene%load%to, reading)
          call exchange(record, "steps", scene%load%steps, reading)
+         call exchange(record, "control", scene%load%control, reading)
       case ("coarse", "fe", "fine")
          call exchange_discretization(record, scene%discretization, reading)
       case ("growth")

@@ -110,6 +110,8 @@ module scene_types
    type :: load_t
       real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
       integer(ik) :: steps = 1  !< equal ones
+      !> "length": growth in equilibrium takes it down; "dead": it never falls by itself
+      character(len=name_length) :: control = "length"
    end type load_t
 
    !> A well: fluid injected into a fracture.
