@@ -181,10 +181,10 @@ contains
       type(rock_t) :: rock
       real(rk) :: lame
 
+      rock = new_rock(scene%material, scene%fluid)
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-                                biot=scene%material%biot, plane_stress=scene%material%plane_stress)
+                                biot=rock%biot, plane_stress=scene%material%plane_stress)
       if (undrained) then
-         rock = new_rock(scene%material, scene%fluid)
          lame = rock%lame + rock%biot**2/rock%storage
          elasticity%poisson = lame/(2.0_rk*(lame + rock%shear))
          if (scene%material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*rock%shear)

@@ -84,7 +84,11 @@ contains
       call window%set_rock(scene, .true., error)
       call checks%is_close(window%model%elasticity%shear_modulus(), shear, 1.0e-12_rk*shear, &
                            "undrained: shear")
-      lame = lame + scene%material%biot**2/storage
+      ! The same in space, and then the plane: without stress across it, lambda 2 G/(lambda + 2 G).
+      associate (e => scene%material%young, nu => scene%material%poisson)
+         lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu)) + scene%material%biot**2/storage
+      end associate
+      if (plane_stress) lame = lame*2.0_rk*shear/(lame + 2.0_rk*shear)
       call checks%is_close(window%model%elasticity%lame_lambda(), lame, 1.0e-12_rk*lame, &
                            "undrained")
       call checks%is_true(window%undrained, "undrained on record")
