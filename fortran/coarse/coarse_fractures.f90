@@ -12,7 +12,7 @@ module coarse_fractures
    implicit none(type, external)
    private
 
-   public :: fracture_system_t, newton_settings_t, prepare
+   public :: cell_fluid_t, fracture_system_t, newton_settings_t, prepare
 
    !> What the iteration needs to know.
    type :: newton_settings_t
@@ -21,6 +21,7 @@ module coarse_fractures
       real(rk) :: viscosity = 0.0_rk  !< [Pa s]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
       !> initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
       logical :: equilibrate = .false.
    end type newton_settings_t
@@ -47,7 +48,23 @@ module coarse_fractures
    contains
       procedure :: find_forces
       procedure :: opening
+      procedure :: fluid_at
+      procedure :: unknown_of_fluid
    end type fracture_system_t
+
+   !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
+   !! vapour pressure it has this one, and the rest of the unknown says what share of the cell it
+   !! takes up. So one of the two laws holds, p > p_v or filled, whatever the unknown.
+   type :: cell_fluid_t
+      real(rk) :: pressure = 0.0_rk  !< [Pa]
+      real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
+      real(rk) :: filling = 1.0_rk  !< [-]
+      real(rk) :: filling_slope = 0.0_rk  !< by the unknown [1/Pa]
+   end type cell_fluid_t
+
+   !> What the unknown lacks to the vapour pressure where a cell is empty, over Young's modulus: of
+   !! the size of stresses.
+   real(rk), parameter :: empty = 1.0e-4_rk
 
 contains
 
@@ -155,5 +172,32 @@ contains
       mean = 0.5_rk*(x(self%layout%at_jump(cell, 1)) + x(self%layout%at_jump(cell, 2))) &
              /self%stiffness
    end function opening
+
+   !> The fluid of a cell.
+   pure type(cell_fluid_t) function fluid_at(self, x, cell) result(fluid)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      integer(ik), intent(in) :: cell
+
+      associate (settings => self%settings)
+         fluid%pressure = x(self%layout%at_pressure(cell))
+         if (settings%equilibrate .or. .not. fluid%pressure < settings%vapour_pressure) return
+         fluid%filling_slope = 1.0_rk/(empty*settings%young)
+         fluid%filling = 1.0_rk + (fluid%pressure - settings%vapour_pressure)*fluid%filling_slope
+         fluid%pressure = settings%vapour_pressure
+         fluid%pressure_slope = 0.0_rk
+      end associate
+   end function fluid_at
+
+   !> The unknown that says so.
+   pure real(rk) function unknown_of_fluid(self, pressure, filling) result(unknown)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: pressure  !< [Pa]
+      real(rk), intent(in) :: filling  !< [-]
+
+      unknown = pressure
+      if (filling < 1.0_rk) unknown = self%settings%vapour_pressure &
+                                      - (1.0_rk - filling)*empty*self%settings%young
+   end function unknown_of_fluid
 
 end module coarse_fractures

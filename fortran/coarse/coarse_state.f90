@@ -5,13 +5,15 @@ module coarse_state
    implicit none(type, external)
    private
 
-   public :: fracture_cells_t, state_t, step_report_t
+   public :: fluid_volumes, fracture_cells_t, state_t, step_report_t, unfilled
 
    !> What each fracture cell is made of.
    type :: fracture_cells_t
       type(contact_law_t), allocatable :: law(:)  !< (n)
       real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
       real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
+      real(rk), allocatable :: share(:)  !< of its length that lies behind the tip [-]
+      logical, allocatable :: has_tip(:)  !< a tip lies in it
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
    end type fracture_cells_t
 
@@ -31,6 +33,8 @@ module coarse_state
       real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
       !> (n) a [m]; below a0 only where fluid has yet to fill a new cell
       real(rk), allocatable :: aperture(:)
+      !> (n) share that fluid takes up, less than 1 where its pressure is that of vapour [-]
+      real(rk), allocatable :: filling(:)
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 
@@ -45,5 +49,25 @@ module coarse_state
       real(rk) :: mass_error = 0.0_rk  !< [m2]
       character(len=:), allocatable :: reason  !< why it did not converge
    end type step_report_t
+
+contains
+
+   !> Fluid in the fracture cells per length, with what fills the roughness of new faces [m].
+   pure function fluid_volumes(cells, state) result(volumes)
+      type(fracture_cells_t), intent(in) :: cells
+      type(state_t), intent(in) :: state
+      real(rk) :: volumes(size(state%aperture))
+
+      volumes = unfilled(cells%roughness)
+      volumes = volumes + state%filling*(state%aperture - volumes)
+   end function fluid_volumes
+
+   !> Part of a cell's aperture that vapour does not enter: the fluid of the roughness never leaves,
+   !! but for a little that tells also of a closed cell how much of it is filled.
+   elemental real(rk) function unfilled(roughness)
+      real(rk), intent(in) :: roughness  !< [m]
+
+      unfilled = 0.99_rk*roughness
+   end function unfilled
 
 end module coarse_state

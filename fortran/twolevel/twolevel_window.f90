@@ -256,7 +256,8 @@ contains
       end if
       associate (face_condition => scene%discretization%face_condition)
          conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
-         call self%faces%load(self%model%mesh, face_condition, state, self%loads)
+         call self%faces%load(self%model%mesh, face_condition, state, &
+                              scene%fluid%vapour_pressure, self%loads)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error, held_edge(self, scene))
