@@ -3,7 +3,7 @@
 !! Fluid mass of a cell of length l, with the volumes V of fluid that left the rock within the step
 !! (theory.md):
 !!   l (m - m_before + m c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
-!! with m the aperture, as far as it is filled (fluid_volumes). Flow between neighbours by the cubic
+!! with m the aperture less the void that vapour fills. Flow between neighbours by the cubic
 !! law, exchange with the rock through half the aperture. The flow is a separate unknown because the
 !! pressure difference that drives it along an open fracture is far below the rounding of the
 !! pressures.
@@ -15,7 +15,6 @@
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
    use coarse_fractures, only: cell_fluid_t, fracture_system_t
-   use coarse_state, only: unfilled
    implicit none(type, external)
    private
 
@@ -63,7 +62,7 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, change, compression, empty, held
+      real(rk) :: compression, filled
       type(cell_fluid_t) :: fluid
       integer(ik) :: from_rock(2), jumps(2), n, row
 
@@ -72,26 +71,21 @@ contains
       jumps = eq%layout%at_jump(i, both)
       from_rock = eq%condensed%layout%at_face_pressure(i, both)
       fluid = eq%fluid_at(x, i)
-      aperture = eq%cells%residual_aperture(i) + eq%opening(x, i)
       associate (length => eq%condensed%length(i), before => eq%before, &
                  compressibility => eq%settings%compressibility)
-         empty = unfilled(eq%cells%roughness(i))
-         held = empty + fluid%filling*(aperture - empty)
-         ! What is full stays full: then the difference of the apertures loses no digits.
-         change = aperture - before%aperture(i) &
-                  - (1.0_rk - fluid%filling)*(aperture - empty) &
-                  + (1.0_rk - before%filling(i))*(before%aperture(i) - empty)
+         filled = eq%cells%residual_aperture(i) + eq%opening(x, i) - fluid%void
          compression = compressibility*(fluid%pressure - before%pressure(i))
-         eq%residual(row) = (length*(change + held*compression) &
+         eq%residual(row) = (length*(filled - (before%aperture(i) - before%void(i)) &
+                                     + filled*compression) &
                              - eq%force(from_rock(1)) - eq%force(from_rock(2)) &
                              - eq%dt*eq%cells%injection(i))/eq%unit
          eq%jacobian(:n, row) = -(eq%force_slope(:, from_rock(1)) &
                                   + eq%force_slope(:, from_rock(2)))/eq%unit
-         eq%jacobian(jumps, row) = eq%jacobian(jumps, row) + 0.5_rk*length*fluid%filling &
-                                   *(1.0_rk + compression)/(eq%stiffness*eq%unit)
+         eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
+                                   + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
          eq%jacobian(row, row) = eq%jacobian(row, row) + length/eq%unit &
-                                 *(fluid%filling_slope*(aperture - empty)*(1.0_rk + compression) &
-                                   + held*compressibility*fluid%pressure_slope)
+                                 *(filled*compressibility*fluid%pressure_slope &
+                                   - fluid%void_slope*(1.0_rk + compression))
       end associate
    end subroutine fill_balance
 
@@ -184,26 +178,21 @@ contains
       end if
    end subroutine find_way
 
-   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are closed and is lost
-   !! in what they are open; iterates with overlapping faces keep a hundredth of a0.
+   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
+   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of a0.
    pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
       real(rk), intent(in) :: residual  !< a0 [m]
       real(rk), intent(in) :: roughness  !< the part of it that is one [m]
       real(rk), intent(in) :: opening  !< [u]_n [m]
       real(rk), intent(out) :: aperture  !< [m]
       real(rk), intent(out) :: slope  !< its derivative by [u]_n [-]
-      real(rk) :: open
+      real(rk) :: least
 
-      open = max(0.0_rk, opening)
-      aperture = residual - roughness + min(0.0_rk, opening)
+      aperture = residual - roughness + opening
+      least = merge(residual, 0.01_rk*residual, roughness > 0.0_rk)
       slope = 1.0_rk
-      if (roughness > 0.0_rk) then
-         open = (roughness**3 + open**3)**(1.0_rk/3.0_rk)
-         slope = merge((opening/open)**2, 1.0_rk, opening > 0.0_rk)
-      end if
-      aperture = aperture + open
-      if (.not. aperture > 0.01_rk*residual) then
-         aperture = 0.01_rk*residual
+      if (.not. aperture > least) then
+         aperture = least
          slope = 0.0_rk
       end if
    end subroutine conducting_aperture

@@ -53,18 +53,14 @@ module coarse_fractures
    end type fracture_system_t
 
    !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
-   !! vapour pressure it has this one, and the rest of the unknown says what share of the cell it
-   !! takes up. So one of the two laws holds, p > p_v or filled, whatever the unknown.
+   !! vapour pressure it has this one, and the rest of the unknown says how wide the void is that
+   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown.
    type :: cell_fluid_t
       real(rk) :: pressure = 0.0_rk  !< [Pa]
       real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
-      real(rk) :: filling = 1.0_rk  !< [-]
-      real(rk) :: filling_slope = 0.0_rk  !< by the unknown [1/Pa]
+      real(rk) :: void = 0.0_rk  !< [m]
+      real(rk) :: void_slope = 0.0_rk  !< by the unknown [m/Pa]
    end type cell_fluid_t
-
-   !> What the unknown lacks to the vapour pressure where a cell is empty, over Young's modulus: of
-   !! the size of stresses.
-   real(rk), parameter :: empty = 1.0e-4_rk
 
 contains
 
@@ -182,22 +178,21 @@ contains
       associate (settings => self%settings)
          fluid%pressure = x(self%layout%at_pressure(cell))
          if (settings%equilibrate .or. .not. fluid%pressure < settings%vapour_pressure) return
-         fluid%filling_slope = 1.0_rk/(empty*settings%young)
-         fluid%filling = 1.0_rk + (fluid%pressure - settings%vapour_pressure)*fluid%filling_slope
+         fluid%void_slope = -1.0_rk/self%stiffness
+         fluid%void = (fluid%pressure - settings%vapour_pressure)*fluid%void_slope
          fluid%pressure = settings%vapour_pressure
          fluid%pressure_slope = 0.0_rk
       end associate
    end function fluid_at
 
    !> The unknown that says so.
-   pure real(rk) function unknown_of_fluid(self, pressure, filling) result(unknown)
+   pure real(rk) function unknown_of_fluid(self, pressure, void) result(unknown)
       class(fracture_system_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
-      real(rk), intent(in) :: filling  !< [-]
+      real(rk), intent(in) :: void  !< [m]
 
       unknown = pressure
-      if (filling < 1.0_rk) unknown = self%settings%vapour_pressure &
-                                      - (1.0_rk - filling)*empty*self%settings%young
+      if (void > 0.0_rk) unknown = self%settings%vapour_pressure - void*self%stiffness
    end function unknown_of_fluid
 
 end module coarse_fractures

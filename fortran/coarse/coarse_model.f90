@@ -19,7 +19,7 @@ module coarse_model
    use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
-   use coarse_state, only: fluid_volumes, fracture_cells_t, state_t, step_report_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: place_tips, tip_springs
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
@@ -104,7 +104,7 @@ contains
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=initial%pressure)
       allocate (state%contact(2, n), source=state_stick)
-      allocate (state%filling(n), source=1.0_rk)
+      allocate (state%void(n), source=0.0_rk)
       state%aperture = cells%residual_aperture
    end subroutine new_state
 
@@ -207,8 +207,8 @@ contains
 
       balance = sum(after%content - before%content)
       if (mesh%fracture%n_cells > 0) then
-         held = fluid_volumes(self%cells, after)
-         balance = balance + sum(self%condensed%length*(held - fluid_volumes(self%cells, before) &
+         held = after%aperture - after%void
+         balance = balance + sum(self%condensed%length*(held - (before%aperture - before%void) &
                            + held*self%settings%compressibility*(after%pressure - before%pressure))) &
                    - dt*sum(self%cells%injection)
       end if

@@ -72,7 +72,7 @@ contains
             x(at:at + 1) = state%jump(:, k, i)*eq%stiffness
             x(eq%layout%at_face_pressure(i, k)) = state%pressure(i)
          end do
-         x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%filling(i))
+         x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%void(i))
       end do
    end subroutine first_guess
 
@@ -102,7 +102,7 @@ contains
       do i = 1, condensed%n
          fluid(i) = eq%fluid_at(x, i)
       end do
-      if (any(fluid%filling < 0.0_rk)) then
+      if (any(fluid%void > aperture - cells%roughness)) then
          report%converged = .false.
          report%reason = "a fracture cell has less fluid than is drawn from it"
          return
@@ -133,7 +133,7 @@ contains
       state%traction = eq%traction
       state%aperture = aperture
       state%pressure = fluid%pressure
-      state%filling = fluid%filling
+      state%void = fluid%void
       state%contact = reshape(eq%state, shape(state%contact))
    end subroutine accept
 

@@ -5,7 +5,7 @@ module coarse_state
    implicit none(type, external)
    private
 
-   public :: fluid_volumes, fracture_cells_t, state_t, step_report_t, unfilled
+   public :: fracture_cells_t, state_t, step_report_t
 
    !> What each fracture cell is made of.
    type :: fracture_cells_t
@@ -33,8 +33,8 @@ module coarse_state
       real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
       !> (n) a [m]; below a0 only where fluid has yet to fill a new cell
       real(rk), allocatable :: aperture(:)
-      !> (n) share that fluid takes up, less than 1 where its pressure is that of vapour [-]
-      real(rk), allocatable :: filling(:)
+      !> (n) part of a that vapour fills, where the pressure is that of vapour [m]
+      real(rk), allocatable :: void(:)
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 
@@ -49,25 +49,5 @@ module coarse_state
       real(rk) :: mass_error = 0.0_rk  !< [m2]
       character(len=:), allocatable :: reason  !< why it did not converge
    end type step_report_t
-
-contains
-
-   !> Fluid in the fracture cells per length, with what fills the roughness of new faces [m].
-   pure function fluid_volumes(cells, state) result(volumes)
-      type(fracture_cells_t), intent(in) :: cells
-      type(state_t), intent(in) :: state
-      real(rk) :: volumes(size(state%aperture))
-
-      volumes = unfilled(cells%roughness)
-      volumes = volumes + state%filling*(state%aperture - volumes)
-   end function fluid_volumes
-
-   !> Part of a cell's aperture that vapour does not enter: the fluid of the roughness never leaves,
-   !! but for a little that tells also of a closed cell how much of it is filled.
-   elemental real(rk) function unfilled(roughness)
-      real(rk), intent(in) :: roughness  !< [m]
-
-      unfilled = 0.99_rk*roughness
-   end function unfilled
 
 end module coarse_state

@@ -4,7 +4,6 @@ module twolevel_results
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stresses, nodal_values
-   use coarse_state, only: fluid_volumes
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use mesh_types, only: fracture_mesh_t
@@ -58,10 +57,9 @@ contains
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
             if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
-            associate (cells => simulation%model%cells)
-               row%fracture_volume = sum((fluid_volumes(cells, state) - cells%roughness) &
-                                         *simulation%model%condensed%length)
-            end associate
+            row%fracture_volume = sum((state%aperture - state%void &
+                                       - simulation%model%cells%roughness) &
+                                      *simulation%model%condensed%length)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
             states = cell_states(simulation)

@@ -116,7 +116,7 @@ contains
          state%contact(1, :) = state_open
          allocate (state%pressure, source=[(1.0e6_rk + i, i=1, n)])
          allocate (state%aperture, source=1.0e-3_rk + 1.0e-4_rk*scattered(n))
-         allocate (state%filling, source=[(1.0_rk/i, i=1, n)])
+         allocate (state%void, source=[(1.0e-5_rk*i, i=1, n)])
          allocate (state%leakoff, source=1.0e-9_rk*scattered(n))
       end associate
    end subroutine various_state

@@ -258,14 +258,16 @@ contains
       type(contact_t) :: history
       integer(ik) :: end, i, j, k
       real(rk) :: t
+      real(rk), allocatable :: pressure(:)
 
       associate (window => simulation%windows%window(2), state => simulation%state)
          associate (fine => window%model%mesh)
+            pressure = window%faces%pressure%on_faces(state%pressure, 0.0_rk)
             call checks%is_true(all(window%model%conditions%condition == condition), name)
             history = window%faces%history(fine, state)
             do i = 1, window%mesh%fracture%n_cells
                j = window%faces%coarse_cell(i)
-               call checks%is_close(window%loads%fluid_pressure(i), 1.0e6_rk*j, 0.0_rk, &
+               call checks%is_close(window%loads%fluid_pressure(i), pressure(i), 0.0_rk, &
                                     name//": fluid pressure")
                if (name == "contact") call checks%is_close( &
                   window%model%conditions%law(i)%contact%friction, 5.0_rk, 0.0_rk, "friction")
