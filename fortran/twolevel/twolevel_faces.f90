@@ -38,9 +38,10 @@ contains
 
    !> The coarse fracture cell that is nearest to each fracture cell of the window, along its
    !! fracture.
-   pure function match_faces(fine, coarse) result(map)
+   pure function match_faces(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells)
       type(face_map_t) :: map
       integer(ik) :: i, j
       real(rk) :: distance, s, shortest
@@ -63,7 +64,7 @@ contains
             end do
          end do
       end associate
-      map%pressure = match_pressure(fine, coarse)
+      map%pressure = match_pressure(fine, coarse, is_grown)
    end function match_faces
 
    !> What holds on the faces.

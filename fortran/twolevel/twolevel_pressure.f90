@@ -3,11 +3,13 @@
 !! The coarse level knows the pressure at the middles of its cells; between them it is linear. Toward
 !! a tip that goes on, a fluid of viscosity mu follows at the tip's speed V through an opening w that
 !! falls with the square root of the distance d: dp/dd = 12 mu V/w^2 goes with 1/d, so that the
-!! pressure is linear in ln d, from the last two middles on. A face takes its mean with the weight
+!! pressure is linear in ln d, from the last two middles on. So it is in cells that have grown; at
+!! the tips of others, and beyond the coarse fracture, it is that of the last cell. A face takes its mean with the weight
 !! 1/sqrt(d) with which it enters the stress intensity factor. Of the cell of the tip, only what is
 !! behind the tip counts.
 module twolevel_pressure
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -26,13 +28,14 @@ module twolevel_pressure
 contains
 
    !> Where the faces of a window lie among the coarse cells.
-   pure function match_pressure(fine, coarse) result(map)
+   pure function match_pressure(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells) fluid follows the tip in them
       type(pressure_map_t) :: map
       real(rk) :: ends(2), middle(coarse%fracture%n_cells)
       logical :: is_tip(2), is_wet(coarse%fracture%n_cells)
-      integer(ik) :: f, i
+      integer(ik) :: end, f, i
 
       associate (n => fine%fracture%n_cells)
          allocate (map%cell(2, n), source=0_ik)
@@ -41,6 +44,9 @@ contains
       do f = 1, maxval([0_ik, fine%fracture%cell_fracture])
          call find_ends(fine, f, ends, is_tip)
          call find_middles(coarse, f, ends, middle, is_wet)
+         do end = 1, 2
+            if (is_tip(end)) is_tip(end) = lies_in(coarse, is_grown .and. is_wet, ends(end))
+         end do
          do i = 1, fine%fracture%n_cells
             if (fine%fracture%cell_fracture(i) /= f) cycle
             call match_face(fine%face_s(:2, i), ends, is_tip, middle, is_wet, map%cell(:, i), &
@@ -48,6 +54,18 @@ contains
          end do
       end do
    end function match_pressure
+
+   !> Whether a tip lies in one of some coarse cells, and not beyond the coarse fracture.
+   pure logical function lies_in(coarse, are_meant, tip)
+      type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: are_meant(:)  !< (coarse fracture cells)
+      real(rk), intent(in) :: tip  !< arc length [m]
+
+      associate (s => coarse%fracture%cell_s)
+         lies_in = any(are_meant .and. s(1, :) - tip <= same_place*(s(2, :) - s(1, :)) &
+                       .and. tip - s(2, :) <= same_place*(s(2, :) - s(1, :)))
+      end associate
+   end function lies_in
 
    !> The free tips of a fracture that the window holds.
    pure subroutine find_ends(fine, fracture, ends, is_tip)

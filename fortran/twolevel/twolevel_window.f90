@@ -36,6 +36,7 @@ module twolevel_window
    type :: coarse_values_t
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
+      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
    end type coarse_values_t
 
    !> One window.
@@ -195,10 +196,11 @@ contains
    end subroutine set_rock
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
-   subroutine project(self, mesher, coarse, error)
+   subroutine project(self, mesher, coarse, values, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
+      type(coarse_values_t), intent(in) :: values
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
       real(rk), allocatable :: inside(:, :)
@@ -224,7 +226,7 @@ contains
                                             fine%xy(:, v))
          end do
       end associate
-      self%faces = match_faces(self%model%mesh, coarse)
+      self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
    end subroutine project
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tip.

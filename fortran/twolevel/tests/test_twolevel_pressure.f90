@@ -18,6 +18,7 @@ program test_twolevel_pressure
    call test_linear()
    call test_logarithm()
    call test_limits()
+   call test_other_tips()
    call checks%finish()
 
 contains
@@ -54,7 +55,7 @@ contains
       real(rk) :: found(fine%fracture%n_cells), s
       integer(ik) :: i, j
 
-      map = match_pressure(fine, coarse)
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
       found = map%on_faces([(1.0e6_rk + 3.0e6_rk*middle(j), j=1, n)], 0.0_rk)
       do i = 1, fine%fracture%n_cells
          s = 0.5_rk*sum(fine%face_s(:, i))
@@ -71,7 +72,7 @@ contains
       integer(ik) :: end, i, j
       integer :: k
 
-      map = match_pressure(fine, coarse)
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
       do end = 1, 2
          found = map%on_faces([(1.0e7_rk + 1.0e6_rk*log(abs(middle(j) - tip(end))), j=1, n)], 0.0_rk)
          do i = 1, fine%fracture%n_cells
@@ -94,10 +95,28 @@ contains
       real(rk) :: found(fine%fracture%n_cells)
       integer(ik) :: j
 
-      map = match_pressure(fine, coarse)
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
       found = map%on_faces([(1.0e6_rk*j, j=1, n)], 5.0e5_rk)
       call checks%is_close(minval(found), 5.0e5_rk, 0.0_rk, "lowest pressure")
       call checks%is_close(maxval(found), 1.0e6_rk*n, 1.0e-6_rk, "highest pressure")
    end subroutine test_limits
+
+   !> In cells that have not grown, or at a tip beyond the coarse fracture, the last cell's pressure.
+   subroutine test_other_tips()
+      type(pressure_map_t) :: map
+      type(fine_mesh_t) :: longer
+      real(rk) :: found(fine%fracture%n_cells)
+      integer(ik) :: j
+
+      map = match_pressure(fine, coarse, spread(.false., 1, n))
+      found = map%on_faces([(1.0e6_rk*(n - j), j=1, n)], -1.0e9_rk)
+      call checks%is_close(minval(found), 0.0_rk, 0.0_rk, "a tip that has not grown")
+      longer = fine
+      longer%fracture%cell_s = longer%fracture%cell_s + 0.1_rk
+      longer%face_s = longer%fracture%cell_s
+      map = match_pressure(longer, coarse, spread(.true., 1, n))
+      found = map%on_faces([(1.0e6_rk*(n - j), j=1, n)], -1.0e9_rk)
+      call checks%is_close(minval(found), 0.0_rk, 0.0_rk, "a tip beyond the coarse fracture")
+   end subroutine test_other_tips
 
 end program test_twolevel_pressure

@@ -151,9 +151,9 @@ contains
                                 .and. equal([after%traction(:, :, i)], &
                                             [before%traction(:, :, old)]) &
                                 .and. equal([after%pressure(i), after%aperture(i), &
-                                             after%leakoff(i)], &
+                                             after%leakoff(i), after%void(i)], &
                                             [before%pressure(old), before%aperture(old), &
-                                             before%leakoff(old)]), &
+                                             before%leakoff(old), before%void(old)]), &
                                 "an old fracture cell is kept to the last bit")
             cycle
          end if
