@@ -154,9 +154,10 @@ contains
    !! with the opening there, and that opening as a sum over the mean openings of both.
    !!
    !! In the cell of a grown tip, and in the one behind it, the opening is k sqrt(d), d the distance
-   !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip goes on at the speed V, and
-   !! the fluid with it, V w through each section, at a pressure whose slope is 12 mu V/(k^2 d): this
-   !! is the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) as open as there.
+   !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip goes on at the speed V,
+   !! and the fluid with it, V w through each section, at a pressure whose slope is 12 mu V/(k^2 d):
+   !! this is the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) as open as
+   !! there.
    pure subroutine find_way(cells, eq, length, weight)
       integer(ik), intent(in) :: cells(2)
       class(fracture_system_t), intent(in) :: eq
@@ -179,7 +180,8 @@ contains
    end subroutine find_way
 
    !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
-   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of a0.
+   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of
+   !! a0.
    pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
       real(rk), intent(in) :: residual  !< a0 [m]
       real(rk), intent(in) :: roughness  !< the part of it that is one [m]

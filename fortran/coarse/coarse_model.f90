@@ -209,7 +209,7 @@ contains
       if (mesh%fracture%n_cells > 0) then
          held = after%aperture - after%void
          balance = balance + sum(self%condensed%length*(held - (before%aperture - before%void) &
-                           + held*self%settings%compressibility*(after%pressure - before%pressure))) &
+                         + held*self%settings%compressibility*(after%pressure - before%pressure))) &
                    - dt*sum(self%cells%injection)
       end if
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))

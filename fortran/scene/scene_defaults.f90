@@ -38,8 +38,8 @@ contains
       end do
    end subroutine resolve_defaults
 
-   !> Whether stresses and pressures of the scene are those of a state in situ, and not changes of one
-   !! that it does not tell: only then 0 is vacuum.
+   !> Whether stresses and pressures of the scene are those of a state in situ, and not changes of
+   !! one that it does not tell: only then 0 is vacuum.
    pure logical function is_pressed(scene)
       type(scene_t), intent(in) :: scene
       real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]

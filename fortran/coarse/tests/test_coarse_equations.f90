@@ -215,8 +215,8 @@ contains
       end do
    end subroutine test_exchange_along_fractures
 
-   !> Fluid that follows a tip: with the opening k sqrt(d) in both cells at the tip, and the flow V w
-   !! through each section, the pressure falls by 12 mu V/k^2 per unit of ln d.
+   !> Fluid that follows a tip: with the opening k sqrt(d) in both cells at the tip, and the flow V
+   !! w through each section, the pressure falls by 12 mu V/k^2 per unit of ln d.
    subroutine test_moving_tip()
       real(rk), parameter :: k = 1.0e-3_rk  ! [m^1/2]
       real(rk), parameter :: speed = 1.0e-9_rk  ! [m/s]

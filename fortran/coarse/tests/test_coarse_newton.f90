@@ -194,8 +194,8 @@ contains
    end subroutine converge
 
    !> A fracture in tight rock is pulled open, and closed again by fluid that is let in: it keeps
-   !! its fluid, which fills the smaller a share of it the wider it is, at the vapour pressure; it is
-   !! full again once what was let in is what it has opened by.
+   !! its fluid, which fills the smaller a share of it the wider it is, at the vapour pressure; it
+   !! is full again once what was let in is what it has opened by.
    subroutine test_vapour()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model

@@ -1,5 +1,5 @@
-!> Fluid pressure on the faces of windows: linear between the middles of the coarse cells, and with the
-!! logarithm of the distance near a tip that lies within its cell.
+!> Fluid pressure on the faces of windows: linear between the middles of the coarse cells, and with
+!! the logarithm of the distance near a tip that lies within its cell.
 program test_twolevel_pressure
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
@@ -74,7 +74,7 @@ contains
 
       map = match_pressure(fine, coarse, spread(.true., 1, n))
       do end = 1, 2
-         found = map%on_faces([(1.0e7_rk + 1.0e6_rk*log(abs(middle(j) - tip(end))), j=1, n)], 0.0_rk)
+        found = map%on_faces([(1.0e7_rk + 1.0e6_rk*log(abs(middle(j) - tip(end))), j=1, n)], 0.0_rk)
          do i = 1, fine%fracture%n_cells
             d = abs(fine%face_s(:, i) - tip(end))
             if (0.5_rk*sum(d) > abs(middle(merge(2_ik, n - 1, end == 1)) - tip(end))) cycle
@@ -101,7 +101,8 @@ contains
       call checks%is_close(maxval(found), 1.0e6_rk*n, 1.0e-6_rk, "highest pressure")
    end subroutine test_limits
 
-   !> In cells that have not grown, or at a tip beyond the coarse fracture, the last cell's pressure.
+   !> In cells that have not grown, or at a tip beyond the coarse fracture, the last cell's
+   !! pressure.
    subroutine test_other_tips()
       type(pressure_map_t) :: map
       type(fine_mesh_t) :: longer
