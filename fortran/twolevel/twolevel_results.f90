@@ -146,6 +146,7 @@ contains
          fracture%traction_n = 0.5_rk*sum(state%traction(1, :, :), dim=1)
          fracture%traction_t = 0.5_rk*sum(state%traction(2, :, :), dim=1)
          fracture%pressure = state%pressure
+         fracture%void = state%void
          fracture%state = cell_states(simulation)
       end associate
    end function snapshot_of_levels
