@@ -122,6 +122,7 @@ module output_columns
       column_t("traction_n_pa", "Pa", always, "Normal traction of contact"), &
       column_t("traction_t_pa", "Pa", always, "Tangential traction of contact"), &
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
+      column_t("void_m", "m", with_fluid, "Part of the aperture that vapour fills"), &
       column_t("state", "-", always, "State of contact"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 

@@ -196,6 +196,8 @@ contains
       case ("fluid")
          call exchange(record, "compressibility", scene%fluid%compressibility, reading)
          call exchange(record, "viscosity", scene%fluid%viscosity, reading)
+         call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, reading, &
+                       nothing=-unlimited)
       case ("initial")
          call exchange(record, "fracture_pressure", scene%initial%fracture_pressure, reading)
          call exchange(record, "pressure", scene%initial%pressure, reading)

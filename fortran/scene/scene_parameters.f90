@@ -214,6 +214,10 @@ module scene_parameters
                   meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
                   meaning="Dynamic viscosity mu"), &
+      parameter_t("fluid", "vapour_pressure", unit="Pa", absent="0, or without loads no limit", &
+                  derived=.true., &
+                  meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
+                  "about 0 if pressures count from vacuum"), &
       parameter_t("fracture", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other fracture"), &
       parameter_t("fracture", "x", kind_reals, "m", need_always, &

@@ -41,6 +41,7 @@ module scene_types
    type :: fluid_t
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure in fractures [Pa]
    end type fluid_t
 
    !> One fracture and its law.

@@ -239,6 +239,7 @@ contains
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
                         self%state%tractions, self%coarse_values%nodal)
       self%coarse_values%law = self%model%cells%law
+      self%coarse_values%is_grown = self%model%cells%roughness > 0.0_rk
       self%values_are_current = .true.
    end subroutine update_values
 

@@ -159,6 +159,11 @@ contains
       call refuse_two(5, "  biot=0.0 porosity=0.0", 4, "  poisson=0.2", &
                       ":5: &material: biot and porosity give no storage: phi c_p and the part "// &
                       "of the solid are both zero, but their sum must be positive"//doc)
+      call refuse_two(5, "  biot=0.3 porosity=0.1 storage='textbook'", &
+                      8, "&fluid compressibility=0.0 viscosity=1e-4 /", &
+                      ":8: &fluid: compressibility is 0.0, which makes Skempton's "// &
+                      "coefficient B = alpha/(K S + alpha^2) of this rock 1.304, but that must "// &
+                      "be at most 1; 3.15e-11 1/Pa would make it 1"//doc)
       call refuse(6, "  permeability=5e-20 permeability_xx=5e-20", &
                   ":6: &material: permeability is given beside components of the tensor but "// &
                   "must be given alone or not at all"//doc)
