@@ -235,8 +235,8 @@ contains
          call exactly([scene%injections(1)%start, scene%injections(1)%end], [0.0_rk, &
                                                                              huge(1.0_rk)], &
                       "injection throughout")
-         call exactly([scene%time%end/3600.0_rk, scene%time%step/3600.0_rk, &
-                       scene%growth%stop_gain], [100.0_rk, 0.5_rk, 0.25_rk], "times")
+         call exactly([scene%time%end/3600.0_rk, scene%time%tolerance, &
+                       scene%growth%stop_gain], [100.0_rk, 0.01_rk, 0.25_rk], "times")
       end if
       call read_scene(source_path("inputs/paper_c/three_fractures.nml"), scene, error)
       call checks%no_error(error, "three_fractures.nml")
