@@ -12,7 +12,8 @@ module twolevel_onset
       logical :: is_over = .false.  !< the tip has grown
       logical :: is_followed = .false.  !< there is a last state
       real(rk) :: time = 0.0_rk  !< [s]
-      real(rk) :: onset = 0.0_rk  !< when K_eq was at the toughness, else the last time [s]
+      logical :: has_come = .false.  !< K_eq has reached the toughness
+      real(rk) :: onset = 0.0_rk  !< when it first did, else the last time [s]
       real(rk) :: drive = 0.0_rk  !< K_eq [Pa m^1/2]
       real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
       real(rk) :: rate = 0.0_rk  !< of it in the last step [Pa m^1/2/s]
@@ -36,10 +37,12 @@ contains
       real(rk) :: step
 
       step = time - self%time
-      if (.not. self%is_followed .or. drive < toughness) then
+      ! What a finite increment needs, and a new mesh around the tip, may hold it back after that.
+      if (.not. self%has_come) then
          self%onset = time
-      else if (self%drive < toughness) then
-         self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
+         self%has_come = drive >= toughness
+         if (self%has_come .and. self%is_followed) self%onset = self%time + &
+                                         step*(toughness - self%drive)/(drive - self%drive)
       end if
       if (self%is_followed .and. step > 0.0_rk) then
          if (self%step > 0.0_rk) then

@@ -35,6 +35,9 @@ contains
       ! K = 0.01 n (n + 1) passes 2 between n = 13 and 14, by straight lines.
       call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
                            "when the toughness was reached")
+      call approach%follow(21*h, 1.9_rk, 0.01_rk, 2.0_rk)
+      call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
+                           "for the first time")
    end subroutine test_curved
 
    !> An intensity that does not rise tells nothing about the time.
