@@ -54,6 +54,7 @@ contains
       do i = 1, self%n_blocks
          do entry = self%columns%first(i), self%columns%last(i)
             j = self%columns%item(entry)
+            if (all(abs(unknowns(:, [i, j])) <= 0.0_rk)) cycle
             associate (block => self%elastic(:, :, entry))
                force(:, i) = force(:, i) + matmul(block, unknowns(:, j))
                if (j /= i) force(:, j) = force(:, j) + matmul(unknowns(:, i), block)

@@ -275,23 +275,26 @@ contains
       if (.not. allocated(error)) result = self%with_coarse_error()
    end subroutine intensity
 
-   !> Intensities of the last solution's loads with other displacements on the edge. Nothing is
+   !> K_I and K_II under the last solution's loads with other displacements on the edge. Nothing is
    !! remembered of it.
-   subroutine intensity_with(self, edge, result, error)
+   subroutine intensity_with(self, edge, k, error)
       class(window_t), intent(inout) :: self
       real(rk), intent(in) :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
-      type(intensity_t), intent(out) :: result
+      real(rk), intent(out) :: k(2)  !< [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
       type(fine_loads_t) :: loads
       type(contact_t) :: contact
+      type(intensity_t) :: result
       real(rk), allocatable :: displacement(:, :)
 
+      k = 0.0_rk
       loads = self%loads
       loads%boundary_displacement = edge
       contact = self%contact
       call self%model%solve(loads, displacement, error, contact)
       if (allocated(error)) return
-      call tip_intensity(self%model, loads, displacement, self%tip, result, error)
+      call tip_intensity(self%model, loads, displacement, self%tip, result, error, quickly=.true.)
+      k = [result%k1, result%k2]
    end subroutine intensity_with
 
    !> The intensities found last, with the coarse level's part of their errors as it was known last.
