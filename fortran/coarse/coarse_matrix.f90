@@ -49,12 +49,14 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), allocatable :: force(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
       integer(ik) :: entry, i, j
+      logical :: acts(self%n_blocks)
 
       allocate (force(3, self%n_blocks), source=0.0_rk)
+      acts = any(abs(unknowns) > 0.0_rk, dim=1)
       do i = 1, self%n_blocks
          do entry = self%columns%first(i), self%columns%last(i)
             j = self%columns%item(entry)
-            if (all(abs(unknowns(:, [i, j])) <= 0.0_rk)) cycle
+            if (.not. (acts(i) .or. acts(j))) cycle
             associate (block => self%elastic(:, :, entry))
                force(:, i) = force(:, i) + matmul(block, unknowns(:, j))
                if (j /= i) force(:, j) = force(:, j) + matmul(unknowns(:, i), block)
