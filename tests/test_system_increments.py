@@ -17,7 +17,10 @@ INCREMENTS = 5
 EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
 for old, new in (
     ("poisson = 0.3", "poisson = 0.3, toughness = 1.0e6"),
-    ("intensities = .true.", "enabled = .true., increment = 0.02, stop_gain = 0.09"),
+    (
+        "intensities = .true.",
+        "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.09",
+    ),
 ):
     assert old in EDGE_CRACK
     EDGE_CRACK = EDGE_CRACK.replace(old, new, 1)

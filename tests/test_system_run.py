@@ -70,6 +70,7 @@ FRACTURES = [
     "traction_n_pa",
     "traction_t_pa",
     "pressure_pa",
+    "void_m",
     "state",
     "history_row",
 ]

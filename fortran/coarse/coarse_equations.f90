@@ -3,7 +3,7 @@
 module coarse_equations
    use base_kinds, only: ik, rk
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
-   use coarse_fractures, only: fracture_system_t
+   use coarse_fractures, only: cell_fluid_t, fracture_system_t
    use contact_law, only: contact_equations
    implicit none(type, external)
    private
@@ -53,15 +53,16 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(equations_t), intent(inout) :: eq
       real(rk) :: by_force, by_traction(2, 2), by_jump(2, 2), half_length
-      integer(ik) :: at, fluid, k, m, n, point, row
+      type(cell_fluid_t) :: fluid
+      integer(ik) :: at, k, m, n, point, row
 
       n = size(eq%force_slope, 1)
       half_length = 0.5_rk*eq%condensed%length(i)
       at = eq%condensed%layout%at_jump(i, end)
       row = eq%layout%at_jump(i, end)
-      fluid = eq%layout%at_pressure(i)
+      fluid = eq%fluid_at(x, i)
       point = 2*(i - 1) + end
-      eq%traction(:, end, i) = [x(fluid), 0.0_rk] - eq%force(at:at + 1)/half_length
+      eq%traction(:, end, i) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
       call contact_equations(eq%cells%law(i), eq%stiffness, eq%traction(:, end, i), &
                              eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
                              eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
@@ -72,7 +73,9 @@ contains
                by_force = by_traction(k, m)/half_length
                slope(:n) = slope(:n) - by_force*eq%force_slope(:, at + m - 1)
             end do
-            slope(fluid) = slope(fluid) + by_traction(k, 1)
+            associate (by_fluid => slope(eq%layout%at_pressure(i)))
+               by_fluid = by_fluid + by_traction(k, 1)*fluid%pressure_slope
+            end associate
             slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/eq%stiffness
          end associate
       end do

@@ -2,13 +2,19 @@
 !!
 !! Fluid mass of a cell of length l, with the volumes V of fluid that left the rock within the step
 !! (theory.md):
-!!   l (a - a_before + a c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
-!! Flow between neighbours by the cubic law, exchange with the rock through half the aperture. The
-!! flow is a separate unknown because the pressure difference that drives it along an open
-!! fracture is far below the rounding of the pressures.
+!!   l (m - m_before + m c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
+!! with m the aperture less the void that vapour fills. Flow between neighbours by the cubic
+!! law, exchange with the rock through half the aperture. The flow is a separate unknown because the
+!! pressure difference that drives it along an open fracture is far below the rounding of the
+!! pressures.
+!!
+!! Flow into a closed crack opens it as it goes. The aperture that conducts between two cells is
+!! therefore that between their middles, where the crack is as open as in the mean: that of the cell
+!! ahead alone would let nothing in, and the aperture of each cell by itself delays the front by a
+!! share of a cell.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: fracture_system_t
+   use coarse_fractures, only: cell_fluid_t, fracture_system_t
    implicit none(type, external)
    private
 
@@ -25,23 +31,29 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
       real(rk) :: aperture, conductance, slope, volume
-      integer(ik) :: at, fluid, jumps(2), n, row, side
+      type(cell_fluid_t) :: fluid
+      integer(ik) :: at, jumps(2), n, row, side
 
       n = size(eq%force_slope, 1)
       jumps = eq%layout%at_jump(i, both)
-      fluid = eq%layout%at_pressure(i)
-      call conducting_aperture(eq%cells%residual_aperture(i), eq%opening(x, i), aperture, slope)
-      conductance = eq%dt*eq%condensed%length(i)*aperture/(6.0_rk*eq%settings%viscosity)
+      fluid = eq%fluid_at(x, i)
+      call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
+                               eq%opening(x, i)/eq%cells%share(i), aperture, slope)
+      slope = slope/eq%cells%share(i)
+      conductance = eq%dt*eq%cells%share(i)*eq%condensed%length(i)*aperture &
+                    /(6.0_rk*eq%settings%viscosity)
       do side = 1, 2
          row = eq%layout%at_face_pressure(i, side)
          at = eq%condensed%layout%at_face_pressure(i, side)
          volume = eq%force(at)
-         eq%residual(row) = volume/conductance - (x(row) - x(fluid))
+         eq%residual(row) = volume/conductance - (x(row) - fluid%pressure)
          eq%jacobian(:n, row) = eq%force_slope(:, at)/conductance
          eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
                                    - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
          eq%jacobian(row, row) = eq%jacobian(row, row) - 1.0_rk
-         eq%jacobian(fluid, row) = eq%jacobian(fluid, row) + 1.0_rk
+         associate (by_fluid => eq%jacobian(eq%layout%at_pressure(i), row))
+            by_fluid = by_fluid + fluid%pressure_slope
+         end associate
       end do
    end subroutine fill_exchange
 
@@ -50,24 +62,30 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, compression
+      real(rk) :: compression, filled
+      type(cell_fluid_t) :: fluid
       integer(ik) :: from_rock(2), jumps(2), n, row
 
       n = size(eq%force_slope, 1)
       row = eq%layout%at_pressure(i)
       jumps = eq%layout%at_jump(i, both)
       from_rock = eq%condensed%layout%at_face_pressure(i, both)
-      associate (length => eq%condensed%length(i), compressibility => eq%settings%compressibility)
-         aperture = eq%cells%residual_aperture(i) + eq%opening(x, i)
-         compression = compressibility*(x(row) - eq%before%pressure(i))
-         eq%residual(row) = (length*(aperture - eq%before%aperture(i) + aperture*compression) &
+      fluid = eq%fluid_at(x, i)
+      associate (length => eq%condensed%length(i), before => eq%before, &
+                 compressibility => eq%settings%compressibility)
+         filled = eq%cells%residual_aperture(i) + eq%opening(x, i) - fluid%void
+         compression = compressibility*(fluid%pressure - before%pressure(i))
+         eq%residual(row) = (length*(filled - (before%aperture(i) - before%void(i)) &
+                                     + filled*compression) &
                              - eq%force(from_rock(1)) - eq%force(from_rock(2)) &
                              - eq%dt*eq%cells%injection(i))/eq%unit
          eq%jacobian(:n, row) = -(eq%force_slope(:, from_rock(1)) &
                                   + eq%force_slope(:, from_rock(2)))/eq%unit
          eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
                                    + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
-         eq%jacobian(row, row) = eq%jacobian(row, row) + length*aperture*compressibility/eq%unit
+         eq%jacobian(row, row) = eq%jacobian(row, row) + length/eq%unit &
+                                 *(filled*compressibility*fluid%pressure_slope &
+                                   - fluid%void_slope*(1.0_rk + compression))
       end associate
    end subroutine fill_balance
 
@@ -95,48 +113,88 @@ contains
       eq%jacobian(faces, fluid) = -0.5_rk
    end subroutine fill_equilibrium
 
-   !> Flow from the first to the second cell of pair k: cubic law, two-point; and its part in the
-   !! balances of both.
+   !> Flow from the first to the second cell of pair k: cubic law between their middles; and its
+   !! part in the balances of both.
    pure subroutine fill_flow(k, x, eq)
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, resistance, slope
-      integer(ik) :: end, first, i, row, second
+      type(cell_fluid_t) :: fluid(2)
+      real(rk) :: aperture, length(2), opening, resistance, slope, weight(2)
+      integer(ik) :: at(2), cells(2), end, jumps(2), other, row
 
       row = eq%layout%at_flow(k)
-      first = eq%layout%at_pressure(eq%connections(1, k))
-      second = eq%layout%at_pressure(eq%connections(2, k))
-      eq%residual(row) = x(second) - x(first)
+      cells = eq%connections(:, k)
+      at = eq%layout%at_pressure(cells)
+      call find_way(cells, eq, length, weight)
+      opening = 0.0_rk
       do end = 1, 2
-         i = eq%connections(end, k)
-         call conducting_aperture(eq%cells%residual_aperture(i), eq%opening(x, i), aperture, slope)
-         resistance = 6.0_rk*eq%settings%viscosity*eq%condensed%length(i)/aperture**3*eq%unit/eq%dt
+         fluid(end) = eq%fluid_at(x, cells(end))
+         opening = opening + weight(end)*eq%opening(x, cells(end))
+      end do
+      eq%residual(row) = fluid(2)%pressure - fluid(1)%pressure
+      do end = 1, 2
+         call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
+                                  eq%cells%roughness(cells(end)), opening, aperture, slope)
+         resistance = 12.0_rk*eq%settings%viscosity*length(end)/aperture**3*eq%unit/eq%dt
          eq%residual(row) = eq%residual(row) + resistance*x(row)
          eq%jacobian(row, row) = eq%jacobian(row, row) + resistance
-         eq%jacobian(eq%layout%at_jump(i, both), row) = -1.5_rk*resistance*x(row)/aperture*slope &
-                                                        /eq%stiffness
+         do other = 1, 2
+            jumps = eq%layout%at_jump(cells(other), both)
+            eq%jacobian(jumps, row) = eq%jacobian(jumps, row) - 1.5_rk*resistance*x(row) &
+                                      /aperture*slope*weight(other)/eq%stiffness
+         end do
       end do
-      eq%jacobian(first, row) = -1.0_rk
-      eq%jacobian(second, row) = 1.0_rk
-      eq%residual(first) = eq%residual(first) + x(row)
-      eq%residual(second) = eq%residual(second) - x(row)
-      eq%jacobian(row, first) = 1.0_rk
-      eq%jacobian(row, second) = -1.0_rk
+      eq%jacobian(at, row) = [-1.0_rk, 1.0_rk]*fluid%pressure_slope
+      eq%residual(at) = eq%residual(at) + [1.0_rk, -1.0_rk]*x(row)
+      eq%jacobian(row, at) = [1.0_rk, -1.0_rk]
    end subroutine fill_flow
 
-   !> Aperture that conducts fluid; iterates with closed or overlapping faces keep a hundredth of
+   !> The way of the fluid from the middle of each of two neighbours to where they meet, as a length
+   !! with the opening there, and that opening as a sum over the mean openings of both.
+   !!
+   !! In the cell of a grown tip, and in the one behind it, the opening is k sqrt(d), d the distance
+   !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip goes on at the speed V,
+   !! and the fluid with it, V w through each section, at a pressure whose slope is 12 mu V/(k^2 d):
+   !! this is the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) as open as
+   !! there.
+   pure subroutine find_way(cells, eq, length, weight)
+      integer(ik), intent(in) :: cells(2)
+      class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(out) :: length(2)  !< [m]
+      real(rk), intent(out) :: weight(2)  !< [-]
+      real(rk) :: behind, reach(2)
+      integer(ik) :: tip
+
+      reach = eq%cells%share(cells)*eq%condensed%length(cells)
+      tip = findloc(eq%cells%has_tip(cells) .and. eq%cells%roughness(cells) > 0.0_rk, .true., dim=1)
+      if (tip == 0) then
+         length = 0.5_rk*reach
+         weight = reach(2:1:-1)/(sum(reach)*eq%cells%share(cells))
+      else
+         behind = reach(3 - tip)
+         length(tip) = reach(tip)*log(2.0_rk)
+         length(3 - tip) = reach(tip)*log(1.0_rk + 0.5_rk*behind/reach(tip))
+         weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip))/sum(reach)**1.5_rk
+      end if
+   end subroutine find_way
+
+   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
+   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of
    !! a0.
-   pure subroutine conducting_aperture(residual, opening, aperture, slope)
+   pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
       real(rk), intent(in) :: residual  !< a0 [m]
+      real(rk), intent(in) :: roughness  !< the part of it that is one [m]
       real(rk), intent(in) :: opening  !< [u]_n [m]
       real(rk), intent(out) :: aperture  !< [m]
       real(rk), intent(out) :: slope  !< its derivative by [u]_n [-]
+      real(rk) :: least
 
-      aperture = residual + opening
+      aperture = residual - roughness + opening
+      least = merge(residual, 0.01_rk*residual, roughness > 0.0_rk)
       slope = 1.0_rk
-      if (.not. aperture > 0.01_rk*residual) then
-         aperture = 0.01_rk*residual
+      if (.not. aperture > least) then
+         aperture = least
          slope = 0.0_rk
       end if
    end subroutine conducting_aperture

@@ -12,7 +12,7 @@ module coarse_fractures
    implicit none(type, external)
    private
 
-   public :: fracture_system_t, newton_settings_t, prepare
+   public :: cell_fluid_t, fracture_system_t, newton_settings_t, prepare
 
    !> What the iteration needs to know.
    type :: newton_settings_t
@@ -21,6 +21,7 @@ module coarse_fractures
       real(rk) :: viscosity = 0.0_rk  !< [Pa s]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
       !> initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
       logical :: equilibrate = .false.
    end type newton_settings_t
@@ -47,7 +48,19 @@ module coarse_fractures
    contains
       procedure :: find_forces
       procedure :: opening
+      procedure :: fluid_at
+      procedure :: unknown_of_fluid
    end type fracture_system_t
+
+   !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
+   !! vapour pressure it has this one, and the rest of the unknown says how wide the void is that
+   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown.
+   type :: cell_fluid_t
+      real(rk) :: pressure = 0.0_rk  !< [Pa]
+      real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
+      real(rk) :: void = 0.0_rk  !< [m]
+      real(rk) :: void_slope = 0.0_rk  !< by the unknown [m/Pa]
+   end type cell_fluid_t
 
 contains
 
@@ -155,5 +168,31 @@ contains
       mean = 0.5_rk*(x(self%layout%at_jump(cell, 1)) + x(self%layout%at_jump(cell, 2))) &
              /self%stiffness
    end function opening
+
+   !> The fluid of a cell.
+   pure type(cell_fluid_t) function fluid_at(self, x, cell) result(fluid)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      integer(ik), intent(in) :: cell
+
+      associate (settings => self%settings)
+         fluid%pressure = x(self%layout%at_pressure(cell))
+         if (settings%equilibrate .or. .not. fluid%pressure < settings%vapour_pressure) return
+         fluid%void_slope = -1.0_rk/self%stiffness
+         fluid%void = (fluid%pressure - settings%vapour_pressure)*fluid%void_slope
+         fluid%pressure = settings%vapour_pressure
+         fluid%pressure_slope = 0.0_rk
+      end associate
+   end function fluid_at
+
+   !> The unknown that says so.
+   pure real(rk) function unknown_of_fluid(self, pressure, void) result(unknown)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: pressure  !< [Pa]
+      real(rk), intent(in) :: void  !< [m]
+
+      unknown = pressure
+      if (void > 0.0_rk) unknown = self%settings%vapour_pressure - void*self%stiffness
+   end function unknown_of_fluid
 
 end module coarse_fractures

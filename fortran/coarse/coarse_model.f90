@@ -20,7 +20,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: tip_springs
+   use coarse_tips, only: place_tips, tip_springs
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
@@ -67,6 +67,7 @@ contains
                                            iterations_max=choice%newton_max, &
                                            viscosity=fluid%viscosity, &
                                            compressibility=fluid%compressibility, &
+                                           vapour_pressure=fluid%vapour_pressure, &
                                            young=scene%material%young)
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
@@ -103,6 +104,7 @@ contains
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=initial%pressure)
       allocate (state%contact(2, n), source=state_stick)
+      allocate (state%void(n), source=0.0_rk)
       state%aperture = cells%residual_aperture
    end subroutine new_state
 
@@ -149,8 +151,11 @@ contains
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if
-      if (n > 0) call self%condensed%support(tip_springs(mesh%fracture, self%rock, &
-                                                         self%condensed, self%ahead))
+      if (n > 0) then
+         call self%condensed%support(tip_springs(mesh%fracture, self%rock, self%condensed, &
+                                                 self%ahead))
+         call place_tips(mesh%fracture, self%condensed%length, self%ahead, self%cells)
+      end if
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       rhs = self%matrix%elastic_known
@@ -198,12 +203,13 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
       real(rk), intent(out) :: balance  !< [m2]
-      real(rk), allocatable :: outflow(:)
+      real(rk), allocatable :: held(:), outflow(:)
 
       balance = sum(after%content - before%content)
       if (mesh%fracture%n_cells > 0) then
-         balance = balance + sum(self%condensed%length*(after%aperture - before%aperture &
-               + after%aperture*self%settings%compressibility*(after%pressure - before%pressure))) &
+         held = after%aperture - after%void
+         balance = balance + sum(self%condensed%length*(held - (before%aperture - before%void) &
+                         + held*self%settings%compressibility*(after%pressure - before%pressure))) &
                    - dt*sum(self%cells%injection)
       end if
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))

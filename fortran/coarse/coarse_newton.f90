@@ -4,7 +4,7 @@ module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_equations, only: equations_t
-   use coarse_fractures, only: newton_settings_t, prepare
+   use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
@@ -72,7 +72,7 @@ contains
             x(at:at + 1) = state%jump(:, k, i)*eq%stiffness
             x(eq%layout%at_face_pressure(i, k)) = state%pressure(i)
          end do
-         x(eq%layout%at_pressure(i)) = state%pressure(i)
+         x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%void(i))
       end do
    end subroutine first_guess
 
@@ -85,6 +85,7 @@ contains
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(inout) :: report
+      type(cell_fluid_t) :: fluid(condensed%n)
       real(rk) :: aperture(condensed%n), residual
       integer(ik) :: at, end, i
 
@@ -96,6 +97,14 @@ contains
       if (.not. all(aperture > 0.0_rk)) then
          report%converged = .false.
          report%reason = "a fracture cell has an aperture that is not positive"
+         return
+      end if
+      do i = 1, condensed%n
+         fluid(i) = eq%fluid_at(x, i)
+      end do
+      if (any(fluid%void > aperture - cells%roughness)) then
+         report%converged = .false.
+         report%reason = "a fracture cell has less fluid than is drawn from it"
          return
       end if
       do i = 1, condensed%n
@@ -120,10 +129,11 @@ contains
          state%leakoff(i) = -(eq%force(condensed%layout%at_face_pressure(i, 1)) &
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
                             /(dt*condensed%length(i))
-         state%pressure(i) = x(eq%layout%at_pressure(i))
       end do
       state%traction = eq%traction
       state%aperture = aperture
+      state%pressure = fluid%pressure
+      state%void = fluid%void
       state%contact = reshape(eq%state, shape(state%contact))
    end subroutine accept
 

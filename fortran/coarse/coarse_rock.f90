@@ -1,6 +1,7 @@
 !> Poroelastic constants of the rock in the form that the discretization uses.
 module coarse_rock
    use base_kinds, only: rk
+   use scene_storage, only: storage
    use scene_types, only: fluid_t, material_t
    implicit none(type, external)
    private
@@ -12,8 +13,8 @@ module coarse_rock
       real(rk) :: shear = 0.0_rk  !< shear modulus G [Pa]
       real(rk) :: lame = 0.0_rk  !< first Lame constant, reduced for plane stress [Pa]
       real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
-      real(rk) :: biot = 0.0_rk  !< alpha [-]
-      real(rk) :: storage = 0.0_rk  !< S [1/Pa]
+      real(rk) :: biot = 0.0_rk  !< alpha of the stress in the plane [-]
+      real(rk) :: storage = 0.0_rk  !< S at fixed strain in the plane [1/Pa]
       real(rk) :: resistivity(2, 2) = 0.0_rk  !< inverse of K/mu [Pa s/m2]
       real(rk) :: mobility = 0.0_rk  !< mean of K/mu [m2/(Pa s)]
       real(rk) :: permeability(3) = 0.0_rk  !< K_xx, K_yy, K_xy [m2]
@@ -27,19 +28,23 @@ contains
       type(fluid_t), intent(in) :: fluid
       type(rock_t) :: rock
 
-      real(rk) :: bulk, determinant
+      real(rk) :: determinant, modulus
 
       associate (e => material%young, nu => material%poisson)
          rock%young = e
          rock%shear = e/(2.0_rk*(1.0_rk + nu))
          rock%lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu))
          if (material%plane_stress) rock%lame = e*nu/(1.0_rk - nu**2)
-         bulk = e/(3.0_rk*(1.0_rk - 2.0_rk*nu))
       end associate
       rock%biot = material%biot
-      rock%storage = (material%biot - material%porosity)/bulk
-      if (material%storage == "textbook") rock%storage = rock%storage*(1.0_rk - material%biot)
-      rock%storage = rock%storage + material%porosity*fluid%compressibility
+      rock%storage = storage(material, fluid)
+      if (material%plane_stress) then
+         ! Without stress across the plane, strain follows there: e_zz = (alpha p - lambda (e_xx +
+         ! e_yy))/(lambda + 2 G), lambda that of the solid.
+         modulus = 2.0_rk*rock%shear*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
+         rock%biot = material%biot*2.0_rk*rock%shear/modulus
+         rock%storage = rock%storage + material%biot**2/modulus
+      end if
       rock%permeability = [material%permeability_xx, material%permeability_yy, &
                            material%permeability_xy]
       determinant = material%permeability_xx*material%permeability_yy - material%permeability_xy**2

@@ -12,6 +12,8 @@ module coarse_state
       type(contact_law_t), allocatable :: law(:)  !< (n)
       real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
       real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
+      real(rk), allocatable :: share(:)  !< of its length that lies behind the tip [-]
+      logical, allocatable :: has_tip(:)  !< a tip lies in it
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
    end type fracture_cells_t
 
@@ -31,6 +33,8 @@ module coarse_state
       real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
       !> (n) a [m]; below a0 only where fluid has yet to fill a new cell
       real(rk), allocatable :: aperture(:)
+      !> (n) part of a that vapour fills, where the pressure is that of vapour [m]
+      real(rk), allocatable :: void(:)
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 

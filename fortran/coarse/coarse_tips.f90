@@ -17,11 +17,12 @@ module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_rock, only: rock_t
+   use coarse_state, only: fracture_cells_t
    use mesh_types, only: fracture_mesh_t
    implicit none(type, external)
    private
 
-   public :: tip_springs
+   public :: place_tips, tip_springs
 
    real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
 
@@ -70,6 +71,31 @@ contains
       end subroutine add
 
    end function tip_springs
+
+   !> In which cells the tips lie, and what share of each cell's length is behind them.
+   pure subroutine place_tips(fracture, length, ahead, cells)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: length(:)  !< (cells) [m]
+      real(rk), intent(in) :: ahead(:)  !< (tips) how far the mesh goes on beyond each [m]
+      type(fracture_cells_t), intent(inout) :: cells
+      real(rk) :: left
+      integer(ik) :: cell, step, tip
+
+      cells%share = spread(1.0_rk, 1, size(length))
+      cells%has_tip = spread(.false., 1, size(length))
+      do tip = 1, fracture%n_tips
+         cell = tip_cell(fracture, tip)
+         step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+         left = ahead(tip)
+         do while (left >= (1.0_rk - least)*length(cell))
+            cells%share(cell) = least
+            left = max(0.0_rk, left - length(cell))
+            cell = cell + step
+         end do
+         cells%share(cell) = 1.0_rk - left/length(cell)
+         cells%has_tip(cell) = .true.
+      end do
+   end subroutine place_tips
 
    !> The fracture cell that ends at a tip; cells are stored along each fracture.
    pure integer(ik) function tip_cell(fracture, tip)

@@ -3,15 +3,19 @@
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text
+   use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
+   use base_tolerances, only: same_value
+   use mechanics_dead_load, only: dead_load_t
+   use mechanics_equilibrium, only: increment_t, together
    use mechanics_limits, only: watch_body
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
    use mechanics_rise, only: rise
    use mechanics_state, only: loaded_body_t
    use mesh_types, only: mesh_t, network_t
+   use results_chronicle, only: event_bifurcation
    use results_rows, only: history_row_t, probe_row_t
-   use scene_types, only: scene_t
+   use scene_types, only: load_t, scene_t
    use simulation_types, only: snapshot_t
    implicit none(type, external)
    private
@@ -23,6 +27,13 @@ module mechanics_simulation
       integer(ik) :: step = 1  !< of the programme, in which the load changes
       logical :: has_onset = .false.  !< growth has stopped the load
       real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
+      logical :: has_increment = .false.  !< of growth in equilibrium: the next state is found
+      type(increment_t) :: increment
+      type(dead_load_t) :: dead_load
+      logical :: was_bifurcation = .false.  !< in the last increment
+      ! Of the accepted state, while the next one is found already.
+      type(network_t) :: shown_network
+      type(mesh_t) :: shown_mesh
       type(snapshot_t), allocatable :: good  !< of the last accepted state
    contains
       procedure :: begin
@@ -74,22 +85,48 @@ contains
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: target
 
-      associate (load => self%scene%load)
-         target = load%from + (load%to - load%from)*real(self%step, rk)/real(load%steps, rk)
-         if (self%step == load%steps) target = load%to
-      end associate
-      self%has_onset = .false.
-      if (.not. self%owes_state) call rise(self, target, self%has_onset, timers, error)
-      if (allocated(error)) return
+      if (.not. self%has_increment) then
+         if (is_equilibrium(self)) self%step = next_step(self%scene%load, self%factor)
+         self%has_onset = .false.
+         if (.not. self%owes_state) then
+            call rise(self, step_end(self%scene%load, self%step), self%has_onset, timers, error)
+         end if
+         if (allocated(error)) return
+      end if
       call watch_body(self)
       call self%heed_limits(error)
       if (allocated(error)) return
-      self%shows_growth = self%has_onset .or. self%owes_state
+      self%shows_growth = self%has_onset .or. self%owes_state .or. self%has_increment
       self%accepted_factor = self%factor
       call note_state(self)
    end subroutine next_state
+
+   !> Tips grow in equilibrium, else by the law of advances at one load.
+   pure logical function is_equilibrium(self)
+      class(mechanics_simulation_t), intent(in) :: self
+
+      is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
+   end function is_equilibrium
+
+   !> The factor at the end of a step of the programme [-].
+   pure real(rk) function step_end(load, step)
+      type(load_t), intent(in) :: load
+      integer(ik), intent(in) :: step
+
+      step_end = load%from + (load%to - load%from)*real(step, rk)/real(load%steps, rk)
+      if (step >= load%steps) step_end = load%to
+   end function step_end
+
+   !> The first step of the programme that ends beyond a factor; one after the last where none does.
+   pure integer(ik) function next_step(load, factor) result(step)
+      type(load_t), intent(in) :: load
+      real(rk), intent(in) :: factor  !< [-]
+
+      do step = 1, load%steps
+         if ((step_end(load, step) - factor)/(load%to - load%from) > same_value) return
+      end do
+   end function next_step
 
    !> An accepted state: contact, the run's largest values, the fields to fall back on.
    subroutine note_state(self)
@@ -130,6 +167,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_grew
 
+      if (is_equilibrium(self)) then
+         call grow_in_equilibrium(self, timers, error)
+         return
+      end if
       any_grew = .false.
       if (self%has_onset) then
          call self%grow_tips(any_grew, timers, error)
@@ -156,6 +197,87 @@ contains
       self%owes_state = allocated(self%ending)
    end subroutine grow
 
+   !> Note the tips of the present state; where some are at their toughness, let them grow by an
+   !! increment to the next one, which is accepted by next_state.
+   subroutine grow_in_equilibrium(self, timers, error)
+      class(mechanics_simulation_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%has_increment) then
+         call note_increment(self)
+      else
+         self%tip%advance = 0.0_rk
+         call self%note_tips()
+      end if
+      self%has_increment = .false.
+      self%shown_network = self%network
+      self%shown_mesh = self%body%mesh
+      if (.not. allocated(self%ending) .and. self%has_onset) then
+         call self%dead_load%begin_increment(self)
+         call self%increment%take(self, self%scene%load%to, timers, error)
+         if (.not. allocated(error)) then
+            call self%dead_load%end_increment(self, self%increment, timers, error)
+         end if
+         if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
+            self%ending = "a piece of the body has come loose"
+            if (allocated(error)) deallocate (error)
+            call self%note_growth()
+            call self%note_mesh(self%body%mesh)
+            self%summary%increments = self%summary%increments + 1
+            self%shown_network = self%network
+            self%shown_mesh = self%body%mesh
+         end if
+         if (allocated(error)) return
+         self%has_increment = self%increment%has_grown .and. .not. self%is_cut
+         self%has_onset = self%increment%holds
+      end if
+      if (.not. self%has_increment .and. &
+          next_step(self%scene%load, self%factor) > self%scene%load%steps) then
+         if (.not. allocated(self%ending)) self%ending = "the scene's last load factor"
+      end if
+      if (allocated(self%ending)) call self%dead_load%stop_growth(self)
+   end subroutine grow_in_equilibrium
+
+   !> The tips have grown in the increment that led to the present state.
+   subroutine note_increment(self)
+      class(mechanics_simulation_t), intent(inout) :: self
+
+      call self%note_tips(grew_in_step=.true.)
+      call self%note_growth()
+      call self%note_mesh(self%body%mesh)
+      call note_competition(self)
+      call self%dead_load%tell(self)
+      self%summary%increments = self%summary%increments + 1
+      call self%end_at_gain()
+   end subroutine note_increment
+
+   !> Tips of which one could run ahead, and states that miss the equilibrium.
+   subroutine note_competition(self)
+      class(mechanics_simulation_t), intent(inout) :: self
+      real(rk), parameter :: largest_misfit = 1.0e-2_rk
+      logical :: is_bifurcation
+
+      associate (increment => self%increment)
+         is_bifurcation = size(increment%group) > 1 .and. increment%preference > 2.0_rk*together
+         if (is_bifurcation .and. .not. self%was_bifurcation) then
+            call self%chronicle%add_event(self%time(), event_bifurcation, &
+                                          integer_text(size(increment%group, kind=ik))// &
+                                          " tips grow alike; a lead of one increment is worth "// &
+                                          brief_text(100.0_rk*increment%preference, 3)//" % of K")
+         end if
+         self%was_bifurcation = is_bifurcation
+         if (increment%misfit > largest_misfit) then
+            call self%chronicle%add_remark("warning: K_eq of a growing tip is "// &
+                                           brief_text(100.0_rk*increment%misfit, 3)// &
+                                           " % below K_IC at load factor "// &
+                                           brief_text(self%factor, 6))
+            call self%summary%warn("some growing tips are more than 1 % below K_IC (run.log "// &
+                                   "tells where); give a smaller increment")
+         end if
+      end associate
+   end subroutine note_competition
+
    !> The network, and the mesh that follows it.
    subroutine present_network(self, network, mesh)
       class(mechanics_simulation_t), intent(in) :: self
@@ -164,6 +286,9 @@ contains
 
       network = self%network
       mesh = self%body%mesh
+      if (.not. (is_equilibrium(self) .and. allocated(self%shown_network%xy))) return
+      network = self%shown_network
+      mesh = self%shown_mesh
    end subroutine present_network
 
    !> The accepted state in a row of history.csv.
@@ -191,11 +316,11 @@ contains
       if (allocated(self%good)) fields = self%good
    end subroutine snapshot
 
-   !> What stands for the time: the load factor [-].
+   !> What stands for the time: the accepted load factor [-].
    pure real(rk) function time(self)
       class(mechanics_simulation_t), intent(in) :: self
 
-      time = self%factor
+      time = self%accepted_factor
    end function time
 
    !> The last accepted load factor.

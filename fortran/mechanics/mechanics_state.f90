@@ -29,6 +29,8 @@ module mechanics_state
       logical :: is_cut = .false.  !< fractures have cut off a piece that nothing holds
       type(body_t) :: body
       integer :: meshed_vertices = 0  !< of the network that the mesh was last made for
+      !> Meshes of trials are made from the one that the body has remembered, whatever they change.
+      logical :: is_trying = .false.
       real(rk) :: factor = 0.0_rk  !< of the load [-]
       real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
@@ -146,7 +148,8 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      if (size(self%network%xy, 2) > self%meshed_vertices) then  ! not only turned
+      if (size(self%network%xy, 2) > self%meshed_vertices .and. .not. self%is_trying) then
+         ! It has not only turned.
          call self%body%remember()
          self%meshed_vertices = size(self%network%xy, 2)
       end if

@@ -122,6 +122,7 @@ module output_columns
       column_t("traction_n_pa", "Pa", always, "Normal traction of contact"), &
       column_t("traction_t_pa", "Pa", always, "Tangential traction of contact"), &
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
+      column_t("void_m", "m", with_fluid, "Part of the aperture that vapour fills"), &
       column_t("state", "-", always, "State of contact"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
@@ -264,12 +265,16 @@ module output_columns
    type(word_t), parameter :: event_words(*) = [ &
       word_t("slip_onset", "a fracture slips for the first time"), &
       word_t("opening", "a fracture opens for the first time"), &
+      word_t("growth_onset", "a tip begins to grow; `detail` says how well the time is known"), &
       word_t("growth", "a tip has grown; the place is where it is now"), &
       word_t("joint", "a tip has met a fracture or the boundary"), &
       word_t("arrest", "a tip has stopped for good, for the reason in `detail`"), &
-      word_t("step_cut", "a time step did not converge, or tips would grow too far in it: "// &
-             "it is tried again, shorter"), &
-      word_t("unstable_growth", "tips have grown at constant time until they arrested"), &
+      word_t("step_cut", "a time step did not converge, erred too much, or tips would begin to "// &
+             "grow or grow too far in it: it is tried again, shorter"), &
+      word_t("unstable_growth", "tips have grown at constant time until they arrested; without "// &
+             "a fluid a row where it begins and one where it ends, with the energy released"), &
+      word_t("bifurcation", "tips grow alike, but any difference between them would grow: one "// &
+             "of them could run ahead of the others"), &
       word_t("remesh", "the mesh has followed the growth")]
 
    type(word_t), parameter :: joint_words(*) = [ &

@@ -149,6 +149,7 @@ contains
             call put_if_there(table, "traction_n_pa", fields%traction_n, cell)
             call put_if_there(table, "traction_t_pa", fields%traction_t, cell)
             call put_if_there(table, "pressure_pa", fields%pressure, cell)
+            call put_if_there(table, "void_m", fields%void, cell)
             if (allocated(fields%state)) then
                call table%put("state", state_name(fields%state(cell)))
             else

@@ -7,17 +7,20 @@ module results_chronicle
    private
 
    public :: chronicle_t, event_t
-   public :: event_arrest, event_growth, event_joint, event_opening, event_remesh, event_slip_onset
-   public :: event_step_cut, event_unstable
+   public :: event_arrest, event_bifurcation, event_growth, event_growth_onset
+   public :: event_joint, event_opening
+   public :: event_remesh, event_slip_onset, event_step_cut, event_unstable
 
    ! Kinds of events.
    character(len=*), parameter :: event_slip_onset = "slip_onset"
    character(len=*), parameter :: event_opening = "opening"
    character(len=*), parameter :: event_growth = "growth"
+   character(len=*), parameter :: event_growth_onset = "growth_onset"
    character(len=*), parameter :: event_joint = "joint"
    character(len=*), parameter :: event_arrest = "arrest"
    character(len=*), parameter :: event_step_cut = "step_cut"
    character(len=*), parameter :: event_unstable = "unstable_growth"
+   character(len=*), parameter :: event_bifurcation = "bifurcation"
    character(len=*), parameter :: event_remesh = "remesh"
 
    !> A row of events.csv. What does not apply to it is left empty.

@@ -28,6 +28,7 @@ module results_fields
       real(rk), allocatable :: traction_n(:)  !< (n_cells) of contact, compression < 0 [Pa]
       real(rk), allocatable :: traction_t(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
+      real(rk), allocatable :: void(:)  !< (n_cells) part of the aperture that vapour fills [m]
       integer(ik), allocatable :: state(:)  !< (n_cells) of contact_states
    end type fracture_fields_t
 

@@ -4,6 +4,7 @@ module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: integer_text
+   use base_tolerances, only: round_off
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
@@ -11,6 +12,7 @@ module scene_check
    use scene_check_table, only: check_table
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
+   use scene_storage, only: least_compressibility, skempton, storage
    use scene_types, only: name_length, scene_t
    use scene_values, only: value_t
    use scene_words, only: nearest_word, real_text, rounded_text
@@ -139,26 +141,29 @@ contains
       end do
    end subroutine check_injections
 
-   !> The storage coefficient is positive and the permeability positive definite.
+   !> The storage coefficient is positive, the pressure that a load makes at once no larger than the
+   !! load, and the permeability positive definite.
    pure subroutine check_material(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: bulk_modulus, solid_part
       integer :: i
 
       if (.not. sheet%has("fluid")) return
       i = sheet%find("material")
-      associate (m => scene%material)
-         bulk_modulus = m%young/(3.0_rk*(1.0_rk - 2.0_rk*m%poisson))
-         solid_part = (m%biot - m%porosity)/bulk_modulus
-         if (m%storage == "textbook") solid_part = solid_part*(1.0_rk - m%biot)
+      associate (m => scene%material, fluid => scene%fluid)
          if (m%biot < m%porosity) then
             call refuse(error, sheet, i, "biot", "is "//real_text(m%biot)// &
                         " but must be at least the porosity, "//real_text(m%porosity))
-         else if (.not. m%porosity*scene%fluid%compressibility + solid_part > 0.0_rk) then
+         else if (.not. storage(m, fluid) > 0.0_rk) then
             call refuse(error, sheet, i, "biot", "and porosity give no storage: phi c_p and "// &
                         "the part of the solid are both zero, but their sum must be positive")
+         else if (.not. fluid%compressibility > 0.0_rk .and. &
+                  skempton(m, fluid) > 1.0_rk + round_off) then
+            call refuse(error, sheet, sheet%find("fluid"), "compressibility", "is 0.0, which "// &
+                        "makes Skempton's coefficient B = alpha/(K S + alpha^2) of this rock "// &
+                        rounded_text(skempton(m, fluid))//", but that must be at most 1; "// &
+                        rounded_text(least_compressibility(m))//" 1/Pa would make it 1")
          else if (.not. abs(m%permeability_xy) < &
                   sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
             call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &

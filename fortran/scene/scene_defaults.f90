@@ -20,6 +20,9 @@ contains
          scene%time%step = 1.0_rk/real(scene%load%steps, rk)
       end if
       call choose_steps(scene)
+      if (scene%has_fluid() .and. .not. scene%fluid%vapour_pressure > -huge(1.0_rk)) then
+         if (is_pressed(scene)) scene%fluid%vapour_pressure = 0.0_rk
+      end if
       associate (d => scene%discretization)
          if (scene%has_fluid()) then
             call default(scene%growth%increment, d%fine_ratio*d%size_fracture)
@@ -52,6 +55,23 @@ contains
          call default(scene%output%interval, merge(0.01_rk*time%end, time%step, is_free))
       end associate
    end subroutine choose_steps
+
+   !> Whether stresses and pressures of the scene are those of a state in situ, and not changes of
+   !! one that it does not tell: only then 0 is vacuum.
+   pure logical function is_pressed(scene)
+      type(scene_t), intent(in) :: scene
+      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
+      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
+      integer :: i
+
+      is_pressed = scene%initial%pressure > 0.0_rk
+      do i = 1, 4
+         associate (side => scene%sides(i))
+            is_pressed = is_pressed .or. outward(i)*side%traction(axis(i)) < 0.0_rk &
+                         .or. (side%pressure_given .and. side%pressure > 0.0_rk)
+         end associate
+      end do
+   end function is_pressed
 
    pure subroutine default(value, otherwise)
       real(rk), intent(inout) :: value  !< [any unit]

@@ -196,6 +196,8 @@ contains
       case ("fluid")
          call exchange(record, "compressibility", scene%fluid%compressibility, reading)
          call exchange(record, "viscosity", scene%fluid%viscosity, reading)
+         call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, reading, &
+                       nothing=-unlimited)
       case ("initial")
          call exchange(record, "fracture_pressure", scene%initial%fracture_pressure, reading)
          call exchange(record, "pressure", scene%initial%pressure, reading)
@@ -223,6 +225,7 @@ contains
          call exchange(record, "from", scene%load%from, reading)
          call exchange(record, "to", scene%load%to, reading)
          call exchange(record, "steps", scene%load%steps, reading)
+         call exchange(record, "control", scene%load%control, reading)
       case ("coarse", "fe", "fine")
          call exchange_discretization(record, scene%discretization, reading)
       case ("growth")

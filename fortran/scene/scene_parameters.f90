@@ -214,6 +214,10 @@ module scene_parameters
                   meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
                   meaning="Dynamic viscosity mu"), &
+      parameter_t("fluid", "vapour_pressure", unit="Pa", absent="0, or without loads no limit", &
+                  derived=.true., &
+                  meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
+                  "about 0 if pressures count from vacuum"), &
       parameter_t("fracture", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other fracture"), &
       parameter_t("fracture", "x", kind_reals, "m", need_always, &
@@ -342,6 +346,9 @@ module scene_parameters
       parameter_t("load", "to", default="1.0", meaning="Load factor at the end, another one"), &
       parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
                   meaning="Equal steps from the one to the other"), &
+      parameter_t("load", "control", kind_choice, default="'length'", choices="length|dead", &
+                  meaning="Where growth in equilibrium needs less load than before, the factor "// &
+                  "follows it down, or stays: then growth is unstable until it arrests"), &
       parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
                   at_most="size_boundary", &
@@ -389,18 +396,18 @@ module scene_parameters
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
-      parameter_t("growth", "law", kind_choice, scenes=in_fluid, default="'equilibrium'", &
+      parameter_t("growth", "law", kind_choice, default="'equilibrium'", &
                   choices="equilibrium|paris", &
-               meaning="Growing tips stay at K_eq = K_IC while time goes on, or advance at the "// &
-                  "ends of steps by the Paris-type law of the thesis"), &
+                  meaning="Growing tips stay at K_eq = K_IC as time goes on or the load "// &
+                  "changes, or advance by steps, at one load, by the Paris-type law of the "// &
+                  "thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
                   meaning="Largest advance l_max of a tip at a time, or length of a piece of "// &
                   "its path; 0: the default, "// &
                   "the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
-                  meaning="Exponent m of advance = l_max (G/G_max)^m; with a fluid for law = "// &
-                  "'paris'"), &
+                  meaning="Exponent m of advance = l_max (G/G_max)^m, with law = 'paris'"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
                  meaning="Growth is handed to the coarse level at this share eps_p of dH, with "// &
                   "law = 'paris'"), &

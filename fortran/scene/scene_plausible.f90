@@ -4,7 +4,8 @@
 module scene_plausible
    use base_kinds, only: rk
    use base_texts, only: add_text, text_t
-   use base_tolerances, only: same_time
+   use base_tolerances, only: round_off, same_time
+   use scene_storage, only: skempton
    use scene_types, only: fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
@@ -25,7 +26,8 @@ module scene_plausible
    integer, parameter :: of_young = 1, of_poisson = 2, of_density = 3, of_porosity = 4, &
                          of_permeability = 5, of_toughness = 6, of_compressibility = 7, &
                          of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
-                         of_traction = 12, of_start = 13, of_window = 14, of_interval = 15
+                         of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
+                         of_stiff_fluid = 16
 
    ! The table keeps its own layout.
    !&<
@@ -61,7 +63,10 @@ module scene_plausible
       doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
               "a window is cut out around each tip; a few times the fracture is usual"), &
       doubt_t("output", "interval", "s", "below the step of &time", &
-              "fields are written at most once per step")]
+              "fields are written at most once per step"), &
+      doubt_t("fluid", "compressibility", "1/Pa", &
+              "above 0, but Skempton's coefficient B exceeds 1", &
+              "a load makes a larger pressure than itself at once then; rock has B of 0.3 to 1")]
    !&>
 
 contains
@@ -132,6 +137,9 @@ contains
 
       associate (fluid => scene%fluid, d => scene%domain)
          call add(list, fluid%compressibility > 1.0e-6_rk, of_compressibility, &
+                  fluid%compressibility)
+         call add(list, fluid%compressibility > 0.0_rk .and. &
+                  skempton(scene%material, fluid) > 1.0_rk + round_off, of_stiff_fluid, &
                   fluid%compressibility)
          call add(list,.not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
                   fluid%viscosity)

@@ -41,6 +41,7 @@ module scene_types
    type :: fluid_t
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure in fractures [Pa]
    end type fluid_t
 
    !> One fracture and its law.
@@ -110,6 +111,8 @@ module scene_types
    type :: load_t
       real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
       integer(ik) :: steps = 1  !< equal ones
+      !> "length": growth in equilibrium takes it down; "dead": it never falls by itself
+      character(len=name_length) :: control = "length"
    end type load_t
 
    !> A well: fluid injected into a fracture.

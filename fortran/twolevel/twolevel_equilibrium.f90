@@ -3,10 +3,10 @@
 !!
 !! Within a step the coarse level is solved from the state before with the tips where they are
 !! tried to be, the windows give the intensities there, and each tip goes on until its excess
-!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a cell for all
-!! of that piece, and its springs say how much of it is behind the tip (coarse_tips); so the coarse
-!! mesh changes once per piece, and neither its matrix nor the fluid's volume jumps. A piece begins
-!! in the direction in which K_II vanishes at its end (growth_path).
+!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a
+!! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips);
+!! so the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps.
+!! A piece begins in the direction in which K_II vanishes at its end (growth_path).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,7 +22,7 @@ module twolevel_equilibrium
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, find_equilibrium
+   public :: accept_equilibrium, find_equilibrium, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
@@ -33,12 +33,16 @@ module twolevel_equilibrium
    !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
+   !> A step that errs this much with the tips where they were cannot be taken, whatever they do
+   !! [-].
+   real(rk), parameter :: much = 4.0_rk
+
 contains
 
-   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece goes
-   !! too far, unless the step is the last try: so short that nothing but growth happens in it, until
-   !! that arrests. Nothing is accepted yet; a step that does not show an equilibrium leaves the
-   !! state before.
+   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
+   !! goes too far, unless the step is the last try: so short that nothing but growth happens in
+   !! it, until that arrests. Nothing is accepted yet; a step that does not show an equilibrium
+   !! leaves the state before.
    subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -69,9 +73,9 @@ contains
             trial%reason = report%reason
             exit
          end if
-         if (.not. is_last .and. k == 1 .and. errs_much(self, dt)) then
+         if (k == 1 .and. .not. is_last) then
             trial%time_error = self%step_error(dt)
-            exit
+            if (self%errs(trial%time_error/much)) exit
          end if
          call self%evaluate(timers, error)
          if (allocated(error)) exit
@@ -86,7 +90,8 @@ contains
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
-               return
+               if (is_last .or. .not. self%errs(trial%time_error)) return
+               exit
             end if
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
@@ -128,20 +133,8 @@ contains
       end do
    end function advances
 
-   !> The step cannot be taken, whatever the tips do in it.
-   logical function errs_much(self, dt)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), parameter :: much = 4.0_rk  ! the tips as they were make it look worse than it is
-
-      errs_much = .false.
-      if (self%scene%time%tolerance > 0.0_rk) then
-         errs_much = self%step_error(dt) > much*self%scene%time%tolerance
-      end if
-   end function errs_much
-
-   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to grow,
-   !! or where it does so at the end of the step. Tips that have grown before are not asked.
+   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to
+   !! grow, or where it does so at the end of the step. Tips that have grown before are not asked.
    pure function onset(before, after, has_grown)
       real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
       logical, intent(in) :: has_grown(:)
@@ -222,9 +215,10 @@ contains
             to = end_place(self%coarse_network, tip%fracture, tip%end)
             is_new(i) = .not. norm2(to - tip%xy) > same_place*self%rules%increment
             if (is_new(i)) cycle
-            ! An earlier try of this step has begun it.
+            ! An earlier try of this step has begun it, and its path has learned from that.
+            tip = self%begun(i)
             call extend(self%network, tip%fracture, tip%end, to)
-            call segment%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), norm2(to - tip%xy))
+            call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
          end associate
       end do
       if (.not. any(is_new)) then
@@ -238,6 +232,7 @@ contains
          associate (tip => self%tip(i))
             if (.not. (is_new(i) .and. tip%advance > 0.0_rk)) cycle
             call self%segment(i)%open_segment(tip%origin, tip%direction, norm2(tip%xy - tip%origin))
+            self%begun(i) = tip
             call extend(self%coarse_network, tip%fracture, tip%end, tip%xy)
             centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])
          end associate

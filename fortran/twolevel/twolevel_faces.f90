@@ -18,6 +18,7 @@ module twolevel_faces
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: gauss_rule
    use mesh_types, only: mesh_t
+   use twolevel_pressure, only: match_pressure, pressure_map_t
    implicit none(type, external)
    private
 
@@ -28,6 +29,7 @@ module twolevel_faces
       integer(ik), allocatable :: coarse_cell(:)  !< the nearest one
       logical, allocatable :: is_inside(:)  !< it lies in it; else it has grown from it
       real(rk), allocatable :: ends(:, :)  !< (2, fracture cells) arc lengths of that one's ends [m]
+      type(pressure_map_t) :: pressure  !< how that of the fluid follows
    contains
       procedure :: conditions
       procedure :: load
@@ -38,9 +40,10 @@ contains
 
    !> The coarse fracture cell that is nearest to each fracture cell of the window, along its
    !! fracture.
-   pure function match_faces(fine, coarse) result(map)
+   pure function match_faces(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells)
       type(face_map_t) :: map
       integer(ik) :: i, j
       real(rk) :: distance, s, shortest
@@ -63,6 +66,7 @@ contains
             end do
          end do
       end associate
+      map%pressure = match_pressure(fine, coarse, is_grown)
    end function match_faces
 
    !> What holds on the faces.
@@ -89,17 +93,18 @@ contains
    end function conditions
 
    !> Fluid pressure, and what the condition gives, from the state of the coarse level.
-   pure subroutine load(self, fine, name, state, loads)
+   pure subroutine load(self, fine, name, state, lowest, loads)
       class(face_map_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
       character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
       type(state_t), intent(in) :: state
+      real(rk), intent(in) :: lowest  !< pressure that the fluid bears [Pa]
       type(fine_loads_t), intent(inout) :: loads
       integer(ik) :: i, k
 
+      loads%fluid_pressure = self%pressure%on_faces(state%pressure, lowest)
       do i = 1, fine%fracture%n_cells
          associate (j => self%coarse_cell(i))
-            loads%fluid_pressure(i) = state%pressure(j)
             if (.not. self%is_inside(i)) cycle
             select case (name)
             case ("jump")

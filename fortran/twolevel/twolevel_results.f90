@@ -57,7 +57,8 @@ contains
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
             if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
-            row%fracture_volume = sum((state%aperture - simulation%model%cells%roughness) &
+            row%fracture_volume = sum((state%aperture - state%void &
+                                       - simulation%model%cells%roughness) &
                                       *simulation%model%condensed%length)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
@@ -145,6 +146,7 @@ contains
          fracture%traction_n = 0.5_rk*sum(state%traction(1, :, :), dim=1)
          fracture%traction_t = 0.5_rk*sum(state%traction(2, :, :), dim=1)
          fracture%pressure = state%pressure
+         fracture%void = state%void
          fracture%state = cell_states(simulation)
       end associate
    end function snapshot_of_levels

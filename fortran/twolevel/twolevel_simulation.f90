@@ -7,13 +7,14 @@ module twolevel_simulation
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_step_cut, event_unstable
+   use results_chronicle, only: event_growth_onset, event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
+   use twolevel_onset, only: approach_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
@@ -34,6 +35,7 @@ module twolevel_simulation
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
+      type(approach_t), allocatable :: approach(:)  !< (tips) to their first growth
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
    contains
@@ -60,7 +62,9 @@ contains
       self%end_time = scene%time%end
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
-      if (.not. allocated(error)) call watch_mesh(self, error)
+      if (allocated(error)) return
+      allocate (self%approach(size(self%tip)))
+      call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
@@ -145,9 +149,9 @@ contains
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not judged,
-   !! and where tips find no equilibrium in it either, growth is unstable: nothing but that happens,
-   !! until it arrests.
+   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not
+   !! judged, and where tips find no equilibrium in it either, growth is unstable: nothing but that
+   !! happens, until it arrests.
    subroutine take_step(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -207,7 +211,7 @@ contains
          if (allocated(error)) return
          if (trial%converged) then
             trial%time_error = self%step_error(self%dt)
-            if (.not. (is_last .or. self%stepper%takes(trial))) self%state = self%before
+            if (.not. is_last .and. self%errs(trial%time_error)) self%state = self%before
          else
             trial%reason = self%report%reason
          end if
@@ -297,6 +301,7 @@ contains
             end if
          end if
          if (allocated(error)) return
+         if (is_equilibrium(self)) call note_onsets(self)
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)
@@ -321,6 +326,30 @@ contains
       call self%note_mesh(self%mesh)
       call watch_mesh(self, error)
    end subroutine note_equilibrium
+
+   !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
+   subroutine note_onsets(self)
+      class(twolevel_simulation_t), intent(inout) :: self
+      real(rk) :: error
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), approach => self%approach(i))
+            if (approach%is_over) cycle
+            approach%is_over = self%segment(i)%gain > 0.0_rk
+            if (approach%is_over) then
+               error = approach%uncertainty(approach%drive_error + tolerance*self%rules%toughness)
+               call self%chronicle%add_event(approach%onset, event_growth_onset, &
+                                             "known to "//brief_text(error, 3)//" s", &
+                                             tip%fracture, tip%origin)
+            else
+               call approach%follow(self%state%time, tip%drive%intensity, &
+                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &
+                                    self%rules%toughness)
+            end if
+         end associate
+      end do
+   end subroutine note_onsets
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
    !! still to be found.

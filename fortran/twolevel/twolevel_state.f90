@@ -11,6 +11,7 @@ module twolevel_state
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
    use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
@@ -50,6 +51,7 @@ module twolevel_state
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
+      type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
@@ -60,6 +62,7 @@ module twolevel_state
       procedure :: equilibrate
       procedure :: try_step
       procedure :: step_error
+      procedure :: errs
       procedure :: book_step
       procedure :: update_values
       procedure :: evaluate
@@ -92,7 +95,7 @@ contains
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
-      allocate (self%grown(0), self%segment(size(self%tip)))
+      allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
 
@@ -205,6 +208,16 @@ contains
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
    end function step_error
 
+   !> The error of a step is larger than the scene tolerates.
+   pure logical function errs(self, error)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: error  !< relative [-]
+
+      associate (tolerance => self%scene%time%tolerance)
+         errs = tolerance > 0.0_rk .and. error > tolerance
+      end associate
+   end function errs
+
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
       class(two_levels_t), intent(inout) :: self
@@ -226,6 +239,7 @@ contains
       call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
                         self%state%tractions, self%coarse_values%nodal)
       self%coarse_values%law = self%model%cells%law
+      self%coarse_values%is_grown = self%model%cells%roughness > 0.0_rk
       self%values_are_current = .true.
    end subroutine update_values
 

@@ -83,6 +83,7 @@ contains
       allocate (after%slip_before(2, n), source=0.0_rk)
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
+      allocate (after%void(n), source=0.0_rk)
       prefilled = 0.0_rk
       do i = 1, n
          old = map%fracture_cell_old(i)
@@ -93,6 +94,7 @@ contains
             after%contact(:, i) = before%contact(:, old)
             after%pressure(i) = before%pressure(old)
             after%aperture(i) = before%aperture(old)
+            after%void(i) = before%void(old)
             after%leakoff(i) = before%leakoff(old)
             after%unknowns(:, end_block(mesh, i, both)) = &
                before%unknowns(:, end_block(mesh_before, old, both))

@@ -1,9 +1,9 @@
 !> How fast a state changes, and the error that a time step makes.
 !!
-!! Backward Euler with a step h is off by h**2/2 times the second derivative, which follows from the
-!! rate of the step and that of the one before, of length h_b: in each step the error is
-!! h/(h + h_b) (change - h (rate before)). Its mean over the rock, and over the fractures, is judged:
-!! of the pressure against the range that pressure has gone through so far, of slip and opening
+!! Backward Euler with a step h is off by h**2/2 times the second derivative, which follows from
+!! the rate of the step and that of the one before, of length h_b: in each step the error is h/(h +
+!! h_b) (change - h (rate before)). Its mean over the rock, and over the fractures, is judged: of
+!! the pressure against the range that pressure has gone through so far, of slip and opening
 !! likewise. A mean, for each cell that a tip passes, or where contact changes, sees a jump however
 !! short the step is.
 module twolevel_trend
@@ -65,7 +65,7 @@ contains
       is_known = self%dt > 0.0_rk
    end function is_known
 
-   !> Error of a step from `before` to `after`, relative to the ranges [-]; 0 where no rate is known.
+   !> Error of a step from `before` to `after`, relative to the ranges [-]; 0 where none is known.
    pure real(rk) function step_error(self, before, after, dt, area, length)
       class(trend_t), intent(in) :: self
       type(state_t), intent(in) :: before, after

@@ -36,6 +36,7 @@ module twolevel_window
    type :: coarse_values_t
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
+      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
    end type coarse_values_t
 
    !> One window.
@@ -188,10 +189,10 @@ contains
       type(rock_t) :: rock
       real(rk) :: lame
 
+      rock = new_rock(scene%material, scene%fluid)
       elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-                                biot=scene%material%biot, plane_stress=scene%material%plane_stress)
+                                biot=rock%biot, plane_stress=scene%material%plane_stress)
       if (undrained) then
-         rock = new_rock(scene%material, scene%fluid)
          lame = rock%lame + rock%biot**2/rock%storage
          elasticity%poisson = lame/(2.0_rk*(lame + rock%shear))
          if (scene%material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*rock%shear)
@@ -202,10 +203,11 @@ contains
    end subroutine set_rock
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
-   subroutine project(self, mesher, coarse, error)
+   subroutine project(self, mesher, coarse, values, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
+      type(coarse_values_t), intent(in) :: values
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
       real(rk), allocatable :: inside(:, :)
@@ -231,7 +233,7 @@ contains
                                             fine%xy(:, v))
          end do
       end associate
-      self%faces = match_faces(self%model%mesh, coarse)
+      self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
    end subroutine project
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tip.
@@ -263,7 +265,8 @@ contains
       end if
       associate (face_condition => scene%discretization%face_condition)
          conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
-         call self%faces%load(self%model%mesh, face_condition, state, self%loads)
+         call self%faces%load(self%model%mesh, face_condition, state, &
+                              scene%fluid%vapour_pressure, self%loads)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error, held_edge(self, scene))

@@ -67,7 +67,7 @@ contains
                self%projected(i) = .false.
             end if
             if (.not. self%projected(i)) then
-               call window%project(mesher, mesh, error)
+               call window%project(mesher, mesh, values, error)
                if (allocated(error)) return
                self%projected(i) = .true.
             end if

@@ -48,7 +48,9 @@ class Scene:
     young_pa : float or None
         Young's modulus [Pa].
     step_s : float or None
-        Regular time step [s]; None without a fluid.
+        Regular time step [s]; None without a fluid, or where none is given.
+    chosen_steps : bool
+        Whether time steps follow from their error.
     wells : tuple of Well
         Injections.
     load_pa, load_name : float or None, str
@@ -63,6 +65,7 @@ class Scene:
     outline: FloatArray | None = None
     young_pa: float | None = None
     step_s: float | None = None
+    chosen_steps: bool = False
     wells: tuple[Well, ...] = ()
     load_pa: float | None = None
     load_name: str = ""
@@ -138,6 +141,7 @@ def read_scene(path: Path) -> Scene | None:
         outline=_outline(path, first["domain"]) if "domain" in first else None,
         young_pa=number("material", "young"),
         step_s=number("time", "step"),
+        chosen_steps=(number("time", "tolerance") or 0.0) > 0.0,
         wells=tuple(wells),
         load_pa=load,
         load_name=load_name,

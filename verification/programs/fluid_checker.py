@@ -272,7 +272,8 @@ def check_counts(scene: Any, state: State, findings: Findings) -> None:
     size = np.abs(cells["aperture_m"]).max()
     gap = np.abs(aperture + cells["jump_n_m"] - cells["aperture_m"]).max()
     findings.see("aperture", float(gap / size), at(state), ROUND_OFF)
-    volume = float(((cells["aperture_m"] - roughness) * state.lengths).sum())
+    filled = cells["aperture_m"] - cells["void_m"]
+    volume = float(((filled - roughness) * state.lengths).sum())
     error = abs(volume - row["fracture_volume_m2"]) / (float(state.lengths.sum()) * float(size))
     findings.see("fracture volume", error, at(state), ROUND_OFF)
     for word in ("stick", "slip", "open"):
@@ -339,9 +340,9 @@ def check_mass(scene: Any, before: State, state: State, bound: float, findings: 
     """What is injected in a step is what rock and fractures take up; what leaks off, the rock."""
     now, then = state.cells, before.cells
     rock = content_of(scene, state) - content_of(scene, before)
-    aperture, pressure = now["aperture_m"], now["pressure_pa"] - then["pressure_pa"]
-    compressed = scene["fluid"]["compressibility"] * aperture * pressure
-    fracture = state.lengths * (aperture - then["aperture_m"] + compressed)
+    filled, pressure = now["aperture_m"] - now["void_m"], now["pressure_pa"] - then["pressure_pa"]
+    compressed = scene["fluid"]["compressibility"] * filled * pressure
+    fracture = state.lengths * (filled - (then["aperture_m"] - then["void_m"]) + compressed)
     end, start = state.history["time_s"], before.history["time_s"]
     injected = injected_until(scene, end) - injected_until(scene, start)
     by_pressure, by_stress = storage_of(scene)

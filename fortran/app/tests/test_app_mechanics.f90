@@ -37,6 +37,7 @@ contains
       scene%discretization%size_fracture = 0.1_rk
       scene%discretization%size_boundary = 0.3_rk
       scene%growth%enabled = .true.
+      scene%growth%law = "paris"
       scene%growth%intensities = .true.
       scene%growth%increment = 0.2_rk
       scene%load%to = 10.0_rk

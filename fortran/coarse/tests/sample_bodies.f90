@@ -213,6 +213,8 @@ contains
          allocate (cells%law(n), source=law)
          allocate (cells%residual_aperture(n), source=aperture)
          allocate (cells%roughness(n), source=0.0_rk)
+         allocate (cells%share(n), source=1.0_rk)
+         allocate (cells%has_tip(n), source=.false.)
          allocate (cells%injection(n), source=0.0_rk)
       end associate
    end function uniform_cells

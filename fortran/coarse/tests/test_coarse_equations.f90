@@ -19,6 +19,7 @@ program test_coarse_equations
    implicit none(type, external)
 
    real(rk), parameter :: dt = 10.0_rk  !< [s]
+   real(rk), parameter :: vapour_pressure = 5.0e6_rk  !< below it are some of some_unknowns [Pa]
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< sides
    type(checks_t) :: checks
    type(mesh_t) :: mesh
@@ -33,6 +34,7 @@ program test_coarse_equations
    call compare_slopes(.true., 3)
    call checks%is_true(all(has_occurred), "cells stick, slip and are open")
    call test_exchange_along_fractures()
+   call test_moving_tip()
    call checks%finish()
 
 contains
@@ -58,6 +60,8 @@ contains
          model%cells%law(i) = contact_law_t(friction=0.2_rk*mod(i, 4_ik), &
                                             dilation=0.05_rk*mod(i, 3_ik))
          model%cells%injection(i) = 1.0e-7_rk*i
+         ! Every other cell is of a grown part; a tip lies in the last one.
+         if (mod(i, 2_ik) == 0) model%cells%roughness(i) = 1.0e-5_rk*i
       end do
       ! So viscous that flow and exchange take some MPa in ten seconds.
       scene%fluid%viscosity = 2.0e4_rk
@@ -68,6 +72,12 @@ contains
       call new_state(mesh, model%cells, initial_t(pressure=5.0e6_rk), model, state)
       state%jump = 1.0e-5_rk*reshape(scattered(size(state%jump, kind=ik)), shape(state%jump))
       state%pressure = state%pressure + 1.0e6_rk*scattered(mesh%fracture%n_cells)
+      state%void = 1.0e-6_rk*abs(scattered(mesh%fracture%n_cells))
+      associate (n => mesh%fracture%n_cells)
+         model%cells%roughness(n) = 1.0e-5_rk
+         model%cells%share(n) = 0.4_rk
+         model%cells%has_tip(n) = .true.
+      end associate
    end subroutine start
 
    !> Unknowns of the size that they have in rock under some 10 MPa.
@@ -135,6 +145,7 @@ contains
 
       settings = model%settings
       settings%equilibrate = equilibrate
+      settings%vapour_pressure = vapour_pressure
       call prepare(model%condensed, model%cells, model%connections, settings, dt, g, state, eq)
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
@@ -203,5 +214,44 @@ contains
                               "nothing is lost on the way")
       end do
    end subroutine test_exchange_along_fractures
+
+   !> Fluid that follows a tip: with the opening k sqrt(d) in both cells at the tip, and the flow V
+   !! w through each section, the pressure falls by 12 mu V/k^2 per unit of ln d.
+   subroutine test_moving_tip()
+      real(rk), parameter :: k = 1.0e-3_rk  ! [m^1/2]
+      real(rk), parameter :: speed = 1.0e-9_rk  ! [m/s]
+      type(equations_t) :: eq
+      real(rk), allocatable :: x(:)
+      real(rk) :: d(3), opening(2), reach(2)
+      integer(ik), allocatable :: contact(:, :)
+      integer(ik) :: cells(2), end, i, pair
+
+      pair = size(model%connections, 2, kind=ik)
+      cells = model%connections(:, pair)
+      call checks%is_true(cells(2) == mesh%fracture%n_cells, "the last cell is the second")
+      model%cells%residual_aperture(cells) = 1.0e-6_rk
+      model%cells%roughness(cells) = 1.0e-6_rk
+      call some_unknowns(1, x)
+      associate (length => model%condensed%length(cells), share => model%cells%share(cells))
+         reach = share*length
+         d = [sum(reach), reach(2), 0.0_rk]
+         opening = 2.0_rk/3.0_rk*k*(d(:2)**1.5_rk - d(2:)**1.5_rk)/length
+      end associate
+      call equations_at(x, .false., eq, contact)
+      do i = 1, 2
+         do end = 1, 2
+            x(eq%layout%at_jump(cells(i), end)) = eq%stiffness*opening(i)
+         end do
+      end do
+      x(eq%layout%at_flow(pair)) = speed*k*sqrt(d(2))*dt/eq%unit
+      x(eq%layout%at_pressure(cells(1))) = 9.0e6_rk
+      x(eq%layout%at_pressure(cells(2))) = 9.0e6_rk - 12.0_rk*model%settings%viscosity*speed/k**2 &
+                                           *log((d(2) + 0.5_rk*reach(1))/(0.5_rk*reach(2)))
+      call equations_at(x, .false., eq, contact)
+      call checks%is_true(minval(x(eq%layout%at_pressure(cells))) > vapour_pressure + 1.0e6_rk, &
+                          "above the vapour pressure")
+      call checks%is_close(eq%residual(eq%layout%at_flow(pair)), 0.0_rk, 1.0_rk, &
+                           "pressure along the way to a moving tip")
+   end subroutine test_moving_tip
 
 end program test_coarse_equations

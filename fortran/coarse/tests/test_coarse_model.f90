@@ -77,6 +77,7 @@ contains
       allocate (cells%law(mesh%fracture%n_cells))
       cells%law = contact_law_t(friction=friction, dilation=dilation)
       allocate (cells%residual_aperture(mesh%fracture%n_cells), source=1.0e-3_rk)
+      allocate (cells%roughness(mesh%fracture%n_cells), source=0.0_rk)
       allocate (cells%injection(mesh%fracture%n_cells), source=0.0_rk)
    end subroutine make_cells
 

@@ -24,6 +24,7 @@ program test_coarse_newton
    call test_pressure_spreads()
    call test_quadratic_convergence()
    call test_refused_steps()
+   call test_vapour()
    call checks%finish()
 
 contains
@@ -191,6 +192,54 @@ contains
                               name//": reported balance")
       end associate
    end subroutine converge
+
+   !> A fracture in tight rock is pulled open, and closed again by fluid that is let in: it keeps
+   !! its fluid, which fills the smaller a share of it the wider it is, at the vapour pressure; it
+   !! is full again once what was let in is what it has opened by.
+   subroutine test_vapour()
+      type(mesh_t) :: mesh
+      type(coarse_model_t) :: model
+      type(scene_t) :: scene
+      type(state_t) :: state
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: aperture = 1.0e-5_rk, bearable = 1.0e5_rk, dt = 1.0_rk
+      real(rk) :: held, total
+      integer :: k
+
+      call opening_scene(scene)
+      scene%material%permeability_xx = 1.0e-30_rk
+      scene%material%permeability_yy = 1.0e-30_rk
+      scene%fluid%compressibility = 0.0_rk
+      scene%fluid%vapour_pressure = bearable
+      scene%initial%pressure = 2.0e5_rk
+      scene%sides(2)%traction(1) = 20.0e6_rk
+      scene%sides(4)%traction(2) = 20.0e6_rk
+      call cut_square(checks, scene, inside, contact_law_t(friction=0.5_rk, dilation=0.0_rk), &
+                      aperture, mesh, model, state)
+      total = norm2(inside(:, 2) - inside(:, 1))*aperture
+      do k = 0, 3
+         if (k > 0) model%cells%injection(2) = total
+         call model%advance(mesh, dt, state, timers, report, error)
+         call checks%no_error(error, "vapour")
+         if (.not. report%converged) print *, report%reason, report%iterations
+         call checks%is_true(report%converged, "vapour: converged")
+         held = sum(model%condensed%length*(state%aperture - state%void))
+         call checks%is_close(held, (1 + k)*total, 1.0e-9_rk*total, "vapour: fluid is kept")
+         call checks%is_close(maxval(abs(state%pressure - bearable)), 0.0_rk, 0.0_rk, &
+                              "vapour: pressure")
+         call checks%is_true(all(state%void > 0.0_rk) .and. all(state%void < state%aperture), &
+                             "vapour: filled in part")
+         call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*total, "vapour: balance")
+      end do
+      model%cells%injection(2) = sum(model%condensed%length*state%aperture)/dt
+      call model%advance(mesh, dt, state, timers, report, error)
+      call checks%is_true(report%converged, "full: converged")
+      call checks%is_true(all(state%void <= 0.0_rk) .and. all(state%pressure > bearable), "full")
+      model%cells%injection(2) = -2.0_rk*sum(model%condensed%length*state%aperture)/dt
+      call model%advance(mesh, dt, state, timers, report, error)
+      call checks%is_true(.not. report%converged, "more is drawn than there is")
+   end subroutine test_vapour
 
    !> Fluid that rock and fractures have gained in a step [m2].
    function balance(mesh, model, before, after) result(gain)

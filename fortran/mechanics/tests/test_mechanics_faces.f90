@@ -130,6 +130,7 @@ contains
       scene = plate("friction", [-10.0_rk, 0.0_rk])
       scene%fractures(1)%held_closed = .true.
       scene%growth%enabled = .true.
+      scene%growth%law = "paris"
       scene%material%toughness = 1.0_rk
       call timers%begin()
       call simulation%begin(scene, timers, error)

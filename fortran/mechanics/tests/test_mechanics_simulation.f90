@@ -45,6 +45,7 @@ contains
       scene%discretization%size_fracture = 0.04_rk
       scene%discretization%size_boundary = 0.3_rk
       scene%growth%enabled = .true.
+      scene%growth%law = "paris"
       scene%growth%intensities = .true.
       scene%load%to = 100.0_rk
       call resolve_defaults(scene)

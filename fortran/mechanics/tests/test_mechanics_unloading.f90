@@ -163,6 +163,7 @@ contains
       scene = square("open")
       scene%material%toughness = 1.0e3_rk
       scene%growth%enabled = .true.
+      scene%growth%law = "paris"
       scene%sides(3)%traction = [0.0_rk, -traction]
       scene%sides(4)%traction = [0.0_rk, traction]
    end function growing

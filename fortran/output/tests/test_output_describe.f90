@@ -6,8 +6,9 @@ program test_output_describe
    use output_columns, only: contact_words, event_words, record_keys, status_words
    use output_describe, only: describe_output
    use output_record, only: status_failed, status_finished, status_stopped
-   use results_chronicle, only: event_arrest, event_growth, event_joint, event_opening, &
-                                event_remesh, event_slip_onset, event_step_cut, &
+   use results_chronicle, only: event_arrest, event_bifurcation, event_growth, &
+                                event_growth_onset, event_joint, &
+                                event_opening, event_remesh, event_slip_onset, event_step_cut, &
                                 event_unstable
    use testing_checks, only: checks_t
    use testing_pages, only: check_page
@@ -24,9 +25,11 @@ program test_output_describe
       call checks%is_true(contact_words(i)%word == state_name(i - 1_ik), "the states of contact")
    end do
    call checks%is_true(all(event_words%word == [character(len=16) :: event_slip_onset, &
-                                                event_opening, event_growth, event_joint, &
+                                                event_opening, event_growth_onset, &
+                                                event_growth, event_joint, &
                                                 event_arrest, event_step_cut, &
-                                                event_unstable, event_remesh]), &
+                                                event_unstable, event_bifurcation, &
+                                                event_remesh]), &
                        "the kinds of events")
    call checks%is_true(all(status_words%word == [character(len=10) :: status_finished, &
                                                  status_stopped, status_failed]), "how runs end")

@@ -19,7 +19,7 @@ program test_output_run
 
    character(len=*), parameter :: nl = achar(10)
    character(len=*), parameter :: fracture_names = "time_s,fracture,s_m,x_m,y_m,aperture_m,"// &
-      & "jump_n_m,jump_t_m,traction_n_pa,traction_t_pa,pressure_pa,state"
+      & "jump_n_m,jump_t_m,traction_n_pa,traction_t_pa,pressure_pa,void_m,state"
    character(len=*), parameter :: top = "test_output_run.out"
    type(checks_t) :: checks
    type(error_t), allocatable :: error
@@ -118,11 +118,11 @@ contains
          & "k2_corrected_pa_sqrtm", "0.0,1,1,1.0,0.5,1000000.0,200000.0,1100000.0,210000.0,"// &
          & "1050000.0,30.0,45.0,0.0,1000.0,2000.0,28.0,1.5,3000.0,4000.0,1000500.0,200500.0")
       call row_has(folder//"/fractures.csv", 1, fracture_names, &
-         & "0.0,1,0.25,0.25,0.5,0.001,0.0,0.0,-10000000.0,1000000.0,6000000.0,stick")
+         & "0.0,1,0.25,0.25,0.5,0.001,0.0,0.0,-10000000.0,1000000.0,6000000.0,0.0,stick")
       call row_has(folder//"/fractures.csv", 2, fracture_names, &
-         & "0.0,1,0.75,0.75,0.5,0.0011,0.0001,-0.002,-5000000.0,3000000.0,6500000.0,slip")
+         & "0.0,1,0.75,0.75,0.5,0.0011,0.0001,-0.002,-5000000.0,3000000.0,6500000.0,0.0001,slip")
       call row_has(folder//"/fractures.csv", 3, fracture_names, &
-         & "0.0,2,0.125,0.5,0.375,0.002,0.001,0.0,0.0,0.0,7000000.0,open")
+         & "0.0,2,0.125,0.5,0.375,0.002,0.001,0.0,0.0,0.0,7000000.0,0.0,open")
       call row_has(folder//"/fractures.csv", 4, "time_s", "2.0")
       call row_has(folder//"/probes.csv", 1, "time_s,A_p_pa,A_ux_m,A_uy_m,A_sxx_pa,A_syy_pa,"// &
          & "A_sxy_pa", "0.0,6800000.0,0.001,-0.002,-10000000.0,-20000000.0,500000.0")
@@ -162,7 +162,7 @@ contains
       dry_matrix = matrix
       deallocate (dry_matrix%pressure)
       dry_fracture = fracture
-      deallocate (dry_fracture%pressure)
+      deallocate (dry_fracture%pressure, dry_fracture%void)
       call output%open(folder, "", refused, error)
       if (.not. allocated(error)) call output%begin(dry_scene, error)
       call checks%no_error(error, "open without fluid")
@@ -333,6 +333,7 @@ contains
       fracture%traction_n = [-1.0e7_rk, -5.0e6_rk, 0.0_rk]
       fracture%traction_t = [1.0e6_rk, 3.0e6_rk, 0.0_rk]
       fracture%pressure = [6.0e6_rk, 6.5e6_rk, 7.0e6_rk]
+      fracture%void = [0.0_rk, 1.0e-4_rk, 0.0_rk]
       fracture%state = [state_stick, state_slip, state_open]
       probes%displacement = reshape([1.0e-3_rk, -2.0e-3_rk], [2, 1])
       probes%stress = reshape([-1.0e7_rk, -2.0e7_rk, 5.0e5_rk], [3, 1])

@@ -134,6 +134,7 @@ contains
       if (.not. same_outline(a, b)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return
+      if (a%load%control /= b%load%control) return
       if (size(a%restraints) /= size(b%restraints)) return
       if (size(a%point_loads) /= size(b%point_loads)) return
       do i = 1, size(a%restraints)

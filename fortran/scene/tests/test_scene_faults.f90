@@ -159,6 +159,11 @@ contains
       call refuse_two(5, "  biot=0.0 porosity=0.0", 4, "  poisson=0.2", &
                       ":5: &material: biot and porosity give no storage: phi c_p and the part "// &
                       "of the solid are both zero, but their sum must be positive"//doc)
+      call refuse_two(5, "  biot=0.3 porosity=0.1 storage='textbook'", &
+                      8, "&fluid compressibility=0.0 viscosity=1e-4 /", &
+                      ":8: &fluid: compressibility is 0.0, which makes Skempton's "// &
+                      "coefficient B = alpha/(K S + alpha^2) of this rock 1.304, but that must "// &
+                      "be at most 1; 3.15e-11 1/Pa would make it 1"//doc)
       call refuse(6, "  permeability=5e-20 permeability_xx=5e-20", &
                   ":6: &material: permeability is given beside components of the tensor but "// &
                   "must be given alone or not at all"//doc)
@@ -171,7 +176,8 @@ contains
       call refuse(21, "  step=7200.0 /", ":21: &time: step is 7200.0 but must be at most "// &
                   "end, 3600.0"//doc)
       call refuse(21, "  step=60.0 growth_factor=1e-7 smallest_factor=1e-6 /", &
-                  ":21: &time: smallest_factor is 1.0e-6 but must be at most growth_factor, 1.0e-7"//doc)
+                  ":21: &time: smallest_factor is 1.0e-6 but must be at most growth_factor, "// &
+                  "1.0e-7"//doc)
       call refuse(19, "  start=10.0 end=5.0 /", ":19: &injection: end is 5.0 but must be after "// &
                   "start, 10.0"//doc)
       call refuse(18, "&injection fracture='g1' rate=5.0e-9", ":18: &injection: fracture is "// &

@@ -120,6 +120,13 @@ contains
       s%fluid%compressibility = 4.0e-4_rk
       call expect(s, "&fluid: compressibility is 4.0e-4 1/Pa: ", "compressibility")
       s = sound()
+      s%material%biot = 0.1_rk
+      s%material%porosity = 0.05_rk
+      s%fluid%compressibility = 1.0e-12_rk
+      call expect(s, "&fluid: compressibility is 1.0e-12 1/Pa: a load", "Skempton's coefficient")
+      s%material%biot = 0.3_rk
+      call expect(s, "", "Skempton's coefficient below 1")
+      s = sound()
       s%fluid%viscosity = 100.0_rk
       call expect(s, "&fluid: viscosity is 100.0 Pa s: ", "viscosity")
       s = sound()

@@ -7,7 +7,7 @@ program test_twolevel_simulation
    use contact_states, only: state_open, state_slip, state_stick
    use coarse_state, only: state_t, step_report_t
    use sample_scenes, only: add_fracture, squeezed_body
-   use scene_types, only: injection_t, scene_t
+   use scene_types, only: injection_t, scene_t, time_t
    use growth_network, only: end_gain
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t
@@ -22,6 +22,8 @@ program test_twolevel_simulation
    call test_growth("conserved")
    call test_growth("prefilled")
    call test_equilibrium()
+   call test_chosen_steps("equilibrium")
+   call test_chosen_steps("paris")
    call test_cell_state()
    call checks%finish()
 
@@ -248,6 +250,53 @@ contains
                            "fluid is conserved")
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
    end subroutine test_equilibrium
+
+   !> Steps chosen by their error, with tries that are not taken: time goes on by the step that was
+   !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the
+   !! first state with growth follows one in which they have reached it.
+   subroutine test_chosen_steps(law)
+      character(len=*), intent(in) :: law  !< of growth
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      real(rk) :: before, drive
+      logical :: has_grown
+      integer :: step
+
+      scene = symmetric_scene("conserved")
+      scene%time = time_t(end=1.0e5_rk, tolerance=3.0e-3_rk, smallest_factor=1.0e-9_rk)
+      scene%growth%law = law
+      scene%material%toughness = 3.55e6_rk  ! so that no tip grows at once
+      scene%initial%fracture_pressure = "equilibrated"
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, law//": chosen steps")
+      before = 0.0_rk
+      drive = 0.0_rk
+      has_grown = .false.
+      do step = 1, 30
+         call simulation%next_state(timers, error)
+         if (.not. allocated(error)) call simulation%grow(timers, error)
+         call checks%no_error(error, law//": a chosen step")
+         if (allocated(error)) return
+         if (simulation%is_initial) cycle
+         call checks%is_close(simulation%time() - before, simulation%dt, &
+                              1.0e-12_rk*simulation%time(), law//": time goes on by the step")
+         call checks%is_close(simulation%injected, 1.0e-7_rk*simulation%time(), &
+                              1.0e-12_rk*simulation%injected, law//": the well never rests")
+         before = simulation%time()
+         if (any(simulation%tip%advance > 0.0_rk) .and. .not. has_grown) then
+            has_grown = .true.
+            if (law == "equilibrium") call checks%is_close(drive, 3.55e6_rk, 0.01_rk*3.55e6_rk, &
+                                                           "K_eq before the first growth")
+         end if
+         drive = maxval(simulation%tip%drive%intensity)
+         if (has_grown) exit
+      end do
+      call checks%is_true(has_grown .or. law /= "equilibrium", law//": growth")
+      call checks%is_true(simulation%summary%step_cuts > 0, law//": tries that are not taken")
+      print "(2a,i0,a,i0,a,es9.2,a)", law, ": ", simulation%summary%steps, " chosen steps, ", &
+         simulation%summary%step_cuts, " cuts, first growth before ", simulation%time(), " s"
+   end subroutine test_chosen_steps
 
    !> [m]
    function lengths(simulation) result(length)

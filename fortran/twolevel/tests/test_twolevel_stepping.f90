@@ -98,8 +98,8 @@ contains
       call checks%is_close(dt, 4.0_rk, 0.0_rk, "as short as the error asks for")
    end subroutine test_error_in_time
 
-   !> y' = -(y - 1)/tau over six decades of tau, by backward Euler with these steps: the error of the
-   !! solution stays near the tolerance, and it takes some fifty steps.
+   !> y' = -(y - 1)/tau over six decades of tau, by backward Euler with these steps: the error of
+   !! the solution stays near the tolerance, and it takes some fifty steps.
    subroutine test_decay()
       type(stepper_t) :: stepper
       type(trial_t) :: trial

@@ -116,6 +116,7 @@ contains
          state%contact(1, :) = state_open
          allocate (state%pressure, source=[(1.0e6_rk + i, i=1, n)])
          allocate (state%aperture, source=1.0e-3_rk + 1.0e-4_rk*scattered(n))
+         allocate (state%void, source=[(1.0e-5_rk*i, i=1, n)])
          allocate (state%leakoff, source=1.0e-9_rk*scattered(n))
       end associate
    end subroutine various_state
@@ -150,9 +151,9 @@ contains
                                 .and. equal([after%traction(:, :, i)], &
                                             [before%traction(:, :, old)]) &
                                 .and. equal([after%pressure(i), after%aperture(i), &
-                                             after%leakoff(i)], &
+                                             after%leakoff(i), after%void(i)], &
                                             [before%pressure(old), before%aperture(old), &
-                                             before%leakoff(old)]), &
+                                             before%leakoff(old), before%void(old)]), &
                                 "an old fracture cell is kept to the last bit")
             cycle
          end if

@@ -39,7 +39,7 @@ contains
                            3.0_rk*h**2/100.0_rk, round_off, "opening")
    end subroutine test_parabola
 
-   !> At rest the whole change is the error, in the mean over the body; without a known rate none is.
+   !> At rest the whole change is the error, in the mean over the body; without a rate, none.
    subroutine test_rest()
       type(trend_t) :: trend
       type(state_t) :: after

@@ -84,7 +84,11 @@ contains
       call window%set_rock(scene, .true., error)
       call checks%is_close(window%model%elasticity%shear_modulus(), shear, 1.0e-12_rk*shear, &
                            "undrained: shear")
-      lame = lame + scene%material%biot**2/storage
+      ! The same in space, and then the plane: without stress across it, lambda 2 G/(lambda + 2 G).
+      associate (e => scene%material%young, nu => scene%material%poisson)
+         lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu)) + scene%material%biot**2/storage
+      end associate
+      if (plane_stress) lame = lame*2.0_rk*shear/(lame + 2.0_rk*shear)
       call checks%is_close(window%model%elasticity%lame_lambda(), lame, 1.0e-12_rk*lame, &
                            "undrained")
       call checks%is_true(window%undrained, "undrained on record")
@@ -254,14 +258,16 @@ contains
       type(contact_t) :: history
       integer(ik) :: end, i, j, k
       real(rk) :: t
+      real(rk), allocatable :: pressure(:)
 
       associate (window => simulation%windows%window(2), state => simulation%state)
          associate (fine => window%model%mesh)
+            pressure = window%faces%pressure%on_faces(state%pressure, 0.0_rk)
             call checks%is_true(all(window%model%conditions%condition == condition), name)
             history = window%faces%history(fine, state)
             do i = 1, window%mesh%fracture%n_cells
                j = window%faces%coarse_cell(i)
-               call checks%is_close(window%loads%fluid_pressure(i), 1.0e6_rk*j, 0.0_rk, &
+               call checks%is_close(window%loads%fluid_pressure(i), pressure(i), 0.0_rk, &
                                     name//": fluid pressure")
                if (name == "contact") call checks%is_close( &
                   window%model%conditions%law(i)%contact%friction, 5.0_rk, 0.0_rk, "friction")

@@ -1,0 +1,112 @@
+!> Tips that grow together at their toughness: how their advances are put right, and whether one of
+!! them could run ahead.
+!!
+!! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f. The
+!! tips of a group stay at their toughness together where that is K_IC for all; the advance of one
+!! of them is given, which is what is controlled instead of the load. Equal growth is stable where M
+!! is negative definite on the advances on which the load does no work, c^T da = 0: else there are
+!! others, in which one tip runs ahead and the load unloads the rest.
+module growth_competition
+   use algebra_lapack, only: dgesv
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: corrected_advances, learn_from_trial, preference
+
+contains
+
+   !> The changes of the advances of a group, but for that of one, the leader, which stays, with
+   !! which all come to their toughness. Zero where the equations have no solution.
+   subroutine corrected_advances(lack, matrix, slope, leader, change)
+      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
+      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
+      real(rk), intent(in) :: slope(:)  !< c [Pa m^1/2]
+      integer(ik), intent(in) :: leader  !< index in the group
+      real(rk), intent(out) :: change(size(lack))  !< [m]
+      real(rk) :: equations(size(lack), size(lack)), right(size(lack), 1)
+      integer(ik) :: pivots(size(lack)), info, n
+
+      n = size(lack, kind=ik)
+      equations = matrix
+      equations(:, leader) = slope  ! the change of the load factor takes the leader's place
+      right(:, 1) = lack
+      call dgesv(n, 1_ik, equations, n, pivots, right, n, info)
+      change = 0.0_rk
+      if (info /= 0) return
+      change = right(:, 1)
+      change(leader) = 0.0_rk
+   end subroutine corrected_advances
+
+   !> The matrix after a trial: the least change of it with which it would have told the outcome
+   !! (Broyden 1965).
+   pure subroutine learn_from_trial(matrix, change, outcome)
+      real(rk), intent(inout) :: matrix(:, :)  !< M [Pa m^-1/2]
+      real(rk), intent(in) :: change(:)  !< of the advances [m]
+      real(rk), intent(in) :: outcome(:)  !< change of the intensities, at one load [Pa m^1/2]
+      real(rk) :: length, missed(size(change))
+      integer :: j
+
+      length = sum(change**2)
+      if (.not. length > 0.0_rk) return
+      missed = outcome - matmul(matrix, change)
+      do j = 1, size(change)
+         matrix(:, j) = matrix(:, j) + missed*change(j)/length
+      end do
+   end subroutine learn_from_trial
+
+   !> How strongly a group prefers that some of it run ahead: the largest eigenvalue of M on the
+   !! advances on which the load does no work. Negative: they grow together. A group of one has
+   !! nobody to compete with.
+   pure real(rk) function preference(matrix, slope)
+      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
+      real(rk), intent(in) :: slope(:)  !< c [Pa m^1/2]
+      real(rk) :: mirror(size(slope)), turned(size(slope), size(slope))
+      integer :: j, n
+
+      n = size(slope)
+      preference = -huge(1.0_rk)
+      if (n < 2) return
+      ! A reflection takes the load's direction to the first axis: the rest is what it leaves.
+      mirror = slope/norm2(slope)
+      mirror(1) = mirror(1) + sign(1.0_rk, mirror(1))
+      mirror = mirror/norm2(mirror)
+      turned = 0.5_rk*(matrix + transpose(matrix))
+      do j = 1, n
+         turned(:, j) = turned(:, j) - 2.0_rk*mirror*dot_product(mirror, turned(:, j))
+      end do
+      do j = 1, n
+         turned(j, :) = turned(j, :) - 2.0_rk*mirror*dot_product(mirror, turned(j, :))
+      end do
+      preference = largest_eigenvalue(turned(2:, 2:))
+   end function preference
+
+   !> Of a symmetric matrix, by Jacobi's rotations.
+   pure real(rk) function largest_eigenvalue(matrix)
+      real(rk), intent(in) :: matrix(:, :)
+      integer, parameter :: sweeps = 30
+      real(rk) :: a(size(matrix, 1), size(matrix, 1)), angle, rotation(2, 2), rest
+      integer :: i, j, k, n, sweep
+
+      a = matrix
+      n = size(a, 1)
+      do sweep = 1, sweeps
+         rest = sum(a**2) - sum([(a(i, i)**2, i=1, n)])
+         if (.not. rest > epsilon(1.0_rk)**2*sum(a**2)) exit
+         do i = 1, n - 1
+            do j = i + 1, n
+               angle = 0.5_rk*atan2(2.0_rk*a(i, j), a(j, j) - a(i, i))
+               rotation = reshape([cos(angle), -sin(angle), sin(angle), cos(angle)], [2, 2])
+               do k = 1, n
+                  a(k, [i, j]) = matmul(a(k, [i, j]), rotation)
+               end do
+               do k = 1, n
+                  a([i, j], k) = matmul(transpose(rotation), a([i, j], k))
+               end do
+            end do
+         end do
+      end do
+      largest_eigenvalue = maxval([(a(i, i), i=1, n)])
+   end function largest_eigenvalue
+
+end module growth_competition

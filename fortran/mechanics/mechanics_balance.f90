@@ -1,0 +1,147 @@
+!> The load that a network bears: the factor at which the largest K_eq of its tips is K_IC.
+module mechanics_balance
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: rk
+   use base_timers, only: timers_t
+   use base_tolerances, only: same_value
+   use mechanics_onset, only: foreseen_onset, reading_t
+   use mechanics_state, only: loaded_body_t
+   implicit none(type, external)
+   private
+
+   public :: balance_load
+
+   !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
+   real(rk), parameter :: at_jump = 1.0e-13_rk
+
+contains
+
+   !> Take the load from the present factor, at which the tips have been evaluated, to that at which
+   !! the next tip is at its toughness: up, no farther than a limit, or down, no farther than where
+   !! the programme begins. `holds` is false where at the limit no tip is there yet. Where not even
+   !! at the beginning the tips are held, growth is `loose`, and the load is where it started from.
+   !!
+   !! Intensities are linear in the factor between changes of contact, and proportional to it where
+   !! all loads are: then the first or second try is the last.
+   subroutine balance_load(self, started, limit, timers, holds, is_loose, slope, error)
+      class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: started  !< the factor of the last accepted state [-]
+      real(rk), intent(in) :: limit  !< the largest factor, on the way of the load [-]
+      type(timers_t), intent(inout) :: timers
+      logical, intent(out) :: holds
+      logical, intent(out) :: is_loose  !< loads that do not change with the factor drive the tips
+      real(rk), intent(out) :: slope(:)  !< (tips) dK_eq/df at that factor [Pa m^1/2]
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: tries = 60, guesses = 3
+      type(reading_t) :: last, next, low, high
+      real(rk) :: factor, k_last(size(self%tip))
+      logical :: has_low, has_high
+      integer :: k
+
+      holds = .false.
+      is_loose = .false.
+      has_low = .false.
+      has_high = .false.
+      slope = self%tip%drive%intensity/nonzero(self%factor)
+      if (all(self%tip%arrested)) return
+      do k = 1, tries
+         next = self%reading()
+         holds = abs(self%largest_excess()) <= same_value
+         if (holds) return
+         if (self%largest_excess() < 0.0_rk) then
+            if (is_at(limit)) return
+            low = next
+            has_low = .true.
+         else
+            if (is_at(self%scene%load%from)) then
+               call self%respond(started, timers, error)
+               if (allocated(error)) return
+               is_loose = self%largest_excess() >= 0.0_rk
+               if (is_loose) then
+                  holds = .true.
+                  slope = self%tip%drive%intensity/nonzero(self%factor)
+                  return
+               end if
+               next = self%reading()  ! K rises towards both ends: this is the place to rise from
+               low = next
+               has_low = .true.
+               last = next
+               call self%respond(limit, timers, error)
+               if (allocated(error)) return
+               cycle
+            end if
+            high = next
+            has_high = .true.
+         end if
+         if (has_low .and. has_high) then
+            if (abs(high%factor - low%factor) <= &
+                at_jump*max(abs(low%factor), abs(high%factor))) then
+               ! Where contact changes the intensity may jump past the toughness: just below that.
+               if (self%largest_excess() > 0.0_rk) call self%respond(low%factor, timers, error)
+               holds = .true.
+               return
+            end if
+            factor = 0.5_rk*(low%factor + high%factor)
+            if (mod(k, 4) /= 0) factor = foreseen_onset(last, next, low%factor, high%factor, &
+                                                        self%scene%material%toughness)
+         else if (k == 1) then
+            factor = self%factor/(1.0_rk + max(-0.5_rk, self%largest_excess()))
+         else if (k <= guesses) then
+            factor = next%factor + (next%factor - last%factor)*extrapolation(last, next)
+         else if (has_low) then
+            factor = self%factor + 2.0_rk*(self%factor - started)
+            if (.not. (factor - self%factor)*(limit - self%scene%load%from) > 0.0_rk &
+                .or. k > 2*guesses) factor = limit
+         else  ! in steps: K may rise again where the load has fallen far
+            factor = self%scene%load%from + 0.7_rk*(self%factor - self%scene%load%from)
+            if (k > 10*guesses) factor = self%scene%load%from
+         end if
+         factor = within(factor, self%scene%load%from, limit)
+         last = next
+         k_last = self%tip%drive%intensity
+         call self%respond(factor, timers, error)
+         if (allocated(error)) return
+         slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - last%factor)
+      end do
+      call raise_error(error, "", "the load that holds the tips was not found")
+
+   contains
+
+      pure logical function is_at(place)
+         real(rk), intent(in) :: place  !< a factor [-]
+
+         is_at = abs(self%factor - place) <= same_value*abs(limit - self%scene%load%from)
+      end function is_at
+
+      !> How many times the last change of the factor again, for the excess to vanish.
+      pure real(rk) function extrapolation(a, b)
+         type(reading_t), intent(in) :: a, b
+         real(rk) :: excess_a, excess_b
+         real(rk), parameter :: most = 10.0_rk
+
+         excess_a = maxval(k_last, mask=.not. self%tip%arrested) - self%scene%material%toughness
+         excess_b = self%largest_excess()*self%scene%material%toughness
+         extrapolation = 0.0_rk
+         if (abs(b%factor - a%factor) > 0.0_rk) extrapolation = most
+         if (abs(excess_a - excess_b) > 0.0_rk) then
+            extrapolation = max(-most, min(most, excess_b/(excess_a - excess_b)))
+         end if
+      end function extrapolation
+
+   end subroutine balance_load
+
+   !> A divisor.
+   elemental real(rk) function nonzero(value)
+      real(rk), intent(in) :: value
+
+      nonzero = sign(max(abs(value), tiny(1.0_rk)), value)
+   end function nonzero
+
+   !> The place between two limits, in either order, that is nearest to one.
+   pure real(rk) function within(place, a, b)
+      real(rk), intent(in) :: place, a, b
+
+      within = min(max(place, min(a, b)), max(a, b))
+   end function within
+
+end module mechanics_balance

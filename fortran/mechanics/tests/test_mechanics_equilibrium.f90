@@ -1,0 +1,129 @@
+!> Growth as equilibrium: the load factor follows the closed form down as a crack grows, and does
+!! not depend on where its search begins.
+program test_mechanics_equilibrium
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: rk
+   use base_timers, only: timers_t
+   use mechanics_balance, only: balance_load
+   use mechanics_simulation, only: mechanics_simulation_t
+   use scene_defaults, only: resolve_defaults
+   use scene_types, only: fracture_t, restraint_t, scene_t
+   implicit none(type, external)
+
+   real(rk), parameter :: pi = acos(-1.0_rk)
+   type(checks_t) :: checks
+
+   call check_strip("length")
+   call check_strip("dead")
+   call check_balance()
+   call checks%finish()
+
+contains
+
+   !> A strip of width 2 m and height 6 m with a central crack of 0.6 m, pulled in y.
+   function strip(control) result(scene)
+      character(len=*), intent(in) :: control
+      type(scene_t) :: scene
+
+      scene%domain%x_min = -1.0_rk
+      scene%domain%x_max = 1.0_rk
+      scene%domain%y_min = -3.0_rk
+      scene%domain%y_max = 3.0_rk
+      scene%material%young = 1.0e9_rk
+      scene%material%poisson = 0.25_rk
+      scene%material%toughness = 2.0_rk
+      allocate (scene%fractures(1), scene%point_loads(0))
+      scene%fractures(1) = fracture_t(name="f", law="open", x=0.3_rk*[-1, 1], y=[0.0_rk, 0.0_rk])
+      scene%restraints = [restraint_t(x=-1.0_rk, y=-3.0_rk, displacement_given=[.true., .true.]), &
+                          restraint_t(x=1.0_rk, y=-3.0_rk, displacement_given=[.false., .true.])]
+      scene%sides(3)%traction = [0.0_rk, -1.0_rk]
+      scene%sides(4)%traction = [0.0_rk, 1.0_rk]
+      scene%discretization%size_fracture = 0.04_rk
+      scene%discretization%size_boundary = 0.3_rk
+      scene%growth%enabled = .true.
+      scene%growth%intensities = .true.
+      scene%load%to = 100.0_rk
+      scene%load%control = control
+      call resolve_defaults(scene)
+   end function strip
+
+   !> K_I of the strip for a stress of 1 (Tada 1973, within 0.1 %).
+   pure real(rk) function tada(a)
+      real(rk), intent(in) :: a  !< half the length over half the width
+
+      tada = sqrt(pi*a)*sqrt(1.0_rk/cos(0.5_rk*pi*a))*(1.0_rk - 0.025_rk*a**2 + 0.06_rk*a**4)
+   end function tada
+
+   !> Both tips advance by equal increments, at K_IC, while the factor falls as 1/K_I; or it stays,
+   !! and K_eq rises instead.
+   subroutine check_strip(control)
+      character(len=*), intent(in) :: control
+      type(mechanics_simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: formula = 3.0e-3_rk
+      real(rk) :: a, first
+      integer :: increment
+
+      call timers%begin()
+      call simulation%begin(strip(control), timers, error)
+      call checks%no_error(error, control//": begin")
+      if (allocated(error)) return
+      first = 0.0_rk
+      do increment = 0, 5
+         call simulation%next_state(timers, error)
+         call checks%no_error(error, control//": state")
+         if (allocated(error)) return
+         if (increment == 0) first = simulation%time()
+         a = 0.3_rk + 0.04_rk*increment
+         associate (tips => simulation%tip)
+            call checks%is_close(abs(tips(1)%xy(1)), a, 1.0e-6_rk, control//": increments")
+            call checks%is_close(tips(1)%xy(1) + tips(2)%xy(1), 0.0_rk, 1.0e-6_rk, &
+                                 control//": both tips alike")
+            if (control == "length") then
+               call checks%is_close(simulation%time()*tada(a)/2.0_rk, 1.0_rk, formula, &
+                                    "snap-back as the closed form has it")
+               call checks%is_close(maxval(tips%drive%intensity), 2.0_rk, 1.0e-8_rk, "at K_IC")
+            else
+               call checks%is_close(simulation%time(), first, 0.0_rk, "a dead load stays")
+               call checks%is_close(maxval(tips%drive%intensity)/(first*tada(a)), 1.0_rk, formula, &
+                                    "and K rises")
+            end if
+         end associate
+         call simulation%grow(timers, error)
+         call checks%no_error(error, control//": growth")
+         if (allocated(error)) return
+      end do
+   end subroutine check_strip
+
+   !> From below and from above the same factor; none below the limit is said to be none.
+   subroutine check_balance()
+      type(mechanics_simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: starts(3) = [0.01_rk, 1.0_rk, 50.0_rk]
+      real(rk) :: slope(2)
+      logical :: holds, is_loose
+      integer :: i
+
+      call timers%begin()
+      call simulation%begin(strip("length"), timers, error)
+      call checks%no_error(error, "balance: begin")
+      if (allocated(error)) return
+      do i = 1, size(starts)
+         call simulation%respond(starts(i), timers, error)
+         call balance_load(simulation, starts(i), 100.0_rk, timers, holds, is_loose, slope, error)
+         call checks%no_error(error, "balance")
+         if (allocated(error)) return
+         call checks%is_true(holds .and. .not. is_loose, "a factor holds the tips")
+         call checks%is_close(simulation%largest_excess(), 0.0_rk, 1.0e-8_rk, "at K_IC")
+         call checks%is_close(slope(1)*simulation%factor/2.0_rk, 1.0_rk, 1.0e-3_rk, "dK/df")
+      end do
+      call simulation%respond(0.01_rk, timers, error)
+      call balance_load(simulation, 0.01_rk, 0.5_rk, timers, holds, is_loose, slope, error)
+      call checks%is_true(.not. holds, "below the onset nothing is at its toughness")
+      call checks%is_close(simulation%factor, 0.5_rk, 0.0_rk, "at the limit")
+   end subroutine check_balance
+
+end program test_mechanics_equilibrium

@@ -1,0 +1,49 @@
+!> Uncertainty of an onset: exact for an intensity with a constant second derivative in time, solved
+!! by backward Euler.
+program test_twolevel_onset
+   use testing_checks, only: checks_t
+   use base_kinds, only: rk
+   use twolevel_onset, only: approach_t
+   implicit none(type, external)
+
+   type(checks_t) :: checks
+
+   call test_curved()
+   call test_flat()
+   call checks%finish()
+
+contains
+
+   !> dK/dt = 2 t by backward Euler gives K = t**2 + h t in steps of h: too large by h t. The first
+   !! step, which is not judged, makes h**2 of it.
+   subroutine test_curved()
+      type(approach_t) :: approach
+      real(rk), parameter :: h = 0.1_rk, t = 2.0_rk
+      real(rk) :: k
+      integer :: n
+
+      k = 0.0_rk
+      call approach%follow(0.0_rk, k, 0.0_rk, 2.0_rk)
+      do n = 1, 20
+         k = k + h*2.0_rk*(n*h)
+         call approach%follow(n*h, k, 0.01_rk, 2.0_rk)
+      end do
+      call checks%is_close(k - t**2, h*t, 1.0e-12_rk, "the error that there is")
+      call checks%is_close(approach%error, h*t - h**2, 1.0e-12_rk, "what is known of it")
+      call checks%is_close(approach%uncertainty(0.03_rk), (h*t - h**2 + 0.04_rk)/(2.0_rk*t), &
+                           1.0e-12_rk, "in time")
+      ! K = 0.01 n (n + 1) passes 2 between n = 13 and 14, by straight lines.
+      call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
+                           "when the toughness was reached")
+   end subroutine test_curved
+
+   !> An intensity that does not rise tells nothing about the time.
+   subroutine test_flat()
+      type(approach_t) :: approach
+
+      call approach%follow(0.0_rk, 1.0_rk, 0.0_rk, 2.0_rk)
+      call approach%follow(1.0_rk, 1.0_rk, 0.0_rk, 2.0_rk)
+      call checks%is_true(approach%uncertainty(0.01_rk) > 1.0e300_rk, "no rise")
+   end subroutine test_flat
+
+end program test_twolevel_onset

@@ -1,0 +1,123 @@
+!> Fluid pressure on the faces of windows: linear between the middles of the coarse cells, and with
+!! the logarithm of the distance near a tip that lies within its cell.
+program test_twolevel_pressure
+   use testing_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use fine_mesh, only: fine_mesh_t
+   use mesh_types, only: mesh_t
+   use twolevel_pressure, only: match_pressure, pressure_map_t
+   implicit none(type, external)
+
+   integer(ik), parameter :: n = 10  !< coarse cells, from s = 0 to 1 m
+   real(rk), parameter :: tip(2) = [0.03_rk, 0.96_rk]  !< within the first and the last of them [m]
+   type(checks_t) :: checks
+   type(mesh_t) :: coarse
+   type(fine_mesh_t) :: fine
+
+   call make_meshes()
+   call test_linear()
+   call test_logarithm()
+   call test_limits()
+   call test_other_tips()
+   call checks%finish()
+
+contains
+
+   !> One fracture; the window holds all of it in 93 cells.
+   subroutine make_meshes()
+      integer(ik), parameter :: n_fine = 93
+      integer(ik) :: i
+
+      coarse%fracture%n_cells = n
+      allocate (coarse%fracture%cell_fracture(n), source=1_ik)
+      coarse%fracture%cell_s = reshape([(0.1_rk*(i - 1), 0.1_rk*i, i=1, n)], [2_ik, n])
+      fine%fracture%n_cells = n_fine
+      allocate (fine%fracture%cell_fracture(n_fine), source=1_ik)
+      fine%fracture%cell_s = reshape([(tip(1) + 0.01_rk*(i - 1), tip(1) + 0.01_rk*i, &
+                                       i=1, n_fine)], [2_ik, n_fine])
+      fine%face_s = fine%fracture%cell_s
+      fine%fracture%n_tips = 2
+      fine%fracture%tip_fracture = [1_ik, 1_ik]
+      fine%fracture%tip_end = [1_ik, 2_ik]
+   end subroutine make_meshes
+
+   !> The middle of what is behind the tip of a coarse cell [m].
+   pure real(rk) function middle(j)
+      integer(ik), intent(in) :: j
+
+      middle = 0.5_rk*(max(coarse%fracture%cell_s(1, j), tip(1)) &
+                       + min(coarse%fracture%cell_s(2, j), tip(2)))
+   end function middle
+
+   !> Far from the tips.
+   subroutine test_linear()
+      type(pressure_map_t) :: map
+      real(rk) :: found(fine%fracture%n_cells), s
+      integer(ik) :: i, j
+
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
+      found = map%on_faces([(1.0e6_rk + 3.0e6_rk*middle(j), j=1, n)], 0.0_rk)
+      do i = 1, fine%fracture%n_cells
+         s = 0.5_rk*sum(fine%face_s(:, i))
+         if (s < middle(2_ik) .or. s > middle(n - 1)) cycle
+         call checks%is_close(found(i), 1.0e6_rk + 3.0e6_rk*s, 1.0e-6_rk, "linear")
+      end do
+   end subroutine test_linear
+
+   !> Near either tip: the mean of ln d with the weight 1/sqrt(d), by the midpoint rule in sqrt(d).
+   subroutine test_logarithm()
+      integer, parameter :: points = 20000
+      type(pressure_map_t) :: map
+      real(rk) :: d(2), found(fine%fracture%n_cells), mean, root
+      integer(ik) :: end, i, j
+      integer :: k
+
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
+      do end = 1, 2
+        found = map%on_faces([(1.0e7_rk + 1.0e6_rk*log(abs(middle(j) - tip(end))), j=1, n)], 0.0_rk)
+         do i = 1, fine%fracture%n_cells
+            d = abs(fine%face_s(:, i) - tip(end))
+            if (0.5_rk*sum(d) > abs(middle(merge(2_ik, n - 1, end == 1)) - tip(end))) cycle
+            mean = 0.0_rk
+            do k = 1, points
+               root = sqrt(minval(d)) + (sqrt(maxval(d)) - sqrt(minval(d)))*(k - 0.5_rk)/points
+               mean = mean + 2.0_rk*log(root)/points
+            end do
+            call checks%is_close(found(i), 1.0e7_rk + 1.0e6_rk*mean, 200.0_rk, "logarithm")
+         end do
+      end do
+   end subroutine test_logarithm
+
+   !> No pressure below what the fluid bears, and none that rises toward the tip beyond the last
+   !! middle.
+   subroutine test_limits()
+      type(pressure_map_t) :: map
+      real(rk) :: found(fine%fracture%n_cells)
+      integer(ik) :: j
+
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
+      found = map%on_faces([(1.0e6_rk*j, j=1, n)], 5.0e5_rk)
+      call checks%is_close(minval(found), 5.0e5_rk, 0.0_rk, "lowest pressure")
+      call checks%is_close(maxval(found), 1.0e6_rk*n, 1.0e-6_rk, "highest pressure")
+   end subroutine test_limits
+
+   !> In cells that have not grown, or at a tip beyond the coarse fracture, the last cell's
+   !! pressure.
+   subroutine test_other_tips()
+      type(pressure_map_t) :: map
+      type(fine_mesh_t) :: longer
+      real(rk) :: found(fine%fracture%n_cells)
+      integer(ik) :: j
+
+      map = match_pressure(fine, coarse, spread(.false., 1, n))
+      found = map%on_faces([(1.0e6_rk*(n - j), j=1, n)], -1.0e9_rk)
+      call checks%is_close(minval(found), 0.0_rk, 0.0_rk, "a tip that has not grown")
+      longer = fine
+      longer%fracture%cell_s = longer%fracture%cell_s + 0.1_rk
+      longer%face_s = longer%fracture%cell_s
+      map = match_pressure(longer, coarse, spread(.true., 1, n))
+      found = map%on_faces([(1.0e6_rk*(n - j), j=1, n)], -1.0e9_rk)
+      call checks%is_close(minval(found), 0.0_rk, 0.0_rk, "a tip beyond the coarse fracture")
+   end subroutine test_other_tips
+
+end program test_twolevel_pressure

@@ -1,0 +1,69 @@
+!> A tip on its way to the toughness: how fast its intensity rises, and so how well the time is
+!! known at which it begins to grow.
+module twolevel_onset
+   use base_kinds, only: rk
+   implicit none(type, external)
+   private
+
+   public :: approach_t
+
+   !> The last accepted state of a tip, and the error of its intensity by the steps in time.
+   type :: approach_t
+      logical :: is_over = .false.  !< the tip has grown
+      logical :: is_followed = .false.  !< there is a last state
+      real(rk) :: time = 0.0_rk  !< [s]
+      real(rk) :: onset = 0.0_rk  !< when K_eq was at the toughness, else the last time [s]
+      real(rk) :: drive = 0.0_rk  !< K_eq [Pa m^1/2]
+      real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
+      real(rk) :: rate = 0.0_rk  !< of it in the last step [Pa m^1/2/s]
+      real(rk) :: step = 0.0_rk  !< the last one [s]
+      real(rk) :: error = 0.0_rk  !< of K_eq, of all steps together, with its sign [Pa m^1/2]
+   contains
+      procedure :: follow
+      procedure :: uncertainty
+   end type approach_t
+
+contains
+
+   !> Take note of an accepted state. A step h after one of length h_b errs by h/(h + h_b) (change -
+   !! h (rate before)), as in twolevel_trend; the first one, from rest, has none to compare with.
+   elemental subroutine follow(self, time, drive, drive_error, toughness)
+      class(approach_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: drive  !< K_eq [Pa m^1/2]
+      real(rk), intent(in) :: drive_error  !< by the meshes, as estimated [Pa m^1/2]
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk) :: step
+
+      step = time - self%time
+      if (.not. self%is_followed .or. drive < toughness) then
+         self%onset = time
+      else if (self%drive < toughness) then
+         self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
+      end if
+      if (self%is_followed .and. step > 0.0_rk) then
+         if (self%step > 0.0_rk) then
+            self%error = self%error + step/(step + self%step) &
+                         *(drive - self%drive - step*self%rate)
+         end if
+         self%rate = (drive - self%drive)/step
+         self%step = step
+      end if
+      self%is_followed = .true.
+      self%time = time
+      self%drive = drive
+      self%drive_error = drive_error
+   end subroutine follow
+
+   !> How far the time of the onset may be off [s]: what K_eq may be off, over its rate. Huge where
+   !! it does not rise.
+   elemental real(rk) function uncertainty(self, tolerance)
+      class(approach_t), intent(in) :: self
+      real(rk), intent(in) :: tolerance  !< on K_eq of growing tips [Pa m^1/2]
+
+      uncertainty = huge(1.0_rk)
+      if (self%rate > 0.0_rk) uncertainty = (abs(self%error) &
+                                             + self%drive_error + tolerance)/self%rate
+   end function uncertainty
+
+end module twolevel_onset

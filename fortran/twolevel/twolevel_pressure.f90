@@ -1,0 +1,176 @@
+!> Fluid pressure on the fracture faces of a window, from that of the coarse cells.
+!!
+!! The coarse level knows the pressure at the middles of its cells; between them it is linear.
+!! Toward a tip that goes on, a fluid of viscosity mu follows at the tip's speed V through an
+!! opening w that falls with the square root of the distance d: dp/dd = 12 mu V/w^2 goes with 1/d,
+!! so that the pressure is linear in ln d, from the last two middles on. So it is in cells that have
+!! grown; at the tips of others, and beyond the coarse fracture, it is that of the last cell. A face
+!! takes its mean with the weight 1/sqrt(d) with which it enters the stress intensity factor. Of the
+!! cell of the tip, only what is behind the tip counts.
+module twolevel_pressure
+   use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
+   use fine_mesh, only: fine_mesh_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: match_pressure, pressure_map_t
+
+   !> Each face of a window lies between two middles, or beyond the first of them.
+   type :: pressure_map_t
+      integer(ik), allocatable :: cell(:, :)  !< (2, fracture cells) coarse fracture cells
+      real(rk), allocatable :: weight(:)  !< of the second; negative beyond the first [-]
+   contains
+      procedure :: on_faces
+   end type pressure_map_t
+
+contains
+
+   !> Where the faces of a window lie among the coarse cells.
+   pure function match_pressure(fine, coarse, is_grown) result(map)
+      type(fine_mesh_t), intent(in) :: fine
+      type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells) fluid follows the tip in them
+      type(pressure_map_t) :: map
+      real(rk) :: ends(2), middle(coarse%fracture%n_cells)
+      logical :: is_tip(2), is_wet(coarse%fracture%n_cells)
+      integer(ik) :: end, f, i
+
+      associate (n => fine%fracture%n_cells)
+         allocate (map%cell(2, n), source=0_ik)
+         allocate (map%weight(n), source=0.0_rk)
+      end associate
+      do f = 1, maxval([0_ik, fine%fracture%cell_fracture])
+         call find_ends(fine, f, ends, is_tip)
+         call find_middles(coarse, f, ends, middle, is_wet)
+         do end = 1, 2
+            if (is_tip(end)) is_tip(end) = lies_in(coarse, is_grown .and. is_wet, ends(end))
+         end do
+         do i = 1, fine%fracture%n_cells
+            if (fine%fracture%cell_fracture(i) /= f) cycle
+            call match_face(fine%face_s(:2, i), ends, is_tip, middle, is_wet, map%cell(:, i), &
+                            map%weight(i))
+         end do
+      end do
+   end function match_pressure
+
+   !> Whether a tip lies in one of some coarse cells, and not beyond the coarse fracture.
+   pure logical function lies_in(coarse, are_meant, tip)
+      type(mesh_t), intent(in) :: coarse
+      logical, intent(in) :: are_meant(:)  !< (coarse fracture cells)
+      real(rk), intent(in) :: tip  !< arc length [m]
+
+      associate (s => coarse%fracture%cell_s)
+         lies_in = any(are_meant .and. s(1, :) - tip <= same_place*(s(2, :) - s(1, :)) &
+                       .and. tip - s(2, :) <= same_place*(s(2, :) - s(1, :)))
+      end associate
+   end function lies_in
+
+   !> The free tips of a fracture that the window holds.
+   pure subroutine find_ends(fine, fracture, ends, is_tip)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: fracture
+      real(rk), intent(out) :: ends(2)  !< arc length [m]; far away where there is none
+      logical, intent(out) :: is_tip(2)
+      integer(ik) :: end, tip
+
+      ends = [-huge(1.0_rk), huge(1.0_rk)]
+      is_tip = .false.
+      associate (here => fine%fracture)
+         do tip = 1, here%n_tips
+            if (here%tip_fracture(tip) /= fracture) cycle
+            end = here%tip_end(tip)
+            is_tip(end) = .true.
+            if (end == 1) then
+               ends(end) = minval(here%cell_s(1, :), mask=here%cell_fracture == fracture)
+            else
+               ends(end) = maxval(here%cell_s(2, :), mask=here%cell_fracture == fracture)
+            end if
+         end do
+      end associate
+   end subroutine find_ends
+
+   !> The middles of what is behind the tips of the coarse cells of a fracture.
+   pure subroutine find_middles(coarse, fracture, ends, middle, is_wet)
+      type(mesh_t), intent(in) :: coarse
+      integer(ik), intent(in) :: fracture
+      real(rk), intent(in) :: ends(2)  !< [m]
+      real(rk), intent(out) :: middle(:)  !< (coarse fracture cells) arc length [m]
+      logical, intent(out) :: is_wet(:)  !< of this fracture, and not ahead of a tip
+      integer(ik) :: j
+
+      do j = 1, coarse%fracture%n_cells
+         associate (s => coarse%fracture%cell_s(:, j))
+            middle(j) = 0.5_rk*(max(s(1), ends(1)) + min(s(2), ends(2)))
+            is_wet(j) = coarse%fracture%cell_fracture(j) == fracture .and. s(1) < ends(2) &
+                        .and. s(2) > ends(1)
+         end associate
+      end do
+   end subroutine find_middles
+
+   !> The two middles that the pressure on a face follows from.
+   pure subroutine match_face(s, ends, is_tip, middle, is_wet, cell, weight)
+      real(rk), intent(in) :: s(2)  !< its ends [m]
+      real(rk), intent(in) :: ends(2)  !< of the fracture [m]
+      logical, intent(in) :: is_tip(2)
+      real(rk), intent(in) :: middle(:)  !< of the coarse cells [m]
+      logical, intent(in) :: is_wet(:)
+      integer(ik), intent(out) :: cell(2)
+      real(rk), intent(out) :: weight  !< of the second [-]
+      real(rk) :: at, d(2)
+      integer(ik) :: end
+
+      at = 0.5_rk*sum(s)
+      cell = 0
+      weight = 0.0_rk
+      do end = 1, 2
+         if (.not. is_tip(end)) cycle
+         cell(1) = minloc(abs(middle - ends(end)), dim=1, mask=is_wet)
+         if (cell(1) == 0) return
+         cell(2) = minloc(abs(middle - ends(end)), dim=1, &
+                          mask=is_wet .and. abs(middle - middle(cell(1))) > 0.0_rk)
+         if (cell(2) == 0) cell(2) = cell(1)
+         d = abs(middle(cell) - ends(end))
+         if (abs(at - ends(end)) > d(2)) cycle
+         if (d(2) > d(1)) weight = (mean_logarithm(abs(s - ends(end))) - log(d(1)))/log(d(2)/d(1))
+         return
+      end do
+      cell(1) = maxloc(middle, dim=1, mask=is_wet .and. middle <= at)
+      cell(2) = minloc(middle, dim=1, mask=is_wet .and. middle > at)
+      if (cell(1) == 0) cell(1) = cell(2)
+      if (cell(2) == 0) cell(2) = cell(1)
+      if (cell(1) == cell(2)) return
+      weight = (at - middle(cell(1)))/(middle(cell(2)) - middle(cell(1)))
+   end subroutine match_face
+
+   !> Mean of ln d between two distances with the weight 1/sqrt(d).
+   pure real(rk) function mean_logarithm(d)
+      real(rk), intent(in) :: d(2)  !< [m]
+      real(rk) :: lower, upper
+
+      lower = minval(d)
+      upper = maxval(d)
+      mean_logarithm = sqrt(upper)*(log(upper) - 2.0_rk)
+      if (lower > 0.0_rk) mean_logarithm = mean_logarithm - sqrt(lower)*(log(lower) - 2.0_rk)
+      mean_logarithm = mean_logarithm/(sqrt(upper) - sqrt(lower))
+   end function mean_logarithm
+
+   !> Pressure on the faces. It does not rise beyond the last middle, and is not below what the
+   !! fluid bears.
+   pure function on_faces(self, pressure, lowest) result(found)
+      class(pressure_map_t), intent(in) :: self
+      real(rk), intent(in) :: pressure(:)  !< of the coarse fracture cells [Pa]
+      real(rk), intent(in) :: lowest  !< [Pa]
+      real(rk) :: found(size(self%weight))  !< [Pa]
+      integer(ik) :: i
+
+      do i = 1, size(found, kind=ik)
+         associate (p => pressure(self%cell(:, i)), weight => self%weight(i))
+            found(i) = p(1) + weight*(p(2) - p(1))
+            if (weight < 0.0_rk) found(i) = max(lowest, min(p(1), found(i)))
+         end associate
+      end do
+   end function on_faces
+
+end module twolevel_pressure

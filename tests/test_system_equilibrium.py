@@ -1,0 +1,128 @@
+"""Growth in equilibrium without a fluid, against energy balances and closed forms."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from system_scene import TOP, numbers, record, rows, run
+
+pytestmark = pytest.mark.usefixtures("program")
+
+CASE = TOP / "verification/length_control"
+BEND = (CASE / "bend.nml").read_text()
+DISC = (TOP / "inputs/paper_b/disc_path_45.nml").read_text().replace("'paris'", "'equilibrium'")
+
+# K_I of the beam at f = 1 and a/W from 0.1 to 0.6 (Kaya and Erdogan 1987) [MPa m^1/2].
+BENDING = (3.521728, 5.018999, 6.547745, 8.478782, 11.258772, 15.766807)
+
+
+def changed(text: str, *changes: tuple[str, str]) -> str:
+    """Give a text with pieces replaced, each of which must stand in it."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def check_complementarity(out: Path, toughness: float) -> None:
+    """No state has a tip above K_IC, and tips that have grown are at it within 1 %."""
+    grown = 0
+    for tip in rows(out / "tips.csv"):
+        ratio = float(tip["keq_pa_sqrtm"]) / toughness
+        assert ratio < 1 + 1e-6
+        if float(tip["advance_m"]) > 0:
+            assert ratio > 0.99
+            grown += 1
+    assert grown > 0
+
+
+def test_a_beam_snaps_back(tmp_path: Path) -> None:
+    """The factor falls with the length as K_IC/K_I (closed form)."""
+    out = run(tmp_path, BEND)
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors == pytest.approx([1 / k for k in BENDING], rel=3e-3)
+    check_complementarity(out, 1.0e6)
+    for table in ("tips.csv", "fractures.csv"):
+        for row in rows(out / table):
+            assert float(row["load_factor"]) == factors[int(row["history_row"]) - 1]
+    assert record(out)["warnings"] == []
+
+
+def test_energy_of_curved_wings(tmp_path: Path) -> None:
+    """G_c dL is half f^2 dC: the compliance knows nothing of stress intensity factors.
+
+    The load factor rises first and then snaps back; both wings open and curve on the way. The
+    midpoint rule is of second order in the increment: 0.3 % here.
+    """
+    out = run(tmp_path, changed(DISC, ("stop_gain = 0.026", "stop_gain = 0.0195")))
+    check_complementarity(out, 2.0e6)
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors[0] < max(factors) > factors[-1]
+    energies = numbers(out / "history.csv", "strain_energy_j")
+    lengths = numbers(out / "history.csv", "fracture_length_m")
+    toughness = (2.0e6) ** 2 * (1 - 0.21**2) / 15.0e9
+    states = list(zip(factors, energies, lengths, strict=True))[4:]
+    for (f, energy, length), (g, later, longer) in pairwise(states):
+        released = 0.5 * f * g * (2 * later / g**2 - 2 * energy / f**2)
+        assert released == pytest.approx(toughness * (longer - length), rel=0.02)
+
+
+def test_a_dead_load_releases_energy(tmp_path: Path) -> None:
+    """The integral of G - G_c from 0.1 to 0.6 W at the factor of the onset, by the closed form."""
+    text = changed(BEND, ("increment = 0.1", "increment = 0.025"))
+    out = run(tmp_path, f"{text}\n&load control = 'dead' /\n")
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors == pytest.approx([1 / BENDING[0]] * len(factors), rel=3e-3)
+    begins, ends = (row for row in rows(out / "events.csv") if row["kind"] == "unstable_growth")
+    assert begins["detail"] == "unstable growth begins"
+    found = re.search(r"([0-9.e+-]+) m in all, ([0-9.e+-]+) J/m released", ends["detail"])
+    assert found is not None
+    assert float(found.group(1)) == pytest.approx(0.5, rel=1e-9)
+    new_faces = 1.0e12 * (1 - 0.3**2) / 10.0e9
+    surplus = [new_faces * ((k / BENDING[0]) ** 2 - 1) for k in BENDING]
+    # Five intervals: Simpson on two, 3/8 on three; 1 % by the trapezoids of either.
+    exact = 0.1 / 3 * (surplus[0] + 4 * surplus[1] + surplus[2])
+    exact += 0.3 / 8 * (surplus[2] + 3 * surplus[3] + 3 * surplus[4] + surplus[5])
+    assert float(found.group(2)) == pytest.approx(exact, rel=0.02)
+
+
+def test_equal_cracks_go_together(tmp_path: Path) -> None:
+    """The outer ones grow alike, and the branch is named unstable; the middle one stays."""
+    out = run(tmp_path, (CASE / "three_cracks.nml").read_text())
+    check_complementarity(out, 1.0e6)
+    gain = dict.fromkeys(range(1, 7), 0.0)
+    for tip in rows(out / "tips.csv"):
+        gain[int(tip["tip"])] += float(tip["advance_m"])
+    assert gain[3] == gain[4] == 0.0
+    assert gain[1] > 0.28
+    for other in (2, 5, 6):
+        assert gain[other] == pytest.approx(gain[1], rel=1e-6)
+    kinds = [row["kind"] for row in rows(out / "events.csv")]
+    assert "bifurcation" in kinds
+
+
+def test_the_longer_crack_wins(tmp_path: Path) -> None:
+    """One per cent decides, whichever crack has it and wherever it stands in the input."""
+    text = (CASE / "three_cracks.nml").read_text()
+    for name, number in (("lower", 1), ("upper", 3)):
+        place = text.index(f"'{name}'")
+        longer = text[:place] + text[place:].replace("-0.15, 0.15", "-0.15, 0.153", 1)
+        out = run(tmp_path, longer, name)
+        grown = {
+            int(tip["fracture"]) for tip in rows(out / "tips.csv") if float(tip["advance_m"]) > 0
+        }
+        assert grown == {number}
+
+
+def test_a_stable_crack_takes_more_and_more(tmp_path: Path) -> None:
+    """A frictional crack's wings need a rising load; the run ends where the load does."""
+    text = (TOP / "inputs/paper_a/single_flaw.nml").read_text().replace("'paris'", "'equilibrium'")
+    out = run(tmp_path, text)
+    factors = numbers(out / "history.csv", "load_factor")
+    assert factors == sorted(factors)
+    grown = [float(tip["advance_m"]) for tip in rows(out / "tips.csv")]
+    assert math.isclose(sum(grown[::2]), sum(grown[1::2]), rel_tol=1e-3)

@@ -1,0 +1,1 @@
+"""An independent model of scene C2: displacement discontinuities and fluid sources in a plane."""
