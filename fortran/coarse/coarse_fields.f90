@@ -10,7 +10,7 @@ module coarse_fields
    implicit none(type, external)
    private
 
-   public :: cell_contents, cell_stresses, corner_tractions, nodal_values
+   public :: cell_contents, cell_stresses, corner_tractions, curved_displacement, nodal_values
 
 contains
 
@@ -81,28 +81,16 @@ contains
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
       integer(ik) :: c, k, v
-      real(rk) :: gradient(2, 2, 3), rotation(3), offset(2), centre(2), pressure_gradient(2)
+      real(rk) :: gradient(2, 2, 3), offset(2), pressure_gradient(2)
       real(rk), allocatable :: weight(:)
-      logical :: free(3)
 
       allocate (weight(mesh%n_nodes), source=0.0_rk)
       values = 0.0_rk
       do c = 1, mesh%n_cells
-         centre = sum(mesh%xy(:, mesh%cell_nodes(:, c)), dim=2)/3.0_rk
-         do k = 1, 3
-            call corner_strain(mesh, rock, regions, unknowns, tractions, c, k, gradient(:, :, k), &
-                               rotation(k))
-            free(k) = rotation_is_free(regions, regions%region_of_node(mesh%cell_nodes(k, c)))
-         end do
+         call corner_gradients(mesh, rock, regions, unknowns, tractions, c, gradient)
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
-            offset = mesh%xy(:, v) - centre
-            ! A loaded corner of the body knows no rotation: take the cell's other
-            ! corners'.
-            if (free(k) .and. .not. all(free)) rotation(k) = sum(rotation, mask=.not. free) &
-                                                             /real(count(.not. free), rk)
-            gradient(2, 1, k) = gradient(2, 1, k) + rotation(k)
-            gradient(1, 2, k) = gradient(1, 2, k) - rotation(k)
+            offset = mesh%xy(:, v) - cell_centre(mesh, c)
             call corner_gradient(mesh, rock%resistivity, regions, regions%flux, unknowns(3, :), c, &
                                  k, pressure_gradient)
             values(1:2, v) = values(1:2, v) + unknowns(1:2, c) + matmul(gradient(:, :, k), offset)
@@ -114,6 +102,76 @@ contains
          values(:, v) = values(:, v)/weight(v)
       end do
    end subroutine nodal_values
+
+   !> Displacement at the mesh's nodes, and its gradient there, for an interpolation that is exact
+   !! for quadratic fields: from a cell's centre to a node with the mean of the gradients of both.
+   subroutine curved_displacement(mesh, rock, regions, unknowns, tractions, values, gradients)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      real(rk), intent(out) :: values(:, :)  !< (2, n_nodes) [m]
+      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) d u_i / d x_j [-]
+      integer(ik) :: c, k, v
+      real(rk) :: gradient(2, 2, 3), at_centre(2, 2)
+      real(rk), allocatable :: weight(:)
+
+      allocate (weight(mesh%n_nodes), source=0.0_rk)
+      values = 0.0_rk
+      gradients = 0.0_rk
+      do c = 1, mesh%n_cells
+         call corner_gradients(mesh, rock, regions, unknowns, tractions, c, gradient)
+         at_centre = sum(gradient, dim=3)/3.0_rk
+         do k = 1, 3
+            v = mesh%cell_nodes(k, c)
+            values(:, v) = values(:, v) + unknowns(1:2, c) &
+                           + matmul(0.5_rk*(gradient(:, :, k) + at_centre), &
+                                    mesh%xy(:, v) - cell_centre(mesh, c))
+            gradients(:, :, v) = gradients(:, :, v) + gradient(:, :, k)
+            weight(v) = weight(v) + 1.0_rk
+         end do
+      end do
+      do v = 1, mesh%n_nodes
+         values(:, v) = values(:, v)/weight(v)
+         gradients(:, :, v) = gradients(:, :, v)/weight(v)
+      end do
+   end subroutine curved_displacement
+
+   pure function cell_centre(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function cell_centre
+
+   !> Gradients of the displacement at the corners of a cell, d u_i / d x_j.
+   pure subroutine corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(out) :: gradient(2, 2, 3)  !< [-]
+      real(rk) :: rotation(3)
+      integer(ik) :: k
+      logical :: free(3)
+
+      do k = 1, 3
+         call corner_strain(mesh, rock, regions, unknowns, tractions, cell, k, &
+                            gradient(:, :, k), rotation(k))
+         free(k) = rotation_is_free(regions, regions%region_of_node(mesh%cell_nodes(k, cell)))
+      end do
+      ! A loaded corner of the body knows no rotation: take the cell's other corners'.
+      if (any(free) .and. .not. all(free)) then
+         rotation = merge(sum(rotation, mask=.not. free)/real(count(.not. free), rk), rotation, &
+                          free)
+      end if
+      gradient(2, 1, :) = gradient(2, 1, :) + rotation
+      gradient(1, 2, :) = gradient(1, 2, :) - rotation
+   end subroutine corner_gradients
 
    !> Strain (without rotation) at a corner: eps = A (sigma + alpha p I), and the vertex' rotation.
    pure subroutine corner_strain(mesh, rock, regions, unknowns, tractions, cell, k, strain, &

@@ -37,9 +37,33 @@ module coarse_matrix
       real(rk), allocatable :: flow_known(:)  !< (n_blocks) the same for the flow [m2/s]
       !> (n_cells) content per pressure at fixed traction [m2/Pa]
       real(rk), allocatable :: storage(:)
+   contains
+      procedure :: elastic_forces
    end type matrix_t
 
 contains
+
+   !> What the elastic part makes of unknowns: the left-hand side but for the flow.
+   pure function elastic_forces(self, unknowns) result(force)
+      class(matrix_t), intent(in) :: self
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), allocatable :: force(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
+      integer(ik) :: entry, i, j
+      logical :: acts(self%n_blocks)
+
+      allocate (force(3, self%n_blocks), source=0.0_rk)
+      acts = any(abs(unknowns) > 0.0_rk, dim=1)
+      do i = 1, self%n_blocks
+         do entry = self%columns%first(i), self%columns%last(i)
+            j = self%columns%item(entry)
+            if (.not. (acts(i) .or. acts(j))) cycle
+            associate (block => self%elastic(:, :, entry))
+               force(:, i) = force(:, i) + matmul(block, unknowns(:, j))
+               if (j /= i) force(:, j) = force(:, j) + matmul(unknowns(:, i), block)
+            end associate
+         end do
+      end do
+   end function elastic_forces
 
    !> Discretize Biot's equations on the mesh: responses in the regions and the global matrix.
    subroutine discretize(mesh, rock, sides, regions, matrix, error)

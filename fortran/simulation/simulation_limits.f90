@@ -77,8 +77,10 @@ module simulation_limits
               "over the largest K of all tips, or over K_IC if that is larger and tips may grow", &
               "give smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
-              10.0_rk, "Estimated error of K of a tip that may grow, over K_IC", &
-              "give smaller cells around the tip: growth in this state is not certain"), &
+              10.0_rk, "Estimated error of K of a tip that may grow, over K_IC; with a fluid "// &
+              "that of both levels", &
+              "growth in this state is not certain: give smaller cells around the tip, or with "// &
+              "a fluid a larger window"), &
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
               "Largest K_eq, over K_IC, of the tips that may grow, when growth in the state is "// &
               "done", &

@@ -13,14 +13,16 @@ module twolevel_faces
    use contact_law, only: contact_law_t
    use fine_contact, only: contact_t, new_contact
    use fine_faces, only: face_conditions_t, face_contact, face_jump, loaded_everywhere
+   use fine_line, only: line_parameter, line_shapes
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
+   use fine_quadrature, only: gauss_rule
    use mesh_types, only: mesh_t
    use twolevel_pressure, only: match_pressure, pressure_map_t
    implicit none(type, external)
    private
 
-   public :: face_map_t, match_faces
+   public :: coarse_jumps, face_map_t, match_faces
 
    !> Which coarse fracture cell each fracture cell of a window belongs to.
    type :: face_map_t
@@ -142,6 +144,72 @@ contains
          end associate
       end do
    end function history
+
+   !> The window's jumps as the coarse level would have them: in each of its cells the linear ones
+   !! with the same mean and the same first moment.
+   pure function coarse_jumps(fine, displacement, coarse) result(jump)
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(mesh_t), intent(in) :: coarse
+      real(rk), allocatable :: jump(:, :, :)  !< as state_t has them [m]; 0 beyond the window
+      integer(ik), parameter :: n_points = 3
+      real(rk) :: at_nodes(2, 3), here(2), length, part(2), points(n_points), weights(n_points)
+      real(rk) :: place, share, x
+      integer(ik) :: i, j, k
+
+      call gauss_rule(n_points, points, weights)
+      allocate (jump(2, 2, coarse%fracture%n_cells), source=0.0_rk)
+      do i = 1, fine%fracture%n_cells
+         associate (tau => fine%face_tangent(:, i))
+            do k = 1, 3
+               here = displacement(:, fine%face_nodes(k, 2, i)) &
+                      - displacement(:, fine%face_nodes(k, 1, i))
+               at_nodes(:, k) = [tau(1)*here(2) - tau(2)*here(1), dot_product(tau, here)]
+            end do
+         end associate
+         do j = 1, coarse%fracture%n_cells
+            if (coarse%fracture%cell_fracture(j) /= fine%fracture%cell_fracture(i)) cycle
+            associate (s => fine%face_s(:, i), ends => coarse%fracture%cell_s(:, j), &
+                       tip_end => fine%face_tip(i))
+               ! The part of the face that lies in the cell, as parameters on the face.
+               part = (min(max(ends, s(1)), s(2)) - s(1))/(s(2) - s(1))
+               if (.not. part(2) > part(1)) cycle
+               part = [line_parameter(part(1), tip_end), line_parameter(part(2), tip_end)]
+               length = (s(2) - s(1))/(ends(2) - ends(1))  ! of the face, in cells
+               do k = 1, n_points
+                  x = part(1) + points(k)*(part(2) - part(1))
+                  share = line_place(x, tip_end)
+                  here = matmul(at_nodes, line_shapes(x)) &
+                         *weights(k)*(part(2) - part(1))*line_stretch(x, tip_end)*length
+                  ! From the middle of the cell; the jump is known at +-1/6.
+                  place = (s(1) + share*(s(2) - s(1)) - ends(1))/(ends(2) - ends(1)) - 0.5_rk
+                  jump(:, 1, j) = jump(:, 1, j) + (1.0_rk - 2.0_rk*place)*here
+                  jump(:, 2, j) = jump(:, 2, j) + (1.0_rk + 2.0_rk*place)*here
+               end do
+            end associate
+         end do
+      end do
+   end function coarse_jumps
+
+   !> Share of a face's length from its start at a parameter (fine_line).
+   elemental real(rk) function line_place(x, tip_end) result(share)
+      real(rk), intent(in) :: x  !< 0 to 1 [-]
+      integer(ik), intent(in) :: tip_end
+
+      share = x
+      if (tip_end == 1) share = x**2
+      if (tip_end == 2) share = 1.0_rk - (1.0_rk - x)**2
+   end function line_place
+
+   !> Its derivative by the parameter.
+   elemental real(rk) function line_stretch(x, tip_end) result(stretch)
+      real(rk), intent(in) :: x  !< 0 to 1 [-]
+      integer(ik), intent(in) :: tip_end
+
+      stretch = 1.0_rk
+      if (tip_end == 1) stretch = 2.0_rk*x
+      if (tip_end == 2) stretch = 2.0_rk*(1.0_rk - x)
+   end function line_stretch
 
    !> A coarse jump at a node of a face, linear along its coarse cell, where it is known at the
    !! third points.

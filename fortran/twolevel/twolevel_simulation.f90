@@ -19,6 +19,7 @@ module twolevel_simulation
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_trust, only: estimate_coarse_errors
    use twolevel_wells, only: next_switch
    implicit none(type, external)
    private
@@ -284,9 +285,13 @@ contains
       self%owes_state = .false.
       if (self%scene%growth%intensities) then
          if (may_grow .and. is_equilibrium(self)) then
+            call estimate_coarse_errors(self, timers, error)
+            if (allocated(error)) return
             call note_equilibrium(self, error)
          else
             call self%evaluate(timers, error)
+            if (allocated(error)) return
+            call estimate_coarse_errors(self, timers, error)
             if (allocated(error)) return
             if (may_grow) then
                call follow_tips(self, timers, error)

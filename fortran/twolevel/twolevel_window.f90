@@ -21,7 +21,7 @@ module twolevel_window
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: scene_t
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: complete_errors, tip_intensity
    use tips_types, only: intensity_t
    use twolevel_faces, only: face_map_t, match_faces
    implicit none(type, external)
@@ -45,6 +45,7 @@ module twolevel_window
       integer(ik) :: end = 0  !< of the tip, 1 or 2
       integer(ik) :: tip = 0  !< its number in the window's mesh
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
+      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
@@ -56,11 +57,18 @@ module twolevel_window
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
       type(face_map_t) :: faces
+      type(intensity_t) :: found  !< in the last solution, without the coarse level's error
+      !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
+      !! last [Pa m^1/2]: what they lack by it, and how large it may be
+      real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
    contains
       procedure :: build
       procedure :: set_rock
       procedure :: project
       procedure :: intensity
+      procedure :: intensity_with
+      procedure :: with_coarse_error
+      procedure :: displacement_at
    end type window_t
 
 contains
@@ -73,7 +81,6 @@ contains
       integer(ik), intent(in) :: fracture, end
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
-      type(mesher_t) :: mesher
       real(rk) :: tip(2), half
       integer(ik) :: side
 
@@ -99,7 +106,7 @@ contains
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
-      call build_mesh(spec, network, mesher, self%mesh, error)
+      call build_mesh(spec, network, self%mesher, self%mesh, error)
       if (allocated(error)) return
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
@@ -267,8 +274,71 @@ contains
       end if
       call self%model%solve(self%loads, self%displacement, error, self%contact)
       if (allocated(error)) return
-      call tip_intensity(self%model, self%loads, self%displacement, self%tip, result, error)
+      call tip_intensity(self%model, self%loads, self%displacement, self%tip, self%found, error)
+      if (.not. allocated(error)) result = self%with_coarse_error()
    end subroutine intensity
+
+   !> K_I and K_II under the last solution's loads with other displacements on the edge. Nothing is
+   !! remembered of it.
+   subroutine intensity_with(self, edge, k, error)
+      class(window_t), intent(inout) :: self
+      real(rk), intent(in) :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
+      real(rk), intent(out) :: k(2)  !< [Pa m^1/2]
+      type(error_t), allocatable, intent(out) :: error
+      type(fine_loads_t) :: loads
+      type(contact_t) :: contact
+      type(intensity_t) :: result
+      real(rk), allocatable :: displacement(:, :)
+
+      k = 0.0_rk
+      loads = self%loads
+      loads%boundary_displacement = edge
+      contact = self%contact
+      call self%model%solve(loads, displacement, error, contact)
+      if (allocated(error)) return
+      call tip_intensity(self%model, loads, displacement, self%tip, result, error, quickly=.true.)
+      k = [result%k1, result%k2]
+   end subroutine intensity_with
+
+   !> The intensities found last, with the coarse level's part of their errors as it was known last.
+   pure function with_coarse_error(self) result(intensity)
+      class(window_t), intent(in) :: self
+      type(intensity_t) :: intensity
+
+      intensity = self%found
+      intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
+      intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
+      intensity%k1_error = intensity%k1_error + self%uncertain(1)
+      intensity%k2_error = intensity%k2_error + self%uncertain(2)
+      call complete_errors(self%model%elasticity%crack_modulus(), intensity)
+   end function with_coarse_error
+
+   !> The displacement of the last solution at points of the window.
+   subroutine displacement_at(self, xy, displacement, error)
+      class(window_t), intent(in) :: self
+      real(rk), intent(in) :: xy(:, :)  !< (2, n) [m]
+      real(rk), intent(out) :: displacement(:, :)  !< (2, n) [m]
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: cells(size(xy, 2)), i
+      real(rk) :: area(3), determinant, gradients(2, 6), lambda(3), values(6)
+
+      call locate(self%mesher, xy, cells, error)
+      if (allocated(error)) return
+      associate (fine => self%model%mesh)
+         do i = 1, size(xy, 2, kind=ik)
+            associate (nodes => fine%cell_nodes(:, cells(i)), tip => fine%tip_corner(cells(i)))
+               lambda = barycentric(fine%xy(:, nodes(:3)), xy(:, i))
+               ! Quarter points: distances from the tip go with the square of the parameter.
+               if (tip > 0) then
+                  lambda = lambda/sqrt(max(1.0_rk - lambda(tip), tiny(1.0_rk)))
+                  lambda(tip) = 1.0_rk - (sum(lambda) - lambda(tip))
+               end if
+               call fine%evaluate(cells(i), lambda, values, gradients, area, determinant)
+               displacement(:, i) = matmul(self%displacement(:, nodes), values)
+            end associate
+         end do
+      end associate
+   end subroutine displacement_at
 
    !> Contact on a new mesh: that of the window before, and beyond it what the coarse level has.
    subroutine remember_contact(self, state)

@@ -1,0 +1,220 @@
+!> The coarse level's part in the errors of intensities: nothing where both levels are exact, the
+!! windows' jumps in the coarse level's terms, and interpolation that is exact for quadratic fields.
+program test_twolevel_trust
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: step_report_t
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: scene_t
+   use twolevel_faces, only: coarse_jumps
+   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_trust, only: curved_edge, estimate_coarse_errors
+   implicit none(type, external)
+
+   real(rk), parameter :: ends_x(2) = [0.8_rk, 1.2_rk], ends_y(2) = [0.9_rk, 1.1_rk]
+   type(checks_t) :: checks
+   type(timers_t) :: timers
+
+   call test_uniform_stress()
+   call test_balance()
+   call test_linear_jump()
+   call test_root_jump()
+   call test_curved_edge()
+   call checks%finish()
+
+contains
+
+   !> One fracture in its initial state, its windows evaluated.
+   subroutine start(friction, simulation)
+      real(rk), intent(in) :: friction
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(scene_t) :: scene
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call add_fracture(scene, "f", ends_x, ends_y, friction, 0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "begin")
+      call simulation%equilibrate(timers, report, error)
+      call checks%no_error(error, "initial state")
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "tips")
+   end subroutine start
+
+   !> A sticking fracture in uniform stress: both levels are exact, so nothing is lacking.
+   subroutine test_uniform_stress()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call start(5.0_rk, simulation)
+      call estimate_coarse_errors(simulation, timers, error)
+      call checks%no_error(error, "estimate")
+      do i = 1, size(simulation%tip)
+         associate (window => simulation%windows%window(i), tip => simulation%tip(i))
+            ! A millionth of 10 MPa*sqrt(pi*0.2 m).
+            call checks%is_true(all(abs(window%lacking) <= 8.0_rk), "nothing is lacking")
+            call checks%is_true(all(window%uncertain <= 32.0_rk), "nothing is uncertain")
+            call checks%is_true(max(tip%intensity%k1_error, tip%intensity%k2_error) <= 40.0_rk, &
+                                "a tip that sticks is certain")
+         end associate
+      end do
+   end subroutine test_uniform_stress
+
+   !> The forces on the cells of a state that fulfils the equations are those of the boundary; where
+   !! the faces slip, the estimate is no more than a few per cent, and is in the tips.
+   subroutine test_balance()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: force(:, :)
+      integer :: i
+
+      call start(0.1_rk, simulation)
+      force = simulation%model%matrix%elastic_forces(simulation%state%unknowns) &
+              - simulation%model%matrix%elastic_known
+      associate (n => simulation%mesh%n_cells)
+         ! 20 MPa on a cell's side of 1 cm are 2e5 N/m.
+         call checks%is_close(maxval(abs(force(:2, :n))), 0.0_rk, 1.0e-3_rk, "balance of forces")
+      end associate
+      call estimate_coarse_errors(simulation, timers, error)
+      call checks%no_error(error, "estimate")
+      do i = 1, size(simulation%tip)
+         associate (window => simulation%windows%window(i), now => simulation%tip(i)%intensity)
+            call checks%is_true(window%uncertain(2) > 0.0_rk, "the coarse level has a part")
+            call checks%is_true(window%uncertain(2) < 0.05_rk*abs(now%k2), "a small one")
+            call checks%is_close(now%k2_error, window%found%k2_error + window%uncertain(2), &
+                                 1.0_rk, "both parts add up")
+            call checks%is_close(now%k2_corrected, now%k2 + window%lacking(2), 1.0_rk, &
+                                 "what is lacking")
+            call checks%is_close(now%k1_error, 0.0_rk, 1.0_rk, "closed faces have no K_I")
+         end associate
+      end do
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "the same state again")
+      call checks%is_true(all(simulation%tip%intensity%k2_error >= &
+                              simulation%windows%window%uncertain(2)), "the estimate stays")
+   end subroutine test_balance
+
+   !> A jump that is linear along the fracture is what the coarse level has at its third points, in
+   !! all cells that lie in the window as a whole.
+   subroutine test_linear_jump()
+      type(twolevel_simulation_t) :: simulation
+      real(rk), allocatable :: found(:, :, :)
+      real(rk) :: s, worst
+      integer(ik) :: cell, end, n
+
+      call start(5.0_rk, simulation)
+      found = jumps_of(simulation, .false.)
+      worst = 0.0_rk
+      n = 0
+      associate (fracture => simulation%mesh%fracture)
+         do cell = 1, fracture%n_cells
+            if (fracture%cell_s(1, cell) < entry_of(simulation)) cycle
+            if (cell == fracture%n_cells) cycle  ! the tip's one node has no jump
+            n = n + 1
+            do end = 1, 2
+               s = fracture%cell_s(1, cell) &
+                   + end*(fracture%cell_s(2, cell) - fracture%cell_s(1, cell))/3.0_rk
+               worst = max(worst, maxval(abs(found(:, end, cell) &
+                                             - [2.0_rk + s, 1.0_rk - 3.0_rk*s])))
+            end do
+         end do
+      end associate
+      call checks%is_true(n > 1, "cells lie in the window")
+      call checks%is_close(worst, 0.0_rk, 1.0e-12_rk, "a linear jump")
+   end subroutine test_linear_jump
+
+   !> A jump of the root of the distance d from the tip: its integral over the last cells, where the
+   !! quarter-point element is exact, is 2/3 d^(3/2), and its first moment 2/5 d^(5/2).
+   subroutine test_root_jump()
+      type(twolevel_simulation_t) :: simulation
+      real(rk), allocatable :: found(:, :, :)
+      real(rk) :: first_moment, length, mean
+      integer(ik) :: last
+
+      call start(5.0_rk, simulation)
+      found = jumps_of(simulation, .true.)
+      associate (fracture => simulation%mesh%fracture)
+         last = fracture%n_cells
+         length = fracture%cell_s(2, last) - fracture%cell_s(1, last)
+         mean = 2.0_rk/3.0_rk*sqrt(length)
+         first_moment = sqrt(length)*(1.0_rk/3.0_rk - 2.0_rk/5.0_rk)  ! about the cell's middle
+      end associate
+      ! Elements behind the rosette take the root as a quadratic.
+      call checks%is_close(0.5_rk*sum(found(1, :, last)), mean, 2.0e-3_rk*mean, "mean of the root")
+      call checks%is_close(found(1, 2, last) - found(1, 1, last), 4.0_rk*first_moment, &
+                           1.0e-2_rk*mean, "its slope")
+   end subroutine test_root_jump
+
+   !> Coarse jumps of the second window for a jump in its displacement on side -: linear in s, or
+   !! the root of the distance from the tip.
+   function jumps_of(simulation, is_root) result(found)
+      type(twolevel_simulation_t), intent(in) :: simulation
+      logical, intent(in) :: is_root
+      real(rk), allocatable :: displacement(:, :), found(:, :, :)
+      real(rk) :: jump(2), s, tip
+      integer(ik) :: i, k
+
+      associate (fine => simulation%windows%window(2)%model%mesh)
+         allocate (displacement(2, fine%n_nodes), source=0.0_rk)
+         tip = simulation%mesh%fracture%cell_s(2, simulation%mesh%fracture%n_cells)
+         do i = 1, fine%fracture%n_cells
+            do k = 1, 3
+               s = fine%face_s(k, i)
+               jump = [2.0_rk + s, 1.0_rk - 3.0_rk*s]
+               if (is_root) jump = sqrt(max(0.0_rk, tip - s))
+               associate (tau => fine%face_tangent(:, i))
+                  displacement(:, fine%face_nodes(k, 2, i)) = jump(1)*[-tau(2), tau(1)] &
+                                                              + jump(2)*tau
+               end associate
+            end do
+         end do
+         found = coarse_jumps(fine, displacement, simulation%mesh)
+      end associate
+   end function jumps_of
+
+   !> Where the fracture enters the second window [m].
+   pure real(rk) function entry_of(simulation)
+      type(twolevel_simulation_t), intent(in) :: simulation
+
+      entry_of = minval(simulation%windows%window(2)%model%mesh%face_s)
+   end function entry_of
+
+   !> A quadratic displacement, given by its values and gradients at the coarse nodes.
+   subroutine test_curved_edge()
+      type(twolevel_simulation_t) :: simulation
+      real(rk), allocatable :: edge(:, :), gradient(:, :, :), values(:, :)
+      real(rk) :: worst
+      integer(ik) :: v
+
+      call start(5.0_rk, simulation)
+      associate (mesh => simulation%mesh, window => simulation%windows%window(1))
+         allocate (values(2, mesh%n_nodes), gradient(2, 2, mesh%n_nodes))
+         do v = 1, mesh%n_nodes
+            values(:, v) = quadratic(mesh%xy(:, v))
+            associate (x => mesh%xy(1, v), y => mesh%xy(2, v))
+               gradient(:, 1, v) = [2.0_rk*x - y, -3.0_rk*y]
+               gradient(:, 2, v) = [-x, 4.0_rk*y - 3.0_rk*x + 1.0_rk]
+            end associate
+         end do
+         edge = curved_edge(simulation, window, values, gradient)
+         worst = 0.0_rk
+         do v = 1, window%model%mesh%n_nodes
+            if (.not. window%model%mesh%on_boundary(v)) cycle
+            worst = max(worst, maxval(abs(edge(:, v) - quadratic(window%model%mesh%xy(:, v)))))
+         end do
+      end associate
+      call checks%is_close(worst, 0.0_rk, 1.0e-12_rk, "a quadratic field on the edge")
+   end subroutine test_curved_edge
+
+   pure function quadratic(xy) result(u)
+      real(rk), intent(in) :: xy(2)
+      real(rk) :: u(2)
+
+      u = [xy(1)**2 - xy(1)*xy(2), 2.0_rk*xy(2)**2 - 3.0_rk*xy(1)*xy(2) + xy(2)]
+   end function quadratic
+
+end program test_twolevel_trust

@@ -1,0 +1,239 @@
+!> How far the intensities of the windows can be trusted: the coarse level's part of their errors.
+!!
+!! A window takes the displacement on its edge from the coarse level. What is wrong with it is put
+!! right once, to see what that does to K:
+!!   - Inside the windows, on the fractures and in the rock, these know better than the coarse
+!!     level, which gets what they found as a defect correction (Hackbusch 1984), all windows at
+!!     once.
+!!   - Between its cells' centres the coarse displacement is interpolated so that quadratic
+!!     fields are exact, not linearly.
+!! This costs a substitution in the factors of the coarse level and a solution of each window, whose
+!! mesh and factors stay.
+!!
+!! What the coarse level gets wrong outside of all windows, and its fluid pressure, is not seen. One
+!! comparison does not tell how fast further ones would converge; Roache (1994) asks for a safety
+!! factor of 3 then.
+module twolevel_trust
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_tips, timers_t
+   use coarse_fields, only: corner_tractions, curved_displacement
+   use coarse_layout, only: block_count, end_block
+   use mesh_types, only: mesh_t
+   use twolevel_faces, only: coarse_jumps
+   use twolevel_state, only: two_levels_t
+   use twolevel_window, only: window_t
+   implicit none(type, external)
+   private
+
+   public :: curved_edge, estimate_coarse_errors
+
+   real(rk), parameter :: safety = 3.0_rk  !< error over what the correction changes [-]
+
+contains
+
+   !> Estimate what the coarse level makes wrong in the intensities that were evaluated last.
+   subroutine estimate_coarse_errors(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (size(self%tip) == 0) return
+      call timers%start(phase_tips)
+      call estimate(self, error)
+      call timers%stop(phase_tips)
+   end subroutine estimate_coarse_errors
+
+   subroutine estimate(self, error)
+      class(two_levels_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: displacement(2, self%mesh%n_nodes), gradient(2, 2, self%mesh%n_nodes)
+      real(rk) :: k(2)
+      integer(ik) :: i
+
+      call improve(self, displacement, gradient, error)
+      if (allocated(error)) return
+      do i = 1, size(self%tip, kind=ik)
+         associate (window => self%windows%window(i))
+            call window%intensity_with(curved_edge(self, window, displacement, gradient), k, error)
+            if (allocated(error)) return
+            window%lacking = k - [window%found%k1, window%found%k2]
+            ! What acts on one mode acts on both: that it hardly changes one of them is chance,
+            ! unless the law of contact closes the tip.
+            window%uncertain = safety*norm2(window%lacking)
+            if (window%found%closed) window%uncertain(1) = safety*abs(window%lacking(1))
+            self%tip(i)%intensity = window%with_coarse_error()
+         end associate
+      end do
+   end subroutine estimate
+
+   !> What the coarse displacement at the nodes would be if the coarse level agreed with the
+   !! windows inside of them: jumps on the fractures are theirs, and cells all of whose neighbours
+   !! lie in the same window get the forces that make the windows' displacements fulfil their
+   !! equations.
+   subroutine improve(self, displacement, gradient, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), intent(out) :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: difference(:, :), force(:, :), g(:), q(:), tractions(:)
+      real(rk), allocatable :: unknowns(:, :)
+      integer(ik), allocatable :: speaker(:)
+
+      associate (model => self%model)
+         speaker = speakers(self)
+         allocate (q(model%condensed%layout%count()), g(model%condensed%layout%count()))
+         call find_differences(self, speaker, difference, q, error)
+         if (allocated(error)) return
+         force = model%matrix%elastic_forces(difference)
+         force(3, :) = 0.0_rk
+         where (spread(.not. is_within(self, speaker), 1, 3)) force = 0.0_rk
+         call model%condensed%condense(force, g, error)
+         if (allocated(error)) return
+         allocate (unknowns, mold=force)
+         call model%condensed%expand(q, force, unknowns, error)
+         if (allocated(error)) return
+         unknowns = unknowns + self%state%unknowns
+         call corner_tractions(model%regions, unknowns, tractions)
+         call curved_displacement(self%mesh, model%rock, model%regions, unknowns, tractions, &
+                                  displacement, gradient)
+      end associate
+   end subroutine improve
+
+   !> The window that speaks for each block of the coarse level, 0 for none: that whose tip is
+   !! nearest, of those that hold the centre of the cell, or the whole fracture cell.
+   pure function speakers(self) result(speaker)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), allocatable :: speaker(:)  !< (blocks)
+      integer(ik) :: cell
+
+      associate (mesh => self%mesh, fracture => self%mesh%fracture)
+         allocate (speaker(block_count(mesh)))
+         do cell = 1, mesh%n_cells
+            speaker(cell) = nearest_window(self, spread(centre_of(mesh, cell), 2, 2))
+         end do
+         do cell = 1, fracture%n_cells
+            speaker(end_block(mesh, cell, [1_ik, 2_ik])) = &
+               nearest_window(self, fracture%point_xy(:, fracture%cell_points(:, cell)))
+         end do
+      end associate
+   end function speakers
+
+   pure function centre_of(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function centre_of
+
+   !> Of the windows that hold both points, the one whose tip is nearest, else 0.
+   pure function nearest_window(self, points) result(nearest)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: points(2, 2)  !< xy in columns [m]
+      integer(ik) :: nearest
+      real(rk) :: distance, shortest
+      integer(ik) :: w
+
+      nearest = 0
+      shortest = huge(1.0_rk)
+      do w = 1, size(self%windows%window, kind=ik)
+         associate (window => self%windows%window(w))
+            if (any(minval(points, dim=2) < window%lower) .or. &
+                any(maxval(points, dim=2) > window%upper)) cycle
+            distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(w)%xy)
+            if (distance >= shortest) cycle
+            shortest = distance
+            nearest = w
+         end associate
+      end do
+   end function nearest_window
+
+   !> Cells whose equations know nothing but what one window speaks for.
+   pure function is_within(self, speaker) result(within)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: speaker(:)  !< (blocks)
+      logical, allocatable :: within(:)  !< (blocks)
+      integer(ik) :: i, k
+
+      within = speaker > 0
+      within(self%mesh%n_cells + 1:) = .false.
+      associate (columns => self%model%matrix%columns)
+         do i = 1, size(speaker, kind=ik)
+            do k = columns%first(i), columns%last(i)
+               associate (j => columns%item(k))
+                  if (speaker(i) == speaker(j)) cycle
+                  within([i, j]) = .false.
+               end associate
+            end do
+         end do
+      end associate
+   end function is_within
+
+   !> What the windows find where they speak, less what the coarse level has there; no pressures.
+   subroutine find_differences(self, speaker, difference, q, error)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: speaker(:)  !< (blocks)
+      real(rk), allocatable, intent(out) :: difference(:, :)  !< (3, blocks) [m]
+      real(rk), intent(out) :: q(:)  !< that of the jumps, as in coarse_condensed [m]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: displacement(:, :), jump(:, :, :), xy(:, :)
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: cell, end, i, w
+
+      allocate (difference, mold=self%state%unknowns)
+      difference = 0.0_rk
+      q = 0.0_rk
+      associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
+         do w = 1, size(self%windows%window, kind=ik)
+            associate (window => self%windows%window(w))
+               cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
+               xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
+               displacement = xy
+               call window%displacement_at(xy, displacement, error)
+               if (allocated(error)) return
+               difference(:2, cells) = displacement - state%unknowns(:2, cells)
+               jump = coarse_jumps(window%model%mesh, window%displacement, mesh)
+            end associate
+            do cell = 1, mesh%fracture%n_cells
+               do end = 1, 2
+                  associate (block => end_block(mesh, cell, end), n => condensed%normal(:, cell), &
+                             d => jump(:, end, cell) - state%jump(:, end, cell), &
+                             at => condensed%layout%at_jump(cell, end))
+                     if (speaker(block) /= w) cycle
+                     q(at:at + 1) = d
+                     difference(:2, block) = [n(1)*d(1) + n(2)*d(2), n(2)*d(1) - n(1)*d(2)]
+                  end associate
+               end do
+            end do
+         end do
+      end associate
+   end subroutine find_differences
+
+   !> The window's edge with displacements that are quadratic in each coarse cell: linear between
+   !! the nodes, and half of what the gradients there add.
+   pure function curved_edge(self, window, displacement, gradient) result(edge)
+      class(two_levels_t), intent(in) :: self
+      type(window_t), intent(in) :: window
+      real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
+      real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
+      real(rk), allocatable :: edge(:, :)  !< (2, n_nodes) [m]
+      integer(ik) :: k, v
+
+      edge = window%loads%boundary_displacement
+      do v = 1, window%model%mesh%n_nodes
+         if (.not. window%model%mesh%on_boundary(v)) cycle
+         associate (nodes => self%mesh%cell_nodes(:, window%coarse_cell(v)))
+            edge(:, v) = 0.0_rk
+            do k = 1, 3
+               edge(:, v) = edge(:, v) + window%weight(k, v) &
+                            *(displacement(:, nodes(k)) &
+                              + 0.5_rk*matmul(gradient(:, :, nodes(k)), &
+                                              window%model%mesh%xy(:, v) &
+                                              - self%mesh%xy(:, nodes(k))))
+            end do
+         end associate
+      end do
+   end function curved_edge
+
+end module twolevel_trust
