@@ -151,4 +151,4 @@ def test_the_largest_number_is_refused(tmp_path: Path) -> None:
     scene.write_text(text.replace("toughness = 0.7e6", "toughness = 1.7976931348623157e308"))
     done = call(tmp_path, "check", scene.name)
     assert done.returncode == 2
-    assert "scene.nml:27: &material: toughness is 1.7976931348623157e308" in done.stderr
+    assert "scene.nml:29: &material: toughness is 1.7976931348623157e308" in done.stderr

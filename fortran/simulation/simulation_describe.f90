@@ -66,9 +66,9 @@ module simulation_describe
     "  may leave. More means that growth lags behind the load, and times and pressures of growth", &
       "  depend on the step.", &
       "* **Error in time**: of each step by itself. Steps that the program chooses are held to", &
-      "  the tolerance of &time; those that a scene gives may miss a tenth of what has", &
-      "  happened so far without a warning. The first step after the start, or after a well's", &
-      "  switch, has nothing to be compared with.", &
+     "  the tolerance of &time; those that a scene gives are warned of where the estimate, which", &
+    "  is some times too large where a well has just begun, is half of what has happened so far.", &
+      "  The first step after the start, or after a well's switch, has nothing to compare with.", &
       "", &
       "## What is doubted", &
       "", &

@@ -85,7 +85,7 @@ module simulation_limits
               "Largest K_eq, over K_IC, of the tips that may grow, when growth in the state is "// &
               "done", &
               "shorten the step: growth lags behind the load"), &
-      limit_t("error in time of a step", "-", with_fluid, 0.1_rk, never, &
+      limit_t("error in time of a step", "-", with_fluid, 0.5_rk, never, &
               "Estimated error of a time step in the mean pressure, slip or opening, over the "// &
               "range that these have gone through", &
               "shorten the step, or leave it out: then the error decides about it")]

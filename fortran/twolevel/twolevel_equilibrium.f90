@@ -52,6 +52,7 @@ contains
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
+      logical :: alike(size(self%tip), size(self%tip))
       logical :: has_begun(size(self%tip)), moves(size(self%tip)), wants(size(self%tip))
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
@@ -61,6 +62,7 @@ contains
       tip = self%tip
       segment = self%segment
       network = self%network
+      alike = alike_tips(self)
       has_begun = .false.
       self%before = self%state
       call self%segment%restart()
@@ -85,7 +87,7 @@ contains
                                 self%tip%arrested .or. self%segment%gain > 0.0_rk)
             if (trial%onset < 1.0_rk) exit
          end if
-         call judge_tips(self, moves, wants)
+         call judge_tips(self, alike, moves, wants)
          if (.not. any(moves)) then
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
@@ -175,25 +177,60 @@ contains
 
    !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
    !! they exceed the toughness.
-   subroutine judge_tips(self, moves, wants)
+   subroutine judge_tips(self, alike, moves, wants)
       class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: alike(:, :)  !< (tips, tips)
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
-      real(rk) :: excess
+      real(rk) :: excess(size(self%tip))
       integer(ik) :: i
 
       moves = .false.
       wants = .false.
+      excess = shared_excess(self%tip%drive%intensity/self%rules%toughness - 1.0_rk, alike)
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), segment => self%segment(i))
             if (tip%arrested .and. .not. segment%is_open) cycle
-            excess = tip%drive%intensity/self%rules%toughness - 1.0_rk
-            if (segment%is_open) call segment%improve(excess, tolerance, moves(i))
-            if (moves(i) .or. excess <= tolerance .or. tip%arrested) cycle
+            if (segment%is_open) call segment%improve(excess(i), tolerance, moves(i))
+            if (moves(i) .or. excess(i) <= tolerance .or. tip%arrested) cycle
             wants(i) = .not. segment%is_open
             if (segment%is_open) wants(i) = segment%is_complete()
          end associate
       end do
    end subroutine judge_tips
+
+   !> Which tips are alike: they have come equally far, with intensities equal within what these may
+   !! be off. Else the last bits of their meshes would decide which of them runs ahead where nothing
+   !! else does.
+   function alike_tips(self) result(alike)
+      class(two_levels_t), intent(in) :: self
+      logical :: alike(size(self%tip), size(self%tip))
+      real(rk), parameter :: same_gain = 1.0e-6_rk  ! of an increment
+      real(rk), parameter :: least = 0.01_rk  ! that intensities may be off [-]
+      real(rk) :: off(size(self%tip))
+      integer(ik) :: i
+
+      associate (drive => self%tip%drive%intensity, gain => self%segment%gain)
+         off = max(0.5_rk*least*max(drive, self%rules%toughness), &
+                   hypot(self%tip%intensity%k1_error, self%tip%intensity%k2_error))
+         do i = 1, size(self%tip, kind=ik)
+            alike(:, i) = .not. (self%tip%arrested .or. self%tip(i)%arrested) .and. &
+   abs(drive - drive(i)) <= off + off(i) .and. abs(gain - gain(i)) <= same_gain*self%rules%increment
+            alike(i, i) = .true.
+         end do
+      end associate
+   end function alike_tips
+
+   !> Tips that are alike take the largest of their excesses, and so go on equally far.
+   pure function shared_excess(excess, alike) result(shared)
+      real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
+      logical, intent(in) :: alike(:, :)  !< (tips, tips)
+      real(rk) :: shared(size(excess))
+      integer :: i
+
+      do i = 1, size(excess)
+         shared(i) = maxval(excess, mask=alike(:, i))
+      end do
+   end function shared_excess
 
    !> New segments for tips, which stand at the ends of their paths: their directions are found in
    !! the tried state; then the coarse level, back in the state before the step, gets their cells.

@@ -98,13 +98,16 @@ contains
       real(rk), intent(in) :: ends(2)  !< [m]
       real(rk), intent(out) :: middle(:)  !< (coarse fracture cells) arc length [m]
       logical, intent(out) :: is_wet(:)  !< of this fracture, and not ahead of a tip
+      real(rk) :: nothing
       integer(ik) :: j
 
       do j = 1, coarse%fracture%n_cells
          associate (s => coarse%fracture%cell_s(:, j))
             middle(j) = 0.5_rk*(max(s(1), ends(1)) + min(s(2), ends(2)))
-            is_wet(j) = coarse%fracture%cell_fracture(j) == fracture .and. s(1) < ends(2) &
-                        .and. s(2) > ends(1)
+            ! A cell that a tip has just reached, but for round-off, has nothing behind it.
+            nothing = same_place*(s(2) - s(1))
+            is_wet(j) = coarse%fracture%cell_fracture(j) == fracture .and. &
+                        s(1) + nothing < ends(2) .and. s(2) - nothing > ends(1)
          end associate
       end do
    end subroutine find_middles

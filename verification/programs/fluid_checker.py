@@ -73,13 +73,18 @@ class Findings:
             self.wrong.append(f"{name} {value:.3g} {where}")
 
 
+def _bound(cell: str) -> float:
+    """A limit of the table; some never stop a run."""
+    return np.inf if cell == "never" else float(cell)
+
+
 def read_limits() -> dict[str, Limit]:
     """The table of docs/limits.md."""
     limits = {}
     for line in (TOP / "docs" / "limits.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if len(cells) == 7 and cells[3][:1].isdigit():
-            limits[cells[0]] = Limit(float(cells[3]), float(cells[4]))
+            limits[cells[0]] = Limit(_bound(cells[3]), _bound(cells[4]))
     return limits
 
 

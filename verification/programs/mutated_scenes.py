@@ -170,9 +170,11 @@ def shortened(path: Path) -> str:
     for name in ("size_fracture", "size_boundary"):
         changes[f"{level}.{name}"] = 2.0 * scene[level][name]
     if "time" in scene:
-        changes["time.end"] = 3.0 * scene["time"]["step"]
-        changes["injection.1.start"] = scene["time"]["step"]
-        changes["injection.1.end"] = 2.0 * scene["time"]["step"]
+        step = scene["time"].get("step", 0.01 * scene["time"]["end"])
+        changes["time.step"] = step
+        changes["time.end"] = 3.0 * step
+        changes["injection.1.start"] = step
+        changes["injection.1.end"] = 2.0 * step
     elif "load" in scene:
         changes["load.steps"] = min(3, scene["load"].get("steps", 1))
     if scene["growth"].get("enabled", False):

@@ -19,6 +19,7 @@ program test_twolevel_pressure
    call test_logarithm()
    call test_limits()
    call test_other_tips()
+   call test_reached_cell()
    call checks%finish()
 
 contains
@@ -63,6 +64,29 @@ contains
          call checks%is_close(found(i), 1.0e6_rk + 3.0e6_rk*s, 1.0e-6_rk, "linear")
       end do
    end subroutine test_linear
+
+   !> A tip at the end of a cell, by round-off in the next one: pressures are finite, and those
+   !! of a tip that lies before it.
+   subroutine test_reached_cell()
+      type(pressure_map_t) :: map
+      type(mesh_t) :: moved
+      real(rk) :: before(fine%fracture%n_cells), found(fine%fracture%n_cells), last
+      real(rk) :: pressure(n)
+      integer(ik) :: i, k
+
+      pressure = [(1.0e6_rk*i**2, i=1, n)]
+      do k = -1, 1
+         moved = coarse
+         ! The last cell begins at the tip, but for a bit of its coordinate.
+         last = tip(2) + k*spacing(tip(2))
+         moved%fracture%cell_s(2, n - 1) = last
+         moved%fracture%cell_s(1, n) = last
+         map = match_pressure(fine, moved, spread(.true., 1, n))
+         found = map%on_faces(pressure, 0.0_rk)
+         if (k == -1) before = found
+         call checks%is_close(maxval(abs(found - before)), 0.0_rk, 1.0_rk, "a cell just reached")
+      end do
+   end subroutine test_reached_cell
 
    !> Near either tip: the mean of ln d with the weight 1/sqrt(d), by the midpoint rule in sqrt(d).
    subroutine test_logarithm()
