@@ -204,7 +204,7 @@ contains
    function alike_tips(self) result(alike)
       class(two_levels_t), intent(in) :: self
       logical :: alike(size(self%tip), size(self%tip))
-      real(rk), parameter :: same_gain = 1.0e-6_rk  ! of an increment
+      real(rk), parameter :: same_gain = 0.02_rk  ! of an increment
       real(rk), parameter :: least = 0.01_rk  ! that intensities may be off [-]
       real(rk) :: off(size(self%tip))
       integer(ik) :: i
