@@ -26,6 +26,7 @@ module growth_segment
       procedure :: is_complete
       procedure :: restart
       procedure :: improve
+      procedure :: keep_up_with
       procedure :: accept
    end type segment_t
 
@@ -102,6 +103,18 @@ contains
       has_moved = abs(to - self%reached) > 1.0e-3_rk*self%length
       if (has_moved) self%reached = to
    end subroutine improve
+
+   !> Be as far along as another one, and know of the excess what that knows.
+   elemental subroutine keep_up_with(self, other)
+      class(segment_t), intent(inout) :: self
+      type(segment_t), intent(in) :: other
+
+      self%reached = self%length*(other%reached/other%length)
+      self%tried = self%length*(other%tried/other%length)
+      self%excess = other%excess
+      self%tries = other%tries
+      self%slope = other%slope*(other%length/self%length)
+   end subroutine keep_up_with
 
    !> The present place is that of an accepted state.
    elemental subroutine accept(self)

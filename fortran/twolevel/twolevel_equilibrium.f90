@@ -182,7 +182,7 @@ contains
       logical, intent(in) :: alike(:, :)  !< (tips, tips)
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
       real(rk) :: excess(size(self%tip))
-      integer(ik) :: i
+      integer(ik) :: i, leader
 
       moves = .false.
       wants = .false.
@@ -190,7 +190,13 @@ contains
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), segment => self%segment(i))
             if (tip%arrested .and. .not. segment%is_open) cycle
-            if (segment%is_open) call segment%improve(excess(i), tolerance, moves(i))
+            leader = findloc(alike(:, i), .true., dim=1)
+            if (leader < i .and. segment%is_open .and. self%segment(leader)%is_open) then
+               call segment%keep_up_with(self%segment(leader))
+               moves(i) = moves(leader)
+            else if (segment%is_open) then
+               call segment%improve(excess(i), tolerance, moves(i))
+            end if
             if (moves(i) .or. excess(i) <= tolerance .or. tip%arrested) cycle
             wants(i) = .not. segment%is_open
             if (segment%is_open) wants(i) = segment%is_complete()

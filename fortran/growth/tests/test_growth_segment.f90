@@ -41,7 +41,7 @@ contains
    !> Below the toughness a tip goes back no farther than it was; far above it, it comes to the end
    !! of its piece, which is then over.
    subroutine test_bounds()
-      type(segment_t) :: segment
+      type(segment_t) :: segment, twin
       logical :: has_moved
       integer :: try
 
@@ -60,6 +60,10 @@ contains
          if (.not. has_moved) exit
       end do
       call checks%is_true(segment%is_complete() .and. .not. has_moved, "complete")
+      twin = segment_t(is_open=.true., length=2.0_rk*segment%length)
+      call twin%keep_up_with(segment)
+      call checks%is_close(twin%reached, 2.0_rk*segment%reached, 0.0_rk, "as far along")
+      call checks%is_true(twin%is_complete(), "and at its end as well")
       call segment%accept()
       call checks%is_true(.not. segment%is_open, "over")
       call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")
