@@ -41,8 +41,9 @@ contains
       if (.not. self%has_come) then
          self%onset = time
          self%has_come = drive >= toughness
-         if (self%has_come .and. self%is_followed) self%onset = self%time + &
-                                         step*(toughness - self%drive)/(drive - self%drive)
+         if (self%has_come .and. self%is_followed) then
+            self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
+         end if
       end if
       if (self%is_followed .and. step > 0.0_rk) then
          if (self%step > 0.0_rk) then
