@@ -219,8 +219,9 @@ contains
          off = max(0.5_rk*least*max(drive, self%rules%toughness), &
                    hypot(self%tip%intensity%k1_error, self%tip%intensity%k2_error))
          do i = 1, size(self%tip, kind=ik)
-            alike(:, i) = .not. (self%tip%arrested .or. self%tip(i)%arrested) .and. &
-   abs(drive - drive(i)) <= off + off(i) .and. abs(gain - gain(i)) <= same_gain*self%rules%increment
+            alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
+            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= off + off(i)
+            alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
             alike(i, i) = .true.
          end do
       end associate

@@ -338,7 +338,7 @@ contains
             if (approach%is_over) cycle
             approach%is_over = self%segment(i)%gain > 0.0_rk
             if (approach%is_over) then
-               error = approach%uncertainty(approach%drive_error + tolerance*self%rules%toughness)
+               error = approach%uncertainty(tolerance*self%rules%toughness)
                call self%chronicle%add_event(approach%onset, event_growth_onset, &
                                              "known to "//brief_text(error, 3)//" s", &
                                              tip%fracture, tip%origin)
