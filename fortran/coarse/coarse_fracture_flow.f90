@@ -25,12 +25,14 @@ module coarse_fracture_flow
 contains
 
    !> Flux between the rock and cell i on both sides: lambda = (kappa/mu)(p - p_F)/(a/2), kappa =
-   !! a^2/12. Its equations are those of p+ and p-.
+   !! a^2/12; at a tip with what the flux there needs (coarse_tips). Its equations are those of p+
+   !! and p-.
    pure subroutine fill_exchange(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, conductance, slope, volume
+      real(rk), parameter :: most = 0.8_rk  ! of the rock's own resistance, at a tip
+      real(rk) :: aperture, conductance, resistance, slope, volume
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, jumps(2), n, row, side
 
@@ -46,8 +48,11 @@ contains
          row = eq%layout%at_face_pressure(i, side)
          at = eq%condensed%layout%at_face_pressure(i, side)
          volume = eq%force(at)
-         eq%residual(row) = volume/conductance - (x(row) - fluid%pressure)
-         eq%jacobian(:n, row) = eq%force_slope(:, at)/conductance
+         resistance = 1.0_rk/conductance &
+                      + max(eq%cells%leak_resistance(i)/(eq%settings%mobility*eq%dt), &
+                            -most/abs(eq%force_slope(row, at)))
+         eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
+         eq%jacobian(:n, row) = eq%force_slope(:, at)*resistance
          eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
                                    - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
          eq%jacobian(row, row) = eq%jacobian(row, row) - 1.0_rk

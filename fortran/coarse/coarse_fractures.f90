@@ -19,6 +19,7 @@ module coarse_fractures
       real(rk) :: tolerance = 1.0e-9_rk  !< residuals relative to the largest stress [-]
       integer(ik) :: iterations_max = 30
       real(rk) :: viscosity = 0.0_rk  !< [Pa s]
+      real(rk) :: mobility = 0.0_rk  !< of the rock, mean of K/mu [m2/(Pa s)]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]

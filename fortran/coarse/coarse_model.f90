@@ -66,6 +66,7 @@ contains
          self%settings = newton_settings_t(tolerance=choice%newton_tolerance, &
                                            iterations_max=choice%newton_max, &
                                            viscosity=fluid%viscosity, &
+                                           mobility=self%rock%mobility, &
                                            compressibility=fluid%compressibility, &
                                            vapour_pressure=fluid%vapour_pressure, &
                                            young=scene%material%young)

@@ -14,6 +14,8 @@ module coarse_state
       real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
       real(rk), allocatable :: share(:)  !< of its length that lies behind the tip [-]
       logical, allocatable :: has_tip(:)  !< a tip lies in it
+      !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
+      real(rk), allocatable :: leak_resistance(:)
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
    end type fracture_cells_t
 

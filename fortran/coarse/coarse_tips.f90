@@ -13,6 +13,12 @@
 !! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
 !! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
 !! the body unstable.
+!!
+!! Fluid leaks off in the same way: its flux rises toward a tip with one over the square root of the
+!! distance, is uniform in a cell here, and a crack leaks as if it were shorter by 0.22 of a cell at
+!! each end. A resistance between the tip cells' fluid and the rock, a negative one where the tip is
+!! at the end of its cell, makes that vanish within 0.02, or 0.05 where the tip is within its cell
+!! (verification/strip_leak_off).
 module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
@@ -25,6 +31,10 @@ module coarse_tips
    public :: place_tips, tip_springs
 
    real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
+
+   !> Resistances to leak-off as the stiffnesses of the springs below: at the end of the cell, in
+   !! the cell, times the rock's mobility [-].
+   real(rk), parameter :: leak_at_end = -0.173_rk, leak_within = 0.65_rk
 
 contains
 
@@ -72,7 +82,8 @@ contains
 
    end function tip_springs
 
-   !> In which cells the tips lie, and what share of each cell's length is behind them.
+   !> In which cells the tips lie, what share of each cell's length is behind them, and what keeps
+   !! its fluid from the rock.
    pure subroutine place_tips(fracture, length, ahead, cells)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: length(:)  !< (cells) [m]
@@ -83,17 +94,23 @@ contains
 
       cells%share = spread(1.0_rk, 1, size(length))
       cells%has_tip = spread(.false., 1, size(length))
+      cells%leak_resistance = spread(0.0_rk, 1, size(length))
       do tip = 1, fracture%n_tips
          cell = tip_cell(fracture, tip)
          step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
          left = ahead(tip)
          do while (left >= (1.0_rk - least)*length(cell))
             cells%share(cell) = least
+            cells%leak_resistance(cell) = (1.0_rk/least - 1.0_rk)*leak_within
             left = max(0.0_rk, left - length(cell))
             cell = cell + step
          end do
          cells%share(cell) = 1.0_rk - left/length(cell)
          cells%has_tip(cell) = .true.
+         associate (share => cells%share(cell), leak => cells%leak_resistance)
+            leak(cell) = leak_at_end + (1.0_rk/share - 1.0_rk)*leak_within
+            if (share < 1.0_rk) leak(cell + step) = leak(cell + step) + (1.0_rk - share)*leak_at_end
+         end associate
       end do
    end subroutine place_tips
 

@@ -1,6 +1,7 @@
 !> A crack on the coarse level is as long as it is, wherever its tips are in their cells: volume of
 !! opening and of slip against the closed forms of one crack in an infinite body, 2 pi s a^2/E' for
-!! the stress s that it releases.
+!! the stress s that it releases; and what leaks off from it, against that of a strip of one
+!! pressure.
 program test_coarse_tips
    use testing_checks, only: checks_t
    use base_errors, only: error_t
@@ -24,6 +25,7 @@ program test_coarse_tips
    call test_lengths(.true., 0.45_rk)
    call test_lengths(.false., 0.2_rk)
    call test_lengths(.false., 0.45_rk)
+   call test_leak_off()
    call checks%finish()
 
 contains
@@ -83,5 +85,50 @@ contains
             ", off by", half_length/cell - a/cell + ahead(k)
       end do
    end subroutine test_lengths
+
+   !> Steady flow from a crack to the sides of a square, whose pressure is 0. The flow is 2 pi K/mu p
+   !! / ln(2 R/a), with the conformal radius R of the square, 1.0787052 of its half-side.
+   subroutine test_leak_off()
+      real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
+      real(rk), parameter :: a = 0.1_rk, cell = 2.0_rk*a/10.0_rk, radius = 1.0787052023767587_rk
+      real(rk), parameter :: stress = -1.0e6_rk  ! keeps it closed [Pa]
+      type(scene_t) :: scene
+      type(mesh_t) :: mesh
+      type(mesher_t) :: mesher
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk) :: half_length, rate
+      integer :: k
+
+      scene = porous_body()
+      scene%material%permeability_xx = 1.0e-15_rk
+      scene%material%permeability_yy = 1.0e-15_rk
+      call load_sides(scene, [stress, stress, 0.0_rk])
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      scene%sides%pressure_given = .true.
+      call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
+                                                        [2, 2, 1])), cell, 0.04_rk, mesher, mesh)
+      model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
+      rate = 1.0e-8_rk  ! [m2/s]
+      model%cells%injection(5) = rate
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization")
+      do k = 1, size(ahead)
+         model%ahead = ahead(k)*cell
+         call new_state(mesh, model%cells, scene%initial, model, state)
+         call model%advance(mesh, 1.0e9_rk, state, timers, report, error)
+         call checks%no_error(error, "a crack")
+         call checks%is_true(report%converged, "a crack")
+         half_length = 2.0_rk*radius/exp(2.0_rk*pi*model%rock%mobility*state%pressure(5)/rate)
+         ! In cells, as above.
+         call checks%is_close(half_length/cell, a/cell - ahead(k), 0.05_rk, "length that leaks")
+         print "(2(a,f7.3))", "leak-off, ahead ", ahead(k), ", off by", &
+            half_length/cell - a/cell + ahead(k)
+      end do
+   end subroutine test_leak_off
 
 end program test_coarse_tips

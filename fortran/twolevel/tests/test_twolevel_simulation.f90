@@ -273,7 +273,7 @@ contains
       before = 0.0_rk
       drive = 0.0_rk
       has_grown = .false.
-      do step = 1, 30
+      do step = 1, 60
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) call simulation%grow(timers, error)
          call checks%no_error(error, law//": a chosen step")
