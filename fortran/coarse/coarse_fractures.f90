@@ -48,6 +48,7 @@ module coarse_fractures
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
    contains
       procedure :: find_forces
+      procedure :: is_balanced
       procedure :: opening
       procedure :: fluid_at
       procedure :: unknown_of_fluid
@@ -158,6 +159,28 @@ contains
          self%force = matmul(condensed%stiffness, self%q) - self%g
       end associate
    end subroutine find_forces
+
+   !> Fluid that the step makes or loses is nothing beside what flows in it and what is there.
+   logical function is_balanced(self)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), parameter :: least = 1.0e-12_rk
+      real(rk) :: balance, fluid
+      integer(ik) :: at(2), i
+
+      if (self%settings%equilibrate) then
+         is_balanced = .true.
+         return
+      end if
+      balance = 0.0_rk
+      fluid = 0.0_rk
+      do i = 1, self%condensed%n
+         at = self%condensed%layout%at_face_pressure(i, [1_ik, 2_ik])
+         balance = balance + self%residual(self%layout%at_pressure(i))*self%unit
+         fluid = fluid + self%condensed%length(i)*self%before%aperture(i) &
+                 + self%dt*abs(self%cells%injection(i)) + sum(abs(self%force(at)))
+      end do
+      is_balanced = abs(balance) <= least*fluid
+   end function is_balanced
 
    !> Opening of a cell, the mean of its ends' [u]_n.
    pure function opening(self, x, cell) result(mean)
