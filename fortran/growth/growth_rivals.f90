@@ -17,13 +17,14 @@ module growth_rivals
    !> Share of a piece that a tip has gone along where it is measured.
    real(rk), parameter :: half_way = 0.5_rk
 
-   !> Share of a piece that tips must have moved for a try to teach: else the errors of their meshes
-   !! do.
-   real(rk), parameter :: noticeable = 0.1_rk
+   !> A try teaches where it errs by more than this from what was to be expected: less may be the
+   !! errors of the meshes [-].
+   real(rk), parameter :: noticeable = 0.01_rk
 
    !> What is known of the tips.
    type :: rivals_t
-      real(rk), allocatable :: matrix(:, :)  !< (tips, tips) d(K_eq,i/K_IC)/da_j [1/m]
+      real(rk), allocatable :: measured(:, :)  !< (tips, tips) d(K_eq,i/K_IC)/da_j [1/m]
+      real(rk), allocatable :: matrix(:, :)  !< the same, with what tries have taught
       logical, allocatable, private :: is_known(:)  !< (tips) columns of it
       real(rk), allocatable, private :: known_at(:)  !< (tips) gain of each then [m]
    contains
@@ -42,7 +43,7 @@ contains
       class(rivals_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
 
-      allocate (self%matrix(n, n), self%known_at(n), source=0.0_rk)
+      allocate (self%matrix(n, n), self%measured(n, n), self%known_at(n), source=0.0_rk)
       allocate (self%is_known(n), source=.false.)
    end subroutine begin
 
@@ -67,15 +68,15 @@ contains
       real(rk), intent(in) :: before(:), after(:)  !< (tips) excess of K_eq over K_IC [-]
       type(segment_t), intent(in) :: segment  !< of that tip
 
-      self%matrix(:, tip) = (after - before)/moved
+      self%measured(:, tip) = (after - before)/moved
+      self%matrix(:, tip) = self%measured(:, tip)
       self%is_known(tip) = .true.
       self%known_at(tip) = segment%gain
    end subroutine note
 
    !> Tips have been moved from where they were.
-   pure subroutine learn(self, segment, moved, outcome)
+   pure subroutine learn(self, moved, outcome)
       class(rivals_t), intent(inout) :: self
-      type(segment_t), intent(in) :: segment(:)  !< (tips)
       real(rk), intent(in) :: moved(:)  !< (tips) [m]
       real(rk), intent(in) :: outcome(:)  !< (tips) change of K_eq over K_IC [-]
       real(rk), allocatable :: matrix(:, :)
@@ -83,7 +84,7 @@ contains
       integer(ik) :: i
 
       if (any(abs(moved) > 0.0_rk .and. .not. self%is_known)) return
-      if (.not. any(abs(moved) > noticeable*segment%length)) return
+      if (.not. any(abs(outcome - matmul(self%matrix, moved)) > noticeable)) return
       known = pack([(i, i=1, size(moved, kind=ik))], self%is_known)
       matrix = self%matrix(known, known)
       call learn_from_trial(matrix, moved(known), outcome(known))
@@ -98,7 +99,7 @@ contains
 
       preference_of = -huge(1.0_rk)
       if (.not. all(self%is_known(group))) return
-      preference_of = preference(self%matrix(group, group), spread(1.0_rk, 1, size(group)))
+      preference_of = preference(self%measured(group, group), spread(1.0_rk, 1, size(group)))
    end function preference_of
 
    !> How far the kinds of a group should move, so that each is at rest.

@@ -62,9 +62,10 @@ contains
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
+      integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
       logical, dimension(size(self%tip)) :: has_begun, in_play, moves, wants
       integer(ik) :: kind(size(self%tip))
-      logical :: has_measured
+      logical :: has_measured, is_coupled
       type(lesson_t) :: lesson
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
@@ -104,7 +105,9 @@ contains
          call measure_rivals(self, in_play, dt, timers, has_measured, error)
          if (allocated(error)) exit
          call lesson%begin(self)
-         call judge_tips(self, kind, in_play, moves, wants)
+         is_coupled = k <= coupled_tries_max
+         if (is_coupled) is_coupled = several_kinds(kind, in_play)
+         call judge_tips(self, kind, is_coupled, moves, wants)
          if (.not. (any(moves) .or. has_measured)) then
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
@@ -160,10 +163,10 @@ contains
    !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
    !! they exceed the toughness. Tips of one kind take the largest of their excesses, and so go on
    !! equally far.
-   subroutine judge_tips(self, kind, in_play, moves, wants)
+   subroutine judge_tips(self, kind, is_coupled, moves, wants)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      logical, intent(in) :: in_play(:)  !< (tips)
+      logical, intent(in) :: is_coupled  !< the kinds move together
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
       real(rk) :: excess(size(self%tip))
       integer(ik) :: i
@@ -171,7 +174,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          excess(i) = maxval(excesses(self), mask=kind == kind(i))
       end do
-      call move_kinds(self, kind, excess, several_kinds(kind, in_play), moves)
+      call move_kinds(self, kind, excess, is_coupled, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
@@ -268,11 +271,11 @@ contains
       integer(ik) :: i
 
       associate (drive => self%tip%drive%intensity, gain => self%segment%gain)
-         off = max(0.5_rk*same_drive*max(drive, self%rules%toughness), &
-                   hypot(self%tip%intensity%k1_error, self%tip%intensity%k2_error))
+         off = max(self%tip%intensity%k1_error, self%tip%intensity%k2_error)
          do i = 1, size(self%tip, kind=ik)
             alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
-            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= off + off(i)
+            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
+                          max(same_drive*self%rules%toughness, hypot(off, off(i)))
             alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
          end do
       end associate

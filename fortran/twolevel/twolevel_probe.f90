@@ -95,7 +95,7 @@ contains
       class(two_levels_t), intent(inout) :: levels
 
       if (.not. allocated(self%reached)) return
-      call levels%rivals%learn(levels%segment, levels%segment%reached - self%reached, &
+      call levels%rivals%learn(levels%segment%reached - self%reached, &
                                (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
    end subroutine tell
 
