@@ -6,13 +6,21 @@
 !! of them is given, which is what is controlled instead of the load. Equal growth is stable where M
 !! is negative definite on the advances on which the load does no work, c^T da = 0: else there are
 !! others, in which one tip runs ahead and the load unloads the rest.
+!!
+!! Where a fluid drives the tips there is no such factor: what is held is its volume, and c = 0.
+!! Then each tip has not advanced and K_i <= K_IC, or has and K_i = K_IC, a linear complementarity
+!! problem. It has one solution where M is negative definite, else others too: here the tips that
+!! exceed their toughness most grow first, and others with them only as far as they must.
 module growth_competition
    use algebra_lapack, only: dgesv
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: corrected_advances, learn_from_trial, preference
+   ! Where a tip is within its bounds.
+   integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
+
+   public :: complementary_advances, corrected_advances, learn_from_trial, preference
 
 contains
 
@@ -37,6 +45,93 @@ contains
       change = right(:, 1)
       change(leader) = 0.0_rk
    end subroutine corrected_advances
+
+   !> The changes of the advances of a group, within bounds, after which no tip that could go on
+   !! exceeds its toughness, and none that could go back is below it (principal pivoting, Cottle and
+   !! Dantzig 1968). From their lower bounds tips begin to move one after the other, first the one
+   !! that exceeds its toughness most; those that move already follow it on theirs. So of several
+   !! solutions it is the one in which those ahead grow and those behind stay.
+   subroutine complementary_advances(excess, matrix, lower, upper, change)
+      real(rk), intent(in) :: excess(:)  !< K_eq - K_IC [Pa m^1/2]
+      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
+      real(rk), intent(in) :: lower(:), upper(:)  !< on the changes [m]
+      real(rk), intent(out) :: change(size(excess))  !< [m]
+      integer :: place(size(excess)), step
+      real(rk) :: left(size(excess)), least
+      integer :: k
+
+      place = at_lower
+      change = lower
+      left = excess + matmul(matrix, change)
+      least = 1.0e-10_rk*maxval(abs(left))
+      do step = 1, 8*size(excess)
+         left = excess + matmul(matrix, change)
+         k = maxloc(-place*left, dim=1)
+         if (place(k) == is_free .or. .not. -place(k)*left(k) > least) exit
+         call move_tip(k, matrix, lower, upper, left(k), place, change)
+      end do
+   end subroutine complementary_advances
+
+   !> Move one tip from its bound, and with it those that are free, until it is at its toughness or
+   !! at its other bound.
+   subroutine move_tip(k, matrix, lower, upper, excess, place, change)
+      integer, intent(in) :: k
+      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
+      real(rk), intent(in) :: lower(:), upper(:)  !< [m]
+      real(rk), intent(in) :: excess  !< of the tip [Pa m^1/2]
+      integer, intent(inout) :: place(:)
+      real(rk), intent(inout) :: change(:)  !< [m]
+      real(rk) :: bound(size(change)), left, rate(size(change)), room, slope
+      integer :: first, i, turn, way
+
+      way = -place(k)
+      left = excess
+      do turn = 1, size(change)
+         rate = follow(k, matrix, place == is_free)*way
+         slope = dot_product(matrix(k, :), rate)
+         bound = merge(upper, lower, rate > 0.0_rk)
+         room = abs(bound(k) - change(k))
+         first = k
+         do i = 1, size(change)
+            if (place(i) /= is_free .or. .not. abs(rate(i)) > 0.0_rk) cycle
+            if (.not. abs(bound(i) - change(i)) < room*abs(rate(i))) cycle
+            room = abs(bound(i) - change(i))/abs(rate(i))
+            first = i
+         end do
+         if (-left*slope > 0.0_rk .and. abs(left) <= room*abs(slope)) then
+            change = change + rate*abs(left/slope)
+            place(k) = is_free
+            return
+         end if
+         change = change + rate*room
+         left = left + slope*room
+         change(first) = bound(first)
+         place(first) = merge(at_upper, at_lower, rate(first) > 0.0_rk)
+         if (first == k) return
+      end do
+   end subroutine move_tip
+
+   !> How the free tips move with one that does by one, if they stay at their toughness.
+   function follow(k, matrix, moves) result(rate)
+      integer, intent(in) :: k
+      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
+      logical, intent(in) :: moves(:)
+      real(rk) :: rate(size(moves))
+      real(rk) :: equations(count(moves), count(moves)), right(count(moves), 1)
+      integer(ik) :: info, n, pivots(count(moves))
+      integer, allocatable :: free(:)
+      integer :: i
+
+      rate = 0.0_rk
+      rate(k) = 1.0_rk
+      free = pack([(i, i=1, size(moves))], moves)
+      n = size(free, kind=ik)
+      if (n == 0) return
+      equations = matrix(free, free)
+      right(:, 1) = -matrix(free, k)
+      call dgesv(n, 1_ik, equations, n, pivots, right, n, info)
+      if (info == 0) rate(free) = right(:, 1)
+   end function follow
 
    !> The matrix after a trial: the least change of it with which it would have told the outcome
    !! (Broyden 1965).

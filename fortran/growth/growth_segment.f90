@@ -19,13 +19,18 @@ module growth_segment
       real(rk), private :: tried(2) = 0.0_rk  !< [m]
       real(rk), private :: excess(2) = 0.0_rk  !< [-]
       integer, private :: tries = 0
-      real(rk), private :: slope = 0.0_rk  !< of the excess; 0: unknown [1/m]
+      real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
    contains
       procedure :: open_segment
       procedure :: place
       procedure :: is_complete
       procedure :: restart
       procedure :: improve
+      procedure :: learn
+      procedure :: steep
+      procedure :: go_to
+      procedure :: is_at_rest
+      procedure :: lowest
       procedure :: keep_up_with
       procedure :: accept
    end type segment_t
@@ -70,7 +75,7 @@ contains
    elemental subroutine restart(self)
       class(segment_t), intent(inout) :: self
 
-      self%reached = max(self%accepted, least*self%length)
+      self%reached = self%lowest()
       self%tries = 0
    end subroutine restart
 
@@ -81,28 +86,75 @@ contains
       real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]
       real(rk), intent(in) :: tolerance  !< on that [-]
       logical, intent(out) :: has_moved
-      real(rk) :: slope, to, usual
 
       has_moved = .false.
+      call self%learn(excess)
+      if (abs(excess) <= tolerance) return
+      call self%go_to(self%reached - excess/self%steep(self%slope), has_moved)
+   end subroutine improve
+
+   !> Keep the excess where the tip is, and how it changes along the piece.
+   pure subroutine learn(self, excess)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 [-]
+      real(rk) :: slope
+
       self%tried(1) = self%tried(2)
       self%excess(1) = self%excess(2)
       self%tried(2) = self%reached
       self%excess(2) = excess
       self%tries = self%tries + 1
-      usual = -0.5_rk/self%length
       if (self%tries > 1 .and. abs(self%tried(2) - self%tried(1)) > 1.0e-3_rk*self%length) then
          slope = (self%excess(2) - self%excess(1))/(self%tried(2) - self%tried(1))
          if (slope < 0.0_rk) self%slope = slope
       end if
-      if (abs(excess) <= tolerance) return
-      slope = self%slope
-      if (.not. slope < 0.02_rk*usual) slope = 0.2_rk*usual
-      to = self%reached - excess/slope
-      to = min(self%length, max(self%accepted, least*self%length, to))
+   end subroutine learn
+
+   !> A slope of the excess, or a usual one where it does not fall enough for a tip to come to rest
+   !! [1/m].
+   elemental real(rk) function steep(self, slope)
+      class(segment_t), intent(in) :: self
+      real(rk), intent(in) :: slope  !< [1/m]
+
+      steep = slope
+      associate (usual => -0.5_rk/self%length)
+         if (.not. slope < 0.02_rk*usual) steep = 0.2_rk*usual
+      end associate
+   end function steep
+
+   !> Go to a place, or to what is nearest to it of where the tip may be.
+   pure subroutine go_to(self, wanted, has_moved)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: wanted  !< from the start of the piece [m]
+      logical, intent(out) :: has_moved
+      real(rk) :: to
+
+      to = min(self%length, max(self%lowest(), wanted))
       if (to > 0.97_rk*self%length) to = self%length  ! no sliver is left for the next step
       has_moved = abs(to - self%reached) > 1.0e-3_rk*self%length
       if (has_moved) self%reached = to
-   end subroutine improve
+   end subroutine go_to
+
+   !> The tip is where it has to be, or as far as the piece lets it.
+   elemental logical function is_at_rest(self, excess, tolerance)
+      class(segment_t), intent(in) :: self
+      real(rk), intent(in) :: excess, tolerance  !< of K_eq over K_IC [-]
+
+      if (excess > tolerance) then
+         is_at_rest = self%is_complete()
+      else if (excess < -tolerance) then
+         is_at_rest = self%reached <= self%lowest()
+      else
+         is_at_rest = .true.
+      end if
+   end function is_at_rest
+
+   !> How far back the tip may go [m].
+   elemental real(rk) function lowest(self)
+      class(segment_t), intent(in) :: self
+
+      lowest = max(self%accepted, least*self%length)
+   end function lowest
 
    !> Be as far along as another one, and know of the excess what that knows.
    elemental subroutine keep_up_with(self, other)

@@ -11,6 +11,7 @@ module mechanics_equilibrium
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use growth_competition, only: corrected_advances, learn_from_trial, preference
+   use growth_kinds, only: likes, matrix_of_kinds, means, numbered, of_kinds
    use growth_network, only: end_gain, extend, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
@@ -89,7 +90,7 @@ contains
       self%started = body%factor
       self%has_grown = .false.
       self%misfit = 0.0_rk
-      self%alike = alike(self, body)
+      self%alike = first_alike(self, body)
       group = with_their_like(self, leading_tips(body, together))
       attempts = 3_ik*size(body%tip, kind=ik)
       do attempt = 1, attempts
@@ -457,30 +458,30 @@ contains
       advance = fitted(gain(kind), room, self%segment(group)%accepted, increment)
    end subroutine correct
 
-   !> Which tips are alike: those that have come equally far, and that the error of the intensities
-   !! does not tell from each other. They go equally far as long as that is so: else the errors of
-   !! their meshes would part them.
-   pure function alike(self, body) result(kind)
+   !> The first tip that is like each: those that have come equally far, and that the error of the
+   !! intensities does not tell from each other.
+   pure function first_alike(self, body) result(first)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
-      integer(ik) :: kind(size(body%tip))  !< the first tip that is like each
+      integer(ik) :: first(size(body%tip))
       real(rk), parameter :: as_far = 1.0e-2_rk  ! difference over an increment
-      real(rk) :: difference(size(body%tip)), gain(size(body%tip)), scale
+      logical :: alike(size(body%tip), size(body%tip))
+      real(rk) :: gain(size(body%tip)), scale
       integer(ik) :: i
 
-      kind = 0
       do i = 1, size(body%tip, kind=ik)
          gain(i) = end_gain(self%network, body%start, self%tip(i)%fracture, self%tip(i)%end)
       end do
-      scale = maxval(self%tip%drive%intensity, mask=.not. self%tip%arrested)
-      do i = 1, size(body%tip, kind=ik)
-         if (kind(i) > 0) cycle
-         difference = abs(self%tip%drive%intensity - self%tip(i)%drive%intensity)/scale
-         where (kind == 0 .and. abs(gain - gain(i)) <= as_far*body%rules%increment &
-                .and. difference <= merge(tolerance, together, gain > 0.0_rk)) kind = i
-         kind(i) = i
-      end do
-   end function alike
+      associate (drive => self%tip%drive%intensity)
+         scale = maxval(drive, mask=.not. self%tip%arrested)
+         do i = 1, size(body%tip, kind=ik)
+            alike(:, i) = abs(gain - gain(i)) <= as_far*body%rules%increment
+            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= scale &
+                          *merge(tolerance, together, min(gain, gain(i)) > 0.0_rk)
+         end do
+      end associate
+      first = likes(alike)
+   end function first_alike
 
    !> The tips of a group, and those that are like them.
    pure function with_their_like(self, group) result(larger)
@@ -493,64 +494,6 @@ contains
                     [(any(self%alike(group) == self%alike(i)) .and. .not. self%tip(i)%arrested, &
                       i=1, size(self%tip, kind=ik))])
    end function with_their_like
-
-   !> Marks as numbers from 1, in the order in which they come.
-   pure function numbered(marks) result(number)
-      integer(ik), intent(in) :: marks(:)
-      integer(ik) :: number(size(marks))
-      integer(ik) :: k, n
-
-      n = 0
-      do k = 1, size(marks, kind=ik)
-         number(k) = findloc(marks, marks(k), dim=1, kind=ik)
-         if (number(k) == k) then
-            n = n + 1
-            number(k) = n
-         else
-            number(k) = number(number(k))
-         end if
-      end do
-   end function numbered
-
-   !> The means over each kind, for all of it.
-   pure function means(kind, values)
-      integer(ik), intent(in) :: kind(:)  !< from 1
-      real(rk), intent(in) :: values(:)
-      real(rk) :: means(size(values))
-      integer :: k
-
-      do k = 1, size(values)
-         means(k) = sum(values, mask=kind == kind(k))/count(kind == kind(k))
-      end do
-   end function means
-
-   !> The matrix between kinds of tips, all of which go equally far.
-   pure function matrix_of_kinds(kind, matrix) result(reduced)
-      integer(ik), intent(in) :: kind(:)  !< from 1
-      real(rk), intent(in) :: matrix(:, :)
-      real(rk) :: reduced(maxval(kind), maxval(kind))
-      integer :: i, j
-
-      reduced = 0.0_rk
-      do j = 1, size(kind)
-         do i = 1, size(kind)
-            reduced(kind(i), kind(j)) = reduced(kind(i), kind(j)) &
-                                        + matrix(i, j)/count(kind == kind(i))
-         end do
-      end do
-   end function matrix_of_kinds
-
-   !> A value of each kind: that of its first tip.
-   pure function of_kinds(kind, values) result(each)
-      integer(ik), intent(in) :: kind(:)  !< from 1
-      real(rk), intent(in) :: values(:)
-      real(rk) :: each(maxval(kind))
-      integer :: k
-
-      do k = 1, size(each)
-         each(k) = values(findloc(kind, k, dim=1))
-      end do
-   end function of_kinds
 
    !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
    !! mesh is none.

@@ -273,8 +273,8 @@ module output_columns
              "grow or grow too far in it: it is tried again, shorter"), &
       word_t("unstable_growth", "tips have grown at constant time until they arrested; without "// &
              "a fluid a row where it begins and one where it ends, with the energy released"), &
-      word_t("bifurcation", "tips grow alike, but any difference between them would grow: one "// &
-             "of them could run ahead of the others"), &
+      word_t("bifurcation", "tips grow together, but any difference between them would grow: "// &
+             "one of them could run ahead of the others"), &
       word_t("remesh", "the mesh has followed the growth")]
 
    type(word_t), parameter :: joint_words(*) = [ &

@@ -13,16 +13,19 @@ module twolevel_equilibrium
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use coarse_state, only: step_report_t
-   use growth_network, only: end_gain, end_place, extend, move_end
+   use growth_kinds, only: likes, numbered
+   use growth_network, only: end_place, extend
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
+   use twolevel_places, only: advances, place_tips
+   use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, find_equilibrium, tolerance
+   public :: accept_equilibrium, could_part, find_equilibrium, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
@@ -36,6 +39,13 @@ module twolevel_equilibrium
    !> A step that errs this much with the tips where they were cannot be taken, whatever they do
    !! [-].
    real(rk), parameter :: much = 4.0_rk
+
+   !> Errors of the intensities that do not tell tips from each other, over K_IC [-].
+   real(rk), parameter :: same_drive = 0.01_rk
+
+   !> Tips could part where a lead of one increment changes K_eq/K_IC by more than this: twice what
+   !! does not tell them from each other [-].
+   real(rk), parameter :: could_part = 2.0_rk*same_drive
 
 contains
 
@@ -52,8 +62,11 @@ contains
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
-      logical :: alike(size(self%tip), size(self%tip))
-      logical :: has_begun(size(self%tip)), moves(size(self%tip)), wants(size(self%tip))
+      integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
+      logical, dimension(size(self%tip)) :: has_begun, in_play, moves, wants
+      integer(ik) :: kind(size(self%tip))
+      logical :: has_measured, is_coupled
+      type(lesson_t) :: lesson
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
       type(network_t) :: network
@@ -62,7 +75,7 @@ contains
       tip = self%tip
       segment = self%segment
       network = self%network
-      alike = alike_tips(self)
+      kind = kinds_of_tips(self)
       has_begun = .false.
       self%before = self%state
       call self%segment%restart()
@@ -87,8 +100,15 @@ contains
                                 self%tip%arrested .or. self%segment%gain > 0.0_rk)
             if (trial%onset < 1.0_rk) exit
          end if
-         call judge_tips(self, alike, moves, wants)
-         if (.not. any(moves)) then
+         in_play = tips_in_play(self)
+         call lesson%tell(self)
+         call measure_rivals(self, in_play, dt, timers, has_measured, error)
+         if (allocated(error)) exit
+         call lesson%begin(self)
+         is_coupled = k <= coupled_tries_max
+         if (is_coupled) is_coupled = several_kinds(kind, in_play)
+         call judge_tips(self, kind, is_coupled, moves, wants)
+         if (.not. (any(moves) .or. has_measured)) then
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
@@ -101,6 +121,7 @@ contains
             has_begun = has_begun .or. wants
             call begin_segments(self, wants, timers, error)
             if (allocated(error)) exit
+            lesson = lesson_t()  ! of other pieces
          end if
          self%state = self%before
       end do
@@ -123,18 +144,6 @@ contains
       call self%segment%accept()
    end subroutine accept_equilibrium
 
-   !> How far the tips are beyond the last accepted state [m].
-   function advances(self)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: advances(size(self%tip))
-      integer(ik) :: i
-
-      do i = 1, size(self%tip, kind=ik)
-         advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
-                       - self%segment(i)%gain
-      end do
-   end function advances
-
    !> Share of the step after which the first tip reaches the toughness; 1 where none begins to
    !! grow, or where it does so at the end of the step. Tips that have grown before are not asked.
    pure function onset(before, after, has_grown)
@@ -151,93 +160,127 @@ contains
       end do
    end function onset
 
-   !> Put the tips of both levels where their segments say.
-   subroutine place_tips(self)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik) :: i, k
-
-      associate (fracture => self%mesh%fracture)
-         do i = 1, size(self%tip, kind=ik)
-            associate (tip => self%tip(i), segment => self%segment(i))
-               if (.not. segment%is_open) cycle
-               tip%xy = segment%place()
-               tip%direction = segment%direction
-               call move_end(self%network, tip%fracture, tip%end, tip%xy)
-            end associate
-         end do
-         do k = 1, fracture%n_tips
-            i = findloc(self%tip%fracture == fracture%tip_fracture(k) .and. &
-                        self%tip%end == fracture%tip_end(k), .true., dim=1)
-            if (i == 0) cycle
-            self%model%ahead(k) = norm2(fracture%point_xy(:, fracture%tip_point(k)) &
-                                        - self%tip(i)%xy)
-         end do
-      end associate
-   end subroutine place_tips
-
    !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
-   !! they exceed the toughness.
-   subroutine judge_tips(self, alike, moves, wants)
+   !! they exceed the toughness. Tips of one kind take the largest of their excesses, and so go on
+   !! equally far.
+   subroutine judge_tips(self, kind, is_coupled, moves, wants)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(in) :: alike(:, :)  !< (tips, tips)
+      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      logical, intent(in) :: is_coupled  !< the kinds move together
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
       real(rk) :: excess(size(self%tip))
-      integer(ik) :: i, leader
+      integer(ik) :: i
 
-      moves = .false.
-      wants = .false.
-      excess = shared_excess(self%tip%drive%intensity/self%rules%toughness - 1.0_rk, alike)
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), segment => self%segment(i))
-            if (tip%arrested .and. .not. segment%is_open) cycle
-            leader = findloc(alike(:, i), .true., dim=1)
-            if (leader < i .and. segment%is_open .and. self%segment(leader)%is_open) then
-               call segment%keep_up_with(self%segment(leader))
-               moves(i) = moves(leader)
-            else if (segment%is_open) then
-               call segment%improve(excess(i), tolerance, moves(i))
-            end if
-            if (moves(i) .or. excess(i) <= tolerance .or. tip%arrested) cycle
-            wants(i) = .not. segment%is_open
-            if (segment%is_open) wants(i) = segment%is_complete()
-         end associate
+         excess(i) = maxval(excesses(self), mask=kind == kind(i))
       end do
+      call move_kinds(self, kind, excess, is_coupled, moves)
+      wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
+      where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
 
-   !> Which tips are alike: they have come equally far, with intensities equal within what these may
-   !! be off. Else the last bits of their meshes would decide which of them runs ahead where nothing
-   !! else does.
-   function alike_tips(self) result(alike)
+   !> Of tips that all exceed their toughness or may go back there are several kinds.
+   pure logical function several_kinds(kind, in_play)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      logical, intent(in) :: in_play(:)
+
+      several_kinds = any(in_play)
+      if (several_kinds) several_kinds = minval(kind, mask=in_play) < maxval(kind, mask=in_play)
+   end function several_kinds
+
+   !> The first tip of each kind moves by its own secants, or as all of them have to together; those
+   !! that are like it keep up with it.
+   subroutine move_kinds(self, kind, excess, is_coupled, moves)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
+      logical, intent(in) :: is_coupled
+      logical, intent(out) :: moves(:)
+      integer(ik), allocatable :: leader(:), number(:), on_way(:)
+      integer(ik) :: i, k
+
+      moves = .false.
+      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%segment%is_open)
+      number = numbered(kind(on_way))
+      leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
+      if (is_coupled) then
+         call move_together(self, on_way, number, leader, excess(leader), moves)
+      else
+         do k = 1, size(leader, kind=ik)
+            call self%segment(leader(k))%improve(excess(leader(k)), tolerance, moves(leader(k)))
+         end do
+      end if
+      do k = 1, size(on_way, kind=ik)
+         i = leader(number(k))
+         if (on_way(k) == i) cycle
+         call self%segment(on_way(k))%keep_up_with(self%segment(i))
+         moves(on_way(k)) = moves(i)
+      end do
+   end subroutine move_kinds
+
+   !> The first tips of the kinds move together, unless all are at rest.
+   subroutine move_together(self, on_way, number, leader, excess, moves)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: on_way(:)  !< tips
+      integer(ik), intent(in) :: number(:)  !< of the kind of each
+      integer(ik), intent(in) :: leader(:)  !< (kinds) tips
+      real(rk), intent(in) :: excess(:)  !< (kinds) of K_eq over K_IC [-]
+      logical, intent(inout) :: moves(:)  !< (all tips)
+      real(rk) :: to(size(leader))
+      integer :: k
+
+      associate (segment => self%segment)
+         do k = 1, size(leader)
+            call segment(leader(k))%learn(excess(k))
+         end do
+         if (all(segment(leader)%is_at_rest(excess, tolerance))) return
+         to = segment(leader)%reached &
+              + self%rivals%changes(on_way, number, excess, segment(leader))
+         do k = 1, size(leader)
+            call segment(leader(k))%go_to(to(k), moves(leader(k)))
+         end do
+      end associate
+   end subroutine move_together
+
+   !> Of K_eq over K_IC [-].
+   pure function excesses(self) result(excess)
       class(two_levels_t), intent(in) :: self
+      real(rk) :: excess(size(self%tip))
+
+      excess = self%tip%drive%intensity/self%rules%toughness - 1.0_rk
+   end function excesses
+
+   !> Tips on their way that exceed their toughness, or have advanced in the step.
+   pure function tips_in_play(self) result(in_play)
+      class(two_levels_t), intent(in) :: self
+      logical :: in_play(size(self%tip))
+
+      in_play = self%segment%is_open .and. (excesses(self) > -tolerance .or. &
+                                            self%segment%reached > self%segment%lowest())
+   end function tips_in_play
+
+   !> The kinds of the tips. Alike are those that have come equally far, with intensities equal
+   !! within what these may be off. Else the last bits of their meshes would decide which of them
+   !! runs ahead where nothing else does.
+   function kinds_of_tips(self) result(kind)
+      class(two_levels_t), intent(in) :: self
+      integer(ik) :: kind(size(self%tip))
       logical :: alike(size(self%tip), size(self%tip))
       real(rk), parameter :: same_gain = 0.02_rk  ! of an increment
-      real(rk), parameter :: least = 0.01_rk  ! that intensities may be off [-]
       real(rk) :: off(size(self%tip))
       integer(ik) :: i
 
       associate (drive => self%tip%drive%intensity, gain => self%segment%gain)
-         off = max(0.5_rk*least*max(drive, self%rules%toughness), &
-                   hypot(self%tip%intensity%k1_error, self%tip%intensity%k2_error))
+         off = max(self%tip%intensity%k1_error, self%tip%intensity%k2_error)
          do i = 1, size(self%tip, kind=ik)
             alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
-            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= off + off(i)
+            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
+                          max(same_drive*self%rules%toughness, hypot(off, off(i)))
             alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
-            alike(i, i) = .true.
          end do
       end associate
-   end function alike_tips
-
-   !> Tips that are alike take the largest of their excesses, and so go on equally far.
-   pure function shared_excess(excess, alike) result(shared)
-      real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
-      logical, intent(in) :: alike(:, :)  !< (tips, tips)
-      real(rk) :: shared(size(excess))
-      integer :: i
-
-      do i = 1, size(excess)
-         shared(i) = maxval(excess, mask=alike(:, i))
-      end do
-   end function shared_excess
+      kind = numbered(likes(alike))
+   end function kinds_of_tips
 
    !> New segments for tips, which stand at the ends of their paths: their directions are found in
    !! the tried state; then the coarse level, back in the state before the step, gets their cells.

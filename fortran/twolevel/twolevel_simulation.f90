@@ -2,17 +2,18 @@
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text
+   use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_growth_onset, event_step_cut, event_unstable
+   use results_chronicle, only: event_bifurcation, event_growth_onset, event_step_cut, &
+                                event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
+   use twolevel_equilibrium, only: accept_equilibrium, could_part, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_onset, only: approach_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
@@ -32,6 +33,7 @@ module twolevel_simulation
       logical :: is_after_switch = .false.  !< of a well: the last step
       logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
+      logical :: was_bifurcation = .false.  !< in the last step with growth
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
@@ -242,6 +244,7 @@ contains
       call self%book_step(self%dt)
       self%tip%advance = 0.0_rk
       if (is_equilibrium(self)) call accept_equilibrium(self)
+      if (is_equilibrium(self)) call note_competition(self)
       call self%stepper%step_done(trial, self%dt)
       call self%trend%accept(self%before, self%state, self%dt)
       if (.not. is_unstable) return
@@ -250,6 +253,27 @@ contains
       ! The rates of such a step mean nothing for the next.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
+
+   !> Tips of which one could run ahead of the others.
+   subroutine note_competition(self)
+      class(twolevel_simulation_t), intent(inout) :: self
+      real(rk) :: lead
+      logical :: is_bifurcation
+      integer(ik), allocatable :: group(:)
+      integer(ik) :: i
+
+      group = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%advance > 0.0_rk)
+      if (size(group) < 2) return
+      lead = self%rivals%preference_of(group)*self%rules%increment
+      is_bifurcation = lead > could_part
+      if (is_bifurcation .and. .not. self%was_bifurcation) then
+         call self%chronicle%add_event(self%state%time, event_bifurcation, &
+                                       integer_text(size(group, kind=ik))// &
+                                       " tips grow; a lead of one increment is worth "// &
+                                       brief_text(100.0_rk*lead, 3)//" % of K")
+      end if
+      self%was_bifurcation = is_bifurcation
+   end subroutine note_competition
 
    !> An accepted state: contact and the run's largest values.
    subroutine note_state(self, mass_error_relative)

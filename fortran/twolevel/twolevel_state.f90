@@ -10,6 +10,7 @@ module twolevel_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
+   use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
@@ -52,6 +53,7 @@ module twolevel_state
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
+      type(rivals_t) :: rivals  !< how the tips act on each other
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
@@ -96,6 +98,7 @@ contains
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
       allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
+      call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
 

@@ -2,7 +2,8 @@
 program test_growth_competition
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_competition, only: corrected_advances, learn_from_trial, preference
+   use growth_competition, only: complementary_advances, corrected_advances, learn_from_trial, &
+                                 preference
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -10,6 +11,8 @@ program test_growth_competition
    call test_correction()
    call test_learning()
    call test_preference()
+   call test_complementarity()
+   call test_runners()
    call checks%finish()
 
 contains
@@ -68,5 +71,59 @@ contains
                            "where the load does no work")
       call checks%is_true(preference(matrix(:1, :1), [1.0_rk]) < 0.0_rk, "nobody to compete with")
    end subroutine test_preference
+
+   !> Stable systems of many tips have one solution, which fulfils all conditions; the order of the
+   !! tips does not matter.
+   subroutine test_complementarity()
+      integer, parameter :: n = 6
+      real(rk), dimension(n) :: change, excess, left, lower, turned, upper
+      real(rk) :: matrix(n, n)
+      integer :: i, j, k
+
+      do k = 1, 50
+         do j = 1, n
+            do i = 1, n
+               matrix(i, j) = 0.3_rk*sin(real(7*i + 5*j + 3*k, rk))
+            end do
+            matrix(j, j) = -2.0_rk - 0.1_rk*j
+            excess(j) = sin(real(11*j + k*k, rk))
+            lower(j) = -0.1_rk*modulo(j + k, 3)
+            upper(j) = 0.1_rk*(1 + modulo(j*k, 4))
+         end do
+         call complementary_advances(excess, matrix, lower, upper, change)
+         left = excess + matmul(matrix, change)
+         call checks%is_true(all(change >= lower .and. change <= upper), "within bounds")
+         call checks%is_true(all(abs(left) <= 1.0e-9_rk .or. &
+                                 (left < 0.0_rk .and. change <= lower) .or. &
+                                 (left > 0.0_rk .and. change >= upper)), "all are at rest")
+         call complementary_advances(excess(n:1:-1), matrix(n:1:-1, n:1:-1), lower(n:1:-1), &
+                                     upper(n:1:-1), turned)
+         call checks%is_close(maxval(abs(turned(n:1:-1) - change)), 0.0_rk, 1.0e-8_rk, &
+                              "in any order")
+      end do
+   end subroutine test_complementarity
+
+   !> Where equal growth is not stable: the one ahead goes on and the other stays; two that drive
+   !! each other on go as far as they may.
+   subroutine test_runners()
+      real(rk), parameter :: zero(2) = 0.0_rk, far(2) = 5.0_rk
+      real(rk) :: change(2), shadow(2, 2)
+
+      shadow = reshape([-1.0_rk, -2.0_rk, -2.0_rk, -1.0_rk], [2, 2])
+      call complementary_advances([1.0_rk, 0.999_rk], shadow, zero, far, change)
+      call checks%is_close(maxval(abs(change - [1.0_rk, 0.0_rk])), 0.0_rk, 1.0e-14_rk, "the first")
+      call complementary_advances([0.999_rk, 1.0_rk], shadow, zero, far, change)
+      call checks%is_close(maxval(abs(change - [0.0_rk, 1.0_rk])), 0.0_rk, 1.0e-14_rk, "the second")
+      ! The rival is hardly shaded, but shades: it goes on until the first is back.
+      call complementary_advances([1.0_rk, 0.9_rk], &
+                                  reshape([-1.0_rk, -0.5_rk, -4.0_rk, -1.0_rk], [2, 2]), zero, &
+                                  far, change)
+      call checks%is_close(maxval(abs(change - [0.0_rk, 0.9_rk])), 0.0_rk, 1.0e-14_rk, &
+                           "the one that wins")
+      call complementary_advances([1.0_rk, 0.5_rk], -shadow - reshape([2.0_rk, 0.0_rk, 0.0_rk, &
+                                                                       2.0_rk], [2, 2]), zero, &
+                                  far, change)
+      call checks%is_close(maxval(abs(change - far)), 0.0_rk, 1.0e-14_rk, "both run away")
+   end subroutine test_runners
 
 end program test_growth_competition

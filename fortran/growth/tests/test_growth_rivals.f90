@@ -1,0 +1,123 @@
+!> Tips that act on each other, without a mesh: intensities that are linear in their places.
+program test_growth_rivals
+   use testing_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use growth_rivals, only: rivals_t
+   use growth_segment, only: segment_t
+   implicit none(type, external)
+
+   integer, parameter :: n = 4
+   integer(ik), parameter :: all_tips(n) = [1_ik, 2_ik, 3_ik, 4_ik]
+   real(rk), parameter :: own = -0.6_rk, shadow = -0.9_rk  !< per length of a piece
+   type(checks_t) :: checks
+
+   call test_measure()
+   call test_learning()
+   call test_places()
+   call checks%finish()
+
+contains
+
+   !> Two cracks with two tips each: tips of one crack do not act on each other, those of the other
+   !! one shade them.
+   pure function truth() result(matrix)
+      real(rk) :: matrix(n, n)
+      integer :: i, j
+
+      do j = 1, n
+         do i = 1, n
+            matrix(i, j) = merge(0.0_rk, 0.5_rk*shadow, (i - 1)/2 == (j - 1)/2)
+         end do
+         matrix(j, j) = own
+      end do
+   end function truth
+
+   !> Tips half along pieces of one metre.
+   pure function pieces() result(segment)
+      type(segment_t) :: segment(n)
+      integer :: i
+
+      do i = 1, n
+         call segment(i)%open_segment([0.0_rk, real(i, rk)], [1.0_rk, 0.0_rk], 1.0_rk)
+         segment(i)%reached = 0.5_rk
+         segment(i)%accepted = 0.2_rk
+      end do
+   end function pieces
+
+   !> Moved one after the other: then all is known, until they have gone far.
+   subroutine measure(rivals, segment)
+      type(rivals_t), intent(out) :: rivals
+      type(segment_t), intent(in) :: segment(n)
+      real(rk) :: matrix(n, n), before(n)
+      integer(ik) :: j
+
+      call rivals%begin(n)
+      matrix = truth()
+      before = [0.1_rk, 0.2_rk, 0.3_rk, 0.4_rk]
+      do j = 1, n
+         call rivals%note(j, -0.4_rk, before, before - 0.4_rk*matrix(:, j), segment(j))
+      end do
+   end subroutine measure
+
+   subroutine test_measure()
+      type(rivals_t) :: rivals
+      type(segment_t) :: segment(n)
+
+      segment = pieces()
+      call rivals%begin(n)
+      call checks%is_true(size(rivals%has_to_ask(all_tips, segment)) == n, "nothing is known")
+      call checks%is_true(rivals%preference_of(all_tips) < 0.0_rk, "nor said")
+      call measure(rivals, segment)
+      call checks%is_close(maxval(abs(rivals%matrix - truth())), 0.0_rk, 1.0e-15_rk, "measured")
+      call checks%is_true(size(rivals%has_to_ask(all_tips, segment)) == 0, "all is known")
+      segment(3)%gain = 10.0_rk
+      call checks%is_true(all(rivals%has_to_ask(all_tips, segment) == [3_ik]), "one has gone far")
+      ! (1, 1, -1, -1): own - shadow; the tips of one crack against each other: own.
+      call checks%is_close(rivals%preference_of(all_tips), own - shadow, 1.0e-13_rk, &
+                           "one crack could run ahead")
+      call checks%is_close(rivals%preference_of([1_ik, 2_ik]), own, 1.0e-13_rk, &
+                           "the tips of one grow together")
+   end subroutine test_measure
+
+   !> A try that errs by less than the meshes teaches nothing; one that errs more is told right then.
+   !! What was measured stays.
+   subroutine test_learning()
+      type(rivals_t) :: rivals
+      type(segment_t) :: segment(n)
+      real(rk) :: moved(n), other(n, n)
+
+      segment = pieces()
+      call measure(rivals, segment)
+      other = 2.0_rk*truth()
+      moved = [0.01_rk, 0.0_rk, -0.01_rk, 0.0_rk]
+      call rivals%learn(moved, matmul(other, moved))
+      call checks%is_close(maxval(abs(rivals%matrix - truth())), 0.0_rk, 1.0e-15_rk, "too little")
+      moved = [0.3_rk, 0.1_rk, -0.2_rk, 0.0_rk]
+      call rivals%learn(moved, matmul(other, moved))
+      call checks%is_close(maxval(abs(matmul(rivals%matrix - other, moved))), 0.0_rk, 1.0e-14_rk, &
+                           "learnt")
+      call checks%is_close(maxval(abs(rivals%measured - truth())), 0.0_rk, 1.0e-15_rk, "measured")
+   end subroutine test_learning
+
+   !> Kinds come to rest: alike they go equally far; where the cracks differ, the one with the
+   !! larger excess goes on and the other stays where it was, whichever of them it is.
+   subroutine test_places()
+      type(rivals_t) :: rivals
+      type(segment_t) :: segment(n)
+      real(rk) :: change(2), single(1)
+      integer :: ahead
+
+      segment = pieces()
+      call measure(rivals, segment)
+      single = rivals%changes(all_tips, spread(1_ik, 1, n), [0.15_rk], segment(1:1))
+      call checks%is_close(single(1), 0.15_rk/(-own - shadow), 1.0e-14_rk, "one kind")
+      do ahead = 1, 2
+         change = rivals%changes(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], &
+                                 merge(0.02_rk, 0.01_rk, [1, 2] == ahead), segment([1, 3]))
+         call checks%is_close(change(3 - ahead), -0.3_rk, 1.0e-14_rk, "one stays")
+         call checks%is_close(change(ahead), (0.02_rk - 0.3_rk*shadow)/(-own), 1.0e-14_rk, &
+                              "the other goes on")
+      end do
+   end subroutine test_places
+
+end program test_growth_rivals

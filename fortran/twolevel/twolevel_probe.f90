@@ -1,0 +1,102 @@
+!> How tips act on each other with a fluid: measured in a tried step by setting back one after the
+!! other, and learnt from the tries that follow.
+!!
+!! The step begins from the state before again, so what is held is the fluid that the wells give in
+!! it. The coarse level keeps mesh and factors, for tips lie anywhere in their cells (coarse_tips):
+!! a tip costs one solution of it, two meshes of the windows that hold the tip, and one solution of
+!! each window.
+module twolevel_probe
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: state_t, step_report_t
+   use growth_tip, only: tip_t
+   use twolevel_places, only: place_tips
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: lesson_t, measure_rivals
+
+   !> How far a tip is set back, as a share of its piece: the intensities of new windows differ by
+   !! some tenths of a per cent.
+   real(rk), parameter :: probe = 0.4_rk
+
+   !> A try, from which the next one teaches.
+   type :: lesson_t
+      real(rk), allocatable :: reached(:)  !< (tips) along their pieces [m]
+      real(rk), allocatable :: drive(:)  !< (tips) K_eq [Pa m^1/2]
+   contains
+      procedure :: begin
+      procedure :: tell
+   end type lesson_t
+
+contains
+
+   !> Measure what is not known of the tips in play, if there are several. Windows and coarse level
+   !! have to be asked anew then.
+   subroutine measure_rivals(self, in_play, dt, timers, has_measured, error)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: in_play(:)  !< (tips)
+      real(rk), intent(in) :: dt  !< [s]
+      type(timers_t), intent(inout) :: timers
+      logical, intent(out) :: has_measured
+      type(error_t), allocatable, intent(out) :: error
+      type(state_t) :: state
+      type(tip_t) :: tip(size(self%tip))
+      type(step_report_t) :: report
+      real(rk) :: shift
+      integer(ik), allocatable :: asked(:)
+      integer(ik) :: i, k
+
+      has_measured = .false.
+      if (count(in_play) < 2) return
+      asked = self%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
+                                     self%segment)
+      has_measured = size(asked) > 0
+      if (.not. has_measured) return
+      state = self%state
+      tip = self%tip
+      do k = 1, size(asked, kind=ik)
+         associate (segment => self%segment(asked(k)))
+            shift = -probe*segment%length
+            segment%reached = segment%reached + shift
+            call place_tips(self)
+            self%state = self%before
+            call self%try_step(dt, timers, report, error)
+            if (allocated(error)) return
+            if (report%converged) then
+               call self%evaluate(timers, error)
+               if (allocated(error)) return
+               call self%rivals%note(asked(k), shift, tip%drive%intensity/self%rules%toughness, &
+                                     self%tip%drive%intensity/self%rules%toughness, segment)
+            end if
+            segment%reached = segment%reached - shift
+         end associate
+      end do
+      call place_tips(self)
+      self%tip = tip
+      self%state = state
+      self%values_are_current = .false.
+   end subroutine measure_rivals
+
+   !> Remember a try.
+   subroutine begin(self, levels)
+      class(lesson_t), intent(out) :: self
+      class(two_levels_t), intent(in) :: levels
+
+      self%reached = levels%segment%reached
+      self%drive = levels%tip%drive%intensity
+   end subroutine begin
+
+   !> What the last try has shown beside the one before.
+   subroutine tell(self, levels)
+      class(lesson_t), intent(in) :: self
+      class(two_levels_t), intent(inout) :: levels
+
+      if (.not. allocated(self%reached)) return
+      call levels%rivals%learn(levels%segment%reached - self%reached, &
+                               (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
+   end subroutine tell
+
+end module twolevel_probe
