@@ -71,6 +71,11 @@ module output_columns
       column_t("n_intersections", "-", always, "Points where fractures meet"), &
       column_t("seismic_moment_nm", "N m/m", always, &
                "Shear modulus times the slip of all cells so far times their length"), &
+      column_t("fracture_length_error_m", "m", with_fluid, &
+               "Estimated error of fracture_length_m where tips have grown; -1 with law = "// &
+               "'paris', where there is none"), &
+      column_t("well_pressure_error_pa", "Pa", with_fluid, &
+               "Estimated error of well_pressure_pa; -1 with law = 'paris'"), &
       column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body")]
 
    type(column_t), parameter :: tip_columns(*) = [ &

@@ -84,6 +84,8 @@ contains
          call table%put("n_tips", row%n_tips)
          call table%put("n_intersections", row%n_intersections)
          call table%put("seismic_moment_nm", row%seismic_moment)
+         call table%put("fracture_length_error_m", row%length_error)
+         call table%put("well_pressure_error_pa", row%well_pressure_error)
          call table%put("strain_energy_j", row%strain_energy)
          call table%end_row()
       end associate

@@ -26,6 +26,8 @@ module results_rows
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
+      real(rk) :: length_error = 0.0_rk  !< estimated, of fracture_length; negative: is not [m]
+      real(rk) :: well_pressure_error = 0.0_rk  !< estimated; negative: is not [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
    end type history_row_t
 

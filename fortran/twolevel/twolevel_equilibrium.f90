@@ -14,7 +14,7 @@ module twolevel_equilibrium
    use base_tolerances, only: same_place
    use coarse_state, only: step_report_t
    use growth_kinds, only: likes, numbered
-   use growth_network, only: end_place, extend
+   use growth_network, only: end_place, extend, total_length
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
@@ -22,6 +22,7 @@ module twolevel_equilibrium
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
+   use twolevel_wells, only: mean_pressure
    implicit none(type, external)
    private
 
@@ -79,6 +80,7 @@ contains
       has_begun = .false.
       self%before = self%state
       call self%segment%restart()
+      call self%certainty%begin_step()
       do k = 1, merge(unstable_tries_max, tries_max, is_last)
          call place_tips(self)
          call self%try_step(dt, timers, report, error)
@@ -94,6 +96,8 @@ contains
          end if
          call self%evaluate(timers, error)
          if (allocated(error)) exit
+         call self%certainty%see_try(total_length(self%network), &
+                                     mean_pressure(self%share, self%state%pressure))
          if (.not. is_last) then
             trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
                                 self%tip%drive%intensity/self%rules%toughness, &
@@ -275,7 +279,7 @@ contains
          do i = 1, size(self%tip, kind=ik)
             alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
             alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
-                          max(same_drive*self%rules%toughness, hypot(off, off(i)))
+               max(same_drive*self%rules%toughness, hypot(off, off(i)))
             alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
          end do
       end associate

@@ -6,7 +6,7 @@ module twolevel_places
    implicit none(type, external)
    private
 
-   public :: advances, place_tips
+   public :: advances, place_tips, tip_cell_lengths
 
 contains
 
@@ -45,5 +45,24 @@ contains
          end do
       end associate
    end subroutine place_tips
+
+   !> Length of the coarse cell at each tip [m].
+   pure function tip_cell_lengths(self) result(length)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: length(size(self%tip))
+      integer(ik) :: i, k
+
+      length = 0.0_rk
+      associate (fracture => self%mesh%fracture)
+         do k = 1, fracture%n_tips
+            i = findloc(self%tip%fracture == fracture%tip_fracture(k) .and. &
+                        self%tip%end == fracture%tip_end(k), .true., dim=1)
+            if (i == 0) cycle
+            associate (cells => fracture%point_cells%of(fracture%tip_point(k)))
+               length(i) = self%model%condensed%length(cells(1))
+            end associate
+         end do
+      end associate
+   end function tip_cell_lengths
 
 end module twolevel_places

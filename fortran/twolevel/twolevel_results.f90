@@ -12,6 +12,7 @@ module twolevel_results
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
    use twolevel_state, only: two_levels_t
+   use twolevel_wells, only: mean_pressure
    implicit none(type, external)
    private
 
@@ -45,7 +46,6 @@ contains
       type(history_row_t) :: row
       real(rk) :: fluid  ! that the mass error is compared with [m2]
       integer(ik), allocatable :: states(:)
-      logical, allocatable :: is_well(:)
 
       associate (state => simulation%state)
          row%time = state%time
@@ -55,8 +55,7 @@ contains
          row%fracture_length = total_length(simulation%network)
          row%n_tips = size(simulation%tip)
          if (simulation%mesh%fracture%n_cells > 0) then
-            is_well = sum(simulation%share, dim=2) > 0.0_rk
-            if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
+            row%well_pressure = mean_pressure(simulation%share, state%pressure)
             row%fracture_volume = sum((state%aperture - state%void &
                                        - simulation%model%cells%roughness) &
                                       *simulation%model%condensed%length)

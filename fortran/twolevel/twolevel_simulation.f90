@@ -6,6 +6,7 @@ module twolevel_simulation
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
+   use growth_network, only: total_length
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_bifurcation, event_growth_onset, event_step_cut, &
                                 event_unstable
@@ -16,12 +17,13 @@ module twolevel_simulation
    use twolevel_equilibrium, only: accept_equilibrium, could_part, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_onset, only: approach_t
+   use twolevel_places, only: tip_cell_lengths
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_wells, only: next_switch
+   use twolevel_wells, only: mean_pressure, next_switch
    implicit none(type, external)
    private
 
@@ -331,6 +333,7 @@ contains
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
+      if (states_errors(self)) call note_certainty(self)
       if (self%state%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.
@@ -374,6 +377,27 @@ contains
          end associate
       end do
    end subroutine note_onsets
+
+   !> Errors of length and pressure are estimated: not with increments of a given law.
+   pure logical function states_errors(self)
+      class(twolevel_simulation_t), intent(in) :: self
+
+      states_errors = is_equilibrium(self) .or. .not. self%scene%growth%enabled
+   end function states_errors
+
+   !> How well length and pressure are known in the present state.
+   subroutine note_certainty(self)
+      class(twolevel_simulation_t), intent(inout) :: self
+
+      associate (tip => self%tip, toughness => self%rules%toughness)
+         call self%certainty%accept(self%dt, mean_pressure(self%share, self%state%pressure), &
+                                    tip%advance > 0.0_rk, tolerance + hypot( &
+                                    tip%intensity%k1_error, tip%intensity%k2_error)/toughness, &
+                                    self%segment%steep(self%segment%slope), &
+                                    tip_cell_lengths(self), total_length(self%network), &
+                                    self%trend%pressure_rise())
+      end associate
+   end subroutine note_certainty
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
    !! still to be found.
@@ -426,6 +450,11 @@ contains
       row%dt = merge(0.0_rk, self%dt, self%is_initial)
       row%newton_iterations = self%report%iterations
       row%seismic_moment = self%seismic_moment
+      row%length_error = -1.0_rk
+      row%well_pressure_error = -1.0_rk
+      if (.not. states_errors(self)) return
+      row%length_error = self%certainty%length
+      row%well_pressure_error = self%certainty%pressure
    end function history
 
    !> Displacement, stress and pressure at the probes.

@@ -22,6 +22,7 @@ module twolevel_state
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
+   use twolevel_certainty, only: certainty_t
    use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
@@ -54,6 +55,7 @@ module twolevel_state
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
       type(rivals_t) :: rivals  !< how the tips act on each other
+      type(certainty_t) :: certainty  !< how well lengths and pressures are known
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]

@@ -32,6 +32,7 @@ module twolevel_trend
    contains
       procedure :: begin
       procedure :: is_known
+      procedure :: pressure_rise
       procedure :: step_error
       procedure :: accept
       procedure :: transfer
@@ -64,6 +65,14 @@ contains
 
       is_known = self%dt > 0.0_rk
    end function is_known
+
+   !> How much the pressure has risen, from its lowest to its highest value so far [Pa].
+   pure real(rk) function pressure_rise(self)
+      class(trend_t), intent(in) :: self
+
+      pressure_rise = 0.0_rk
+      if (self%pressure(2) > self%pressure(1)) pressure_rise = width(self%pressure)
+   end function pressure_rise
 
    !> Error of a step from `before` to `after`, relative to the ranges [-]; 0 where none is known.
    pure real(rk) function step_error(self, before, after, dt, area, length)

@@ -7,7 +7,7 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-   public :: next_switch, rate, share_wells, transfer_shares
+   public :: mean_pressure, next_switch, rate, share_wells, transfer_shares
 
 contains
 
@@ -60,6 +60,17 @@ contains
       q = 0.0_rk
       if (time + 0.5_rk*dt > well%start .and. time + 0.5_rk*dt < well%end) q = well%rate
    end function rate
+
+   !> Mean pressure of the cells that wells feed; 0 without any [Pa].
+   pure real(rk) function mean_pressure(share, pressure) result(mean)
+      real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
+      real(rk), intent(in) :: pressure(:)  !< (fracture cells) [Pa]
+      logical :: is_well(size(pressure))
+
+      is_well = sum(share, dim=2) > 0.0_rk
+      mean = 0.0_rk
+      if (any(is_well)) mean = sum(pressure, mask=is_well)/count(is_well)
+   end function mean_pressure
 
    !> The next time at which a well starts or ends, or the scene does [s].
    pure function next_switch(scene, now) result(time)

@@ -1,0 +1,97 @@
+!> How well the length of the fractures and the pressure at the wells are known while tips grow in
+!! equilibrium.
+!!
+!! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid that it holds: where
+!! K_eq may be off by a share e of K_IC, a tip may be off by e over the slope of K_eq/K_IC along
+!! its path, and the pressure by what it changes with the length. Both slopes are those of the tries
+!! of a step, at the fluid of this step. Errors do not add up from step to step, for each state is
+!! in equilibrium by itself. Before growth the errors of the steps in time add up, with their signs.
+!!
+!! To that comes what the coarse cells leave: at each tip a crack opens, slips and leaks as if it
+!! were longer or shorter by a tenth of its cell at most (coarse_tips: 0.05 in each). Fluid that leaks
+!! off along a length that is wrong by some share makes the pressure wrong by the same share of
+!! what it has risen. Layers of viscous flow at a tip, which need finer cells, are not in it.
+module twolevel_certainty
+   use base_kinds, only: rk
+   implicit none(type, external)
+   private
+
+   public :: certainty_t
+
+   real(rk), parameter :: share = 0.1_rk  !< of a tip's coarse cell that its place may be off [-]
+
+   !> What is known of both, and what the last tries and the last step tell.
+   type :: certainty_t
+      real(rk) :: length = 0.0_rk  !< how far the length of all fractures may be off [m]
+      real(rk) :: pressure = 0.0_rk  !< how far that at the wells may be off [Pa]
+      real(rk), private, allocatable :: tip(:)  !< how far each tip may be off [m]
+      integer, private :: tries = 0  !< of the present step
+      real(rk), private :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two
+      real(rk), private :: slope = 0.0_rk  !< of the pressure over the length [Pa/m]
+      logical, private :: is_followed = .false.  !< there is a last state
+      real(rk), private :: last = 0.0_rk  !< pressure of that [Pa]
+      real(rk), private :: rate = 0.0_rk  !< of the pressure in the last step [Pa/s]
+      real(rk), private :: step = 0.0_rk  !< the last one [s]
+      real(rk), private :: by_steps = 0.0_rk  !< errors of the steps, with their signs [Pa]
+   contains
+      procedure :: begin_step
+      procedure :: see_try
+      procedure :: accept
+   end type certainty_t
+
+contains
+
+   !> Tries of another step follow.
+   elemental subroutine begin_step(self)
+      class(certainty_t), intent(inout) :: self
+
+      self%tries = 0
+   end subroutine begin_step
+
+   !> A try of the step, with tips where they are tried to be.
+   elemental subroutine see_try(self, length, pressure)
+      class(certainty_t), intent(inout) :: self
+      real(rk), intent(in) :: length  !< of the fractures [m]
+      real(rk), intent(in) :: pressure  !< at the wells [Pa]
+      real(rk) :: change(2)
+
+      self%tried(:, 1) = self%tried(:, 2)
+      self%tried(:, 2) = [length, pressure]
+      self%tries = self%tries + 1
+      if (self%tries < 2) return
+      change = self%tried(:, 2) - self%tried(:, 1)
+      if (abs(change(1)) > sqrt(epsilon(1.0_rk))*length) self%slope = change(2)/change(1)
+   end subroutine see_try
+
+   !> A step has been accepted.
+   pure subroutine accept(self, step, pressure, grows, excess_error, excess_slope, cell, &
+                          length, rise)
+      class(certainty_t), intent(inout) :: self
+      real(rk), intent(in) :: step  !< [s]
+      real(rk), intent(in) :: pressure  !< at the wells [Pa]
+      logical, intent(in) :: grows(:)  !< (tips) in the step
+      real(rk), intent(in) :: excess_error(:)  !< (tips) of K_eq, over K_IC [-]
+      real(rk), intent(in) :: excess_slope(:)  !< (tips) of K_eq over K_IC along the path, < 0 [1/m]
+      real(rk), intent(in) :: cell(:)  !< (tips) length of the coarse cell there [m]
+      real(rk), intent(in) :: length  !< of all fractures [m]
+      real(rk), intent(in) :: rise  !< of the pressure, from the lowest to the highest so far [Pa]
+
+      if (.not. allocated(self%tip)) allocate (self%tip(size(grows)), source=0.0_rk)
+      where (grows) self%tip = excess_error/abs(excess_slope) + share*cell
+      self%length = sum(self%tip)
+      if (self%is_followed .and. step > 0.0_rk) then
+         if (self%step > 0.0_rk) then
+            self%by_steps = self%by_steps + step/(step + self%step) &
+                            *(pressure - self%last - step*self%rate)
+         end if
+         self%rate = (pressure - self%last)/step
+         self%step = step
+      end if
+      if (any(grows)) self%by_steps = 0.0_rk
+      self%is_followed = .true.
+      self%last = pressure
+      self%pressure = abs(self%slope)*self%length + abs(self%by_steps)
+      if (length > 0.0_rk) self%pressure = self%pressure + share*sum(cell)/length*rise
+   end subroutine accept
+
+end module twolevel_certainty
