@@ -6,7 +6,7 @@ module twolevel_results
    use coarse_fields, only: cell_stresses, nodal_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
-   use mesh_types, only: fracture_mesh_t
+   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
    use results_rows, only: history_row_t, probe_row_t
    use results_summary, only: summary_t
@@ -16,7 +16,7 @@ module twolevel_results
    private
 
    public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
-   public :: probes_of_levels
+   public :: fracture_flow, probes_of_levels
    public :: slip_moment, snapshot_of_levels
 
 contains
@@ -45,18 +45,23 @@ contains
       type(history_row_t) :: row
       real(rk) :: fluid  ! that the mass error is compared with [m2]
       integer(ik), allocatable :: states(:)
-      logical, allocatable :: is_well(:)
+      logical, allocatable :: is_fed(:), is_well(:)
 
       associate (state => simulation%state)
          row%time = state%time
          row%injected = simulation%injected
          row%leakoff = simulation%leaked
          row%prefilled = simulation%prefilled
+         row%outflow = simulation%outflow
          row%fracture_length = total_length(simulation%network)
          row%n_tips = size(simulation%tip)
          if (simulation%mesh%fracture%n_cells > 0) then
             is_well = sum(simulation%share, dim=2) > 0.0_rk
-            if (any(is_well)) row%well_pressure = sum(state%pressure, mask=is_well)/count(is_well)
+            is_fed = sum(simulation%joint_share, dim=2) > 0.0_rk
+            if (any(is_well) .or. any(is_fed)) row%well_pressure = &
+               (sum(state%pressure, mask=is_well) + sum(state%joint_pressure, mask=is_fed)) &
+               /(count(is_well) + count(is_fed))
+            row%n_intersections = count(is_intersection(simulation%mesh%fracture))
             row%fracture_volume = sum((state%aperture - state%void &
                                        - simulation%model%cells%roughness) &
                                       *simulation%model%condensed%length)
@@ -148,8 +153,40 @@ contains
          fracture%pressure = state%pressure
          fracture%void = state%void
          fracture%state = cell_states(simulation)
+         fracture%flow = fracture_flow(simulation)
+         snapshot%intersection%point = simulation%model%joints%point
+         snapshot%intersection%pressure = state%joint_pressure
       end associate
    end function snapshot_of_levels
+
+   !> Flow along each fracture cell in its direction, the mean of its two ends [m2/s].
+   pure function fracture_flow(simulation) result(flow)
+      class(two_levels_t), intent(in) :: simulation
+      real(rk) :: flow(simulation%mesh%fracture%n_cells)
+      integer(ik) :: b, k
+
+      flow = 0.0_rk
+      associate (state => simulation%state, pairs => simulation%model%connections, &
+                 joints => simulation%model%joints)
+         do k = 1, size(pairs, 2, kind=ik)
+            flow(pairs(:, k)) = flow(pairs(:, k)) + 0.5_rk*state%flow(k)
+         end do
+         do b = 1, joints%branch_count()
+            flow(joints%cell(b)) = flow(joints%cell(b)) &
+                                   + merge(-0.5_rk, 0.5_rk, joints%end(b) == 1)*state%branch_flow(b)
+         end do
+      end associate
+   end function fracture_flow
+
+   !> The points inside the body where fractures meet.
+   pure function is_intersection(fracture)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical :: is_intersection(fracture%n_points)
+      integer(ik) :: i
+
+      is_intersection = [(all(fracture%point_kind(i) /= [point_interior, point_tip, &
+                                                         point_boundary]), i=1, fracture%n_points)]
+   end function is_intersection
 
    !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
    !! those of the coarse mesh go on beyond them, closed.
@@ -188,7 +225,11 @@ contains
          call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2))
+         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2) &
+                                 + simulation%model%joints%branch_count())
+         if (simulation%model%joints%n > 0) then
+            call summary%count_dofs("intersection_pressure", simulation%model%joints%n)
+         end if
       end associate
       if (simulation%scene%growth%intensities) then
          call summary%count_dofs("windows", simulation%windows%n_unknowns())

@@ -85,7 +85,8 @@ contains
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
          call summary%note(any(scene%sides%pressure_given), "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
-         call summary%leave_out_feature("intersections: fractures do not meet")
+         call summary%note(self%model%joints%n > 0, "intersections: flow from fracture to "// &
+                           "fracture or out of the body", "intersections: fractures do not meet")
       end associate
    end subroutine note_features
 

@@ -1,13 +1,14 @@
 !> Wells: which fracture cells they feed, at which rate, and when they start and end.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_time
+   use base_tolerances, only: same_place, same_time
+   use coarse_joints, only: joints_t
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
    private
 
-   public :: next_switch, rate, share_wells, transfer_shares
+   public :: feed_joints, next_switch, rate, share_wells, transfer_shares
 
 contains
 
@@ -38,6 +39,35 @@ contains
          end associate
       end do
    end subroutine share_wells
+
+   !> Wells whose point is where their fracture meets others feed the joint itself, and no cell.
+   pure subroutine feed_joints(wells, fracture, joints, share, joint_share)
+      type(injection_t), intent(in) :: wells(:)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(joints_t), intent(in) :: joints
+      real(rk), intent(inout) :: share(:, :)  !< (fracture cells, wells) [-]
+      real(rk), allocatable, intent(out) :: joint_share(:, :)  !< (joints, wells) [-]
+      real(rk) :: distance, near
+      integer(ik) :: b, w
+
+      allocate (joint_share(joints%n, size(wells)), source=0.0_rk)
+      do w = 1, size(wells, kind=ik)
+         if (.not. wells(w)%at_point) cycle
+         do b = 1, joints%branch_count()
+            associate (cell => joints%cell(b), joint => joints%joint(b))
+               if (joints%is_outlet(joint)) cycle
+               if (fracture%cell_fracture(cell) /= wells(w)%fracture) cycle
+               distance = norm2(fracture%point_xy(:, joints%point(joint)) &
+                                - [wells(w)%x, wells(w)%y])
+               near = same_place*(fracture%cell_s(2, cell) - fracture%cell_s(1, cell))
+               if (distance > near) cycle
+               share(:, w) = 0.0_rk
+               joint_share(:, w) = 0.0_rk
+               joint_share(joint, w) = 1.0_rk
+            end associate
+         end do
+      end do
+   end subroutine feed_joints
 
    !> The shares on a new mesh: the wells go on feeding the cells that they fed.
    pure function transfer_shares(map, before) result(after)
