@@ -4,6 +4,7 @@
 #include "errors.hpp"
 #include "gmsh_session.hpp"
 #include "judge.hpp"
+#include "lone_sectors.hpp"
 #include "mesh.hpp"
 #include "narrow_places.hpp"
 #include "rosette.hpp"
@@ -75,6 +76,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     mesh.plane.fracture_cells = std::move(skeleton.cells);
     mesh.plane.rosettes = std::move(skeleton.rosettes);
     smooth(mesh.plane, n_fixed);
+    if (!specification.is_window && !is_for_elements(specification))
+        divide_lone_sectors(mesh.plane);
 
     check_fracture_length(mesh.plane.fracture_cells, xy, network, domain, tolerances);
     mesh.split = split(mesh.plane, domain);

@@ -56,7 +56,6 @@ contains
       call add_jumps(mesh, regions, region, local)
       local%rhs(:, :m) = -local%coupling
       call apply_sides(mesh, sides, regions, region, local)
-      call hold_rotations(regions, region, local)
       call eliminate(local, response, share, info)
       if (info /= 0) return
       associate (rotations => response%matrix(n_tractions + 1:, :))
@@ -181,29 +180,5 @@ contains
          if (.not. any(abs(local%matrix(n, :)) > 0.0_rk)) local%matrix(n, n) = 1.0_rk
       end do
    end subroutine apply_sides
-
-   !> Where two straight fractures cross and each of the four sectors is a single cell, or where one
-   !! ends on a side between two such cells, one of the conditions of symmetry follows from the
-   !! others: the rotations are known but for a part without effect on the tractions, like the
-   !! pressures at the singular vertices of Scott and Vogelius (Math. Model. Numer. Anal. 19, 1985).
-   !! Of these rotations those are taken that differ least from their mean; where all are equal, as
-   !! in any linear state, nothing changes.
-   pure subroutine hold_rotations(regions, region, local)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local
-      real(rk), parameter :: share = 1.0e-7_rk  ! between rounding errors and what one would notice
-      real(rk) :: hold
-      integer(ik) :: first, i, n
-
-      n = regions%nodes%length(region)
-      if (n < 2 .or. regions%cell_count(region) > n) return
-      first = 2*regions%faces%length(region) + 1
-      hold = share*maxval(abs(local%matrix(:, first:)))
-      local%matrix(first:, first:) = local%matrix(first:, first:) + hold/real(n, rk)
-      do i = first, first + n - 1
-         local%matrix(i, i) = local%matrix(i, i) - hold
-      end do
-   end subroutine hold_rotations
 
 end module coarse_stress
