@@ -11,7 +11,7 @@
 module coarse_joints
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-   use mesh_types, only: mesh_t, point_boundary, point_interior, point_tip
+   use mesh_types, only: fracture_mesh_t, mesh_t, point_boundary, point_interior, point_tip
    use scene_types, only: boundary_side_t
    implicit none(type, external)
    private
@@ -30,6 +30,9 @@ module coarse_joints
       integer(ik), allocatable :: cell(:)  !< (branches) fracture cell
       integer(ik), allocatable :: joint(:)  !< (branches) where it goes
       integer(ik), allocatable :: end(:)  !< (branches) 1: the cell's start is there, 2: its end
+      !> (branches) the cell beyond the joint in which the fracture, or in a V the way, goes on; 0:
+      !! none
+      integer(ik), allocatable :: beyond(:)
    contains
       procedure :: branch_count
       procedure :: mean_pressure
@@ -77,8 +80,32 @@ contains
                end do
             end associate
          end do
+         allocate (joints%beyond(n_branches))
+         do b = 1, n_branches
+            joints%beyond(b) = cell_beyond(fracture, joints, b)
+         end do
       end associate
    end subroutine find_joints
+
+   !> Where the way goes on beyond the joint of a branch; 0 if it does not. Cells are stored along
+   !! each fracture.
+   pure integer(ik) function cell_beyond(fracture, joints, branch) result(cell)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(joints_t), intent(in) :: joints
+      integer(ik), intent(in) :: branch
+      integer(ik) :: b, j, step
+
+      cell = 0
+      j = joints%joint(branch)
+      step = merge(-1_ik, 1_ik, joints%end(branch) == 1)
+      do b = joints%branches%first(j), joints%branches%last(j)
+         associate (own => joints%cell(branch), other => joints%cell(b))
+            if (other - own == step .and. &
+                fracture%cell_fracture(other) == fracture%cell_fracture(own)) cell = other
+            if (joints%branches%length(j) == 2 .and. b /= branch) cell = other
+         end associate
+      end do
+   end function cell_beyond
 
    !> Whether fluid takes more ways at a fracture point than along one fracture.
    pure logical function is_joint(kind, n_cells, is_given)

@@ -30,6 +30,7 @@ program test_coarse_joints
    call test_star()
    call test_outlet()
    call test_mass()
+   call test_two_halves()
    call checks%finish()
 
 contains
@@ -410,5 +411,47 @@ contains
       end do
       call checks%is_true(any(state%contact /= state_stick), "the cross has moved")
    end subroutine test_mass
+
+   !> A fracture drawn as two, end to end, is the same fracture: fluid opens it as it passes the
+   !! joint.
+   subroutine test_two_halves()
+      real(rk), parameter :: whole(2, 2, 1) = reshape([0.6_rk, 0.9_rk, 1.4_rk, 1.1_rk], [2, 2, 1])
+      real(rk), parameter :: halves(2, 2, 2) = reshape([0.6_rk, 0.9_rk, 1.0_rk, 1.0_rk, 1.0_rk, &
+                                                        1.0_rk, 1.4_rk, 1.1_rk], [2, 2, 2])
+      type(mesh_t) :: mesh, mesh_of_halves
+      type(coarse_model_t) :: model, model_of_halves
+      type(state_t) :: state, state_of_halves
+      type(scene_t) :: scene
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      integer :: step
+
+      scene = tight_body()
+      scene%sides(2)%traction(1) = -2.0e6_rk
+      scene%sides(4)%traction(2) = -1.0e6_rk
+      scene%discretization%newton_tolerance = 1.0e-9_rk
+      call start(straight_network(whole), 0.1_rk, scene, contact_law_t(friction=0.5_rk), &
+                 1.0e-5_rk, mesh, model, state)
+      call start(straight_network(halves), 0.1_rk, scene, contact_law_t(friction=0.5_rk), &
+                 1.0e-5_rk, mesh_of_halves, model_of_halves, state_of_halves)
+      call checks%is_true(mesh%n_cells == mesh_of_halves%n_cells, "the same mesh")
+      model%cells%injection(2) = 1.0e-6_rk
+      model_of_halves%cells%injection(2) = 1.0e-6_rk
+      do step = 1, 10
+         call model%advance(mesh, 2.0_rk, state, timers, report, error)
+         call checks%is_true(report%converged, "the whole converges")
+         call model_of_halves%advance(mesh_of_halves, 2.0_rk, state_of_halves, timers, report, &
+                                      error)
+         call checks%is_true(report%converged, "the halves converge")
+      end do
+      associate (p => state%pressure, q => state_of_halves%pressure)
+         call checks%is_close(maxval(abs(q - p)), 0.0_rk, 1.0e-7_rk*maxval(p), "pressures")
+      end associate
+      associate (a => state%aperture, b => state_of_halves%aperture)
+         call checks%is_close(maxval(abs(b - a)), 0.0_rk, 1.0e-7_rk*maxval(a), "apertures")
+         call checks%is_true(maxval(a) > 2.0e-5_rk, "the fluid has opened it")
+      end associate
+   end subroutine test_two_halves
 
 end program test_coarse_joints
