@@ -31,6 +31,7 @@ program test_coarse_joints
    call test_outlet()
    call test_mass()
    call test_two_halves()
+   call test_overdrawn()
    call checks%finish()
 
 contains
@@ -453,5 +454,31 @@ contains
          call checks%is_true(maxval(a) > 2.0e-5_rk, "the fluid has opened it")
       end associate
    end subroutine test_two_halves
+
+   !> More than what flows to a joint cannot be drawn from it: the step is refused, and says why.
+   subroutine test_overdrawn()
+      type(mesh_t) :: mesh
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(scene_t) :: scene
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      integer :: k
+
+      scene = tight_body()
+      scene%initial%pressure = 1.0e6_rk
+      scene%fluid%vapour_pressure = 0.0_rk
+      call start(star(3, 0.2_rk), 0.2_rk, scene, contact_law_t(friction=5.0_rk), 1.0e-6_rk, mesh, &
+                 model, state)
+      do k = 0, 1
+         ! Over half a cell 12 mu q/a^3 (l/2) is 0.4 MPa, and then 4 MPa.
+         model%joints%injection = -1.0e-8_rk*10**k
+         call model%advance(mesh, 1.0e-9_rk, state, timers, report, error)
+         call checks%no_error(error, "drawing from a joint")
+         call checks%is_true(report%converged .eqv. k == 0, "no more than flows there")
+      end do
+      call checks%is_true(index(report%reason, "where fractures meet") > 0, "the reason")
+   end subroutine test_overdrawn
 
 end program test_coarse_joints
