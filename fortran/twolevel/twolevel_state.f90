@@ -118,8 +118,8 @@ contains
                             self%scene%material%young, length)
    end subroutine follow_trend
 
-   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for fluid
-   !! has no law yet at joints.
+   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for the
+   !! coarse mesh cannot make joints of them yet.
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
