@@ -125,7 +125,7 @@ NETWORK_FAULTS = {
     "cross": (
         "x = 0.9, 1.1, y = 1.1, 0.9",
         "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at (1, 1), but "
-        "fractures must not touch in a scene with &fluid",
+        "fractures with a fluid must not touch where tips can grow; set enabled = .false.",
     ),
     "V at 1.6 degrees": (
         "x = 1.0353553390593274, 0.9, y = 1.0353553390593274, 0.896",
@@ -152,7 +152,8 @@ def test_check_and_run_judge_a_network_alike(fault: str, tmp_path: Path) -> None
     vertices, words = NETWORK_FAULTS[fault]
     fracture = f"&fracture name = 'f2', {vertices}\n  {LAW}\n"
     first_side = "&side name = 'left'"
-    (tmp_path / "faulty.nml").write_text(varied((first_side, fracture + first_side)))
+    growth = ("intensities = .true.", "enabled = .true.")
+    (tmp_path / "faulty.nml").write_text(varied((first_side, fracture + first_side), growth))
     checked = call(tmp_path, "check", "faulty.nml")
     ran = call(tmp_path, "run", "faulty.nml", "--out", "out")
     assert checked.stderr == ran.stderr

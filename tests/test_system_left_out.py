@@ -49,6 +49,7 @@ WELL = """\
 /
 &injection fracture = 'f', rate = 5.0e-9 /
 """
+CROSSING = "&fracture name = 'g', x = 0.9, 1.1, y = 1.1, 0.9, friction = 0.5, aperture = 1.0e-3 /\n"
 COARSE = "&coarse size_fracture = 0.1, size_boundary = 0.5 /\n"
 
 SCENES = {
@@ -70,6 +71,7 @@ SCENES = {
     + "&growth enabled = .true., increment = 0.1, stop_gain = 0.05 /\n",
     "porous body": POROUS + "&coarse size_boundary = 0.5 /\n",
     "with a well": POROUS + COARSE + WELL,
+    "with a joint": POROUS + COARSE + WELL + CROSSING,
     "two levels": POROUS
     + COARSE
     + WELL
@@ -82,6 +84,7 @@ FLUID = ("coarse_", "twolevel_")
 TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "growth_law")
 CONTACT = ("contact_law",)
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
+JOINTS = ("coarse_joint_flow",)
 FILES = ("output_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,
@@ -89,9 +92,10 @@ ABSENT = {
     "its intensities": FLUID + CONTACT + FILES,
     "and VTU files": FLUID + CONTACT,
     "growing wings": FLUID + FILES,
-    "porous body": ("mechanics_", *WINDOWS, *TIPS, *CONTACT, "coarse_newton", *FILES),
-    "with a well": ("mechanics_", *WINDOWS, *TIPS, *FILES),
-    "two levels": ("mechanics_", *FILES),
+    "porous body": ("mechanics_", *WINDOWS, *TIPS, *CONTACT, "coarse_newton", *JOINTS, *FILES),
+    "with a well": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *FILES),
+    "with a joint": ("mechanics_", *WINDOWS, *TIPS, *FILES),
+    "two levels": ("mechanics_", *JOINTS, *FILES),
 }
 # The same instrument sees them where they are wanted.
 PRESENT = {
@@ -102,6 +106,7 @@ PRESENT = {
     "growing wings": (*TIPS, *CONTACT),
     "porous body": ("coarse_",),
     "with a well": ("coarse_newton", *CONTACT),
+    "with a joint": ("coarse_newton", *CONTACT, *JOINTS),
     "two levels": (*FLUID, *WINDOWS, *TIPS, *CONTACT),
 }
 

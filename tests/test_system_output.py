@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista
-from system_scene import GROWING, TOP, run
+from system_scene import GROWING, TOP, run, varied
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 pytestmark = pytest.mark.usefixtures("program")
 
 PROBES = ("inside", "corner")
 FLUID = {"always", "with a fluid", "with a fluid and fractures", "with tips and a toughness"}
+JOINTS = FLUID | {"with a fluid and joints"}
 MECHANICS = {
     "always",
     "with tips and a toughness",
@@ -42,6 +43,15 @@ EDGE_CRACK += """
 &probe name = 'inside', x = 0.75, y = 0.5 /
 &probe name = 'corner', x = 1.0, y = 1.0 /
 """
+
+# Two fractures that cross.
+CROSSING = varied(
+    (
+        "&injection",
+        "&fracture name = 'f2', x = 0.96, 1.04, y = 1.04, 0.96, friction = 0.5, "
+        "aperture = 1.0e-3 /\n&injection",
+    )
+)
 
 
 @dataclass(frozen=True)
@@ -73,13 +83,17 @@ def described(sections: dict[str, list[str]]) -> dict[str, list[Entry]]:
     }
 
 
-@pytest.fixture(scope="module", params=["fluid", "mechanics"])
+@pytest.fixture(scope="module", params=["fluid", "joints", "mechanics"])
 def out_and_runs(
     program: None, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, set[str]]:
     """Files of a run, and the words of the page that hold for it."""
     which: str = request.param
-    scene, words = {"fluid": (GROWING, FLUID), "mechanics": (EDGE_CRACK, MECHANICS)}[which]
+    scene, words = {
+        "fluid": (GROWING, FLUID),
+        "joints": (CROSSING, JOINTS),
+        "mechanics": (EDGE_CRACK, MECHANICS),
+    }[which]
     return run(tmp_path_factory.mktemp(which), scene), words
 
 
@@ -106,7 +120,7 @@ def keys(content: object, above: str = "") -> list[str]:
 
 
 def test_every_run_that_the_page_names_is_tested(described: dict[str, list[Entry]]) -> None:
-    assert {entry.runs for entries in described.values() for entry in entries} == FLUID | MECHANICS
+    assert {entry.runs for entries in described.values() for entry in entries} == JOINTS | MECHANICS
 
 
 def test_tables(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set[str]]) -> None:
@@ -129,6 +143,7 @@ def test_units_end_the_names_of_columns(described: dict[str, list[Entry]]) -> No
         "J/m": "_j",
         "N m/m": "_nm",
         "degree": "_deg",
+        "m2/s": "_m2_s",
     }
     for file in (*TABLES, "run.json", "network.json"):
         for entry in described[file]:
@@ -155,19 +170,18 @@ def test_keys_of_the_network(
     if not network["joints"]:
         expected = [key for key in expected if not key.startswith("joints[]")]
     assert sorted(keys(network)) == sorted(expected)
-    assert bool(network["joints"]) == ("without a fluid" in runs)
+    assert bool(network["joints"]) == (runs in (JOINTS, MECHANICS))
 
 
 def test_fields(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set[str]]) -> None:
     out, runs = out_and_runs
-    for dimension in ("matrix", "fractures"):
+    for dimension in ("matrix", "fractures", "intersections"):
         files = sorted((out / "vtu").glob(f"{dimension}_*.vtu"))
-        assert files
+        assert bool(files) == (dimension != "intersections" or runs == JOINTS)
         for file in files:
             head = file.read_bytes().split(b"<PointData>", 1)[1].split(b"<AppendedData", 1)[0]
             fields = re.findall(r'Name="(\w+)"', head.decode())
             assert fields == names(described[f"{dimension}.vtu"], runs)
-    assert not list((out / "vtu").glob("intersections_*"))  # no run has them yet
 
 
 def test_paraview_finds_units_and_names(out_and_runs: tuple[Path, set[str]]) -> None:
@@ -175,7 +189,9 @@ def test_paraview_finds_units_and_names(out_and_runs: tuple[Path, set[str]]) -> 
     last = sorted((out / "vtu").glob("fractures_*.vtu"))[-1]
     grid = pyvista.read(last)
     scene = (out / "scene.nml").read_text()
-    assert [f"name = '{name}'" in scene for name in grid.field_data["fracture_names"]] == [True]
+    names = grid.field_data["fracture_names"]
+    assert len(names) == scene.count("&fracture\n")
+    assert all(f"name = '{name}'" in scene for name in names)
     assert list(grid.field_data["state_names"]) == ["stick", "slip", "open"]
     key = vtkDataArray.UNITS_LABEL()
     units = {"traction": "Pa", "jump": "m", "fracture": None}

@@ -22,6 +22,7 @@ HISTORY = [
     "injected_m2",
     "leakoff_m2",
     "prefilled_m2",
+    "outflow_m2",
     "fracture_volume_m2",
     "mass_error_relative",
     "max_slip_m",
@@ -71,6 +72,7 @@ FRACTURES = [
     "traction_t_pa",
     "pressure_pa",
     "void_m",
+    "flow_m2_s",
     "state",
     "history_row",
 ]

@@ -4,6 +4,7 @@
 #include "errors.hpp"
 #include "gmsh_session.hpp"
 #include "judge.hpp"
+#include "lone_sectors.hpp"
 #include "mesh.hpp"
 #include "narrow_places.hpp"
 #include "rosette.hpp"
@@ -47,7 +48,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
     mesh.size.set_discs(rosette_discs(graph, plans, specification.rosette_sectors));
-    if (mesh.size.is_scale_free())
+    // Cells between fractures that meet must not be much longer than what is left for them.
+    if (mesh.size.is_scale_free() || (!specification.is_window && !joints_of(graph).empty()))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);
 
     std::vector<Vec2>& xy = mesh.plane.xy;
@@ -74,6 +76,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     mesh.plane.fracture_cells = std::move(skeleton.cells);
     mesh.plane.rosettes = std::move(skeleton.rosettes);
     smooth(mesh.plane, n_fixed);
+    if (!specification.is_window && !is_for_elements(specification))
+        divide_lone_sectors(mesh.plane);
 
     check_fracture_length(mesh.plane.fracture_cells, xy, network, domain, tolerances);
     mesh.split = split(mesh.plane, domain);

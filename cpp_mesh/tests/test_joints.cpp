@@ -3,6 +3,8 @@
 #include "api_mesh.hpp"
 #include "checks.hpp"
 
+#include <set>
+
 namespace {
 
 enum Kind { interior = 0, tip = 1, boundary = 2, joint_t = 3, joint_x = 4, corner = 5 };
@@ -123,6 +125,20 @@ std::vector<Polyline> reversed(std::vector<Polyline> fractures) {
     return fractures;
 }
 
+// Nodes on fractures, tips aside, that only one cell has: it fills its sector alone.
+int lone_sectors(const ApiMesh& mesh) {
+    std::vector<int> cells_around(mesh.counts.n_nodes, 0);
+    for (int k = 0; k < 3 * mesh.counts.n_cells; ++k)
+        ++cells_around[mesh.cell_nodes[k]];
+    std::set<int> lone;
+    for (int f = 0; f < mesh.counts.n_faces; ++f)
+        if (mesh.face_fracture_cell[f] >= 0)
+            for (int k = 0; k < 2; ++k)
+                if (cells_around[mesh.face_nodes[2 * f + k]] < 2)
+                    lone.insert(mesh.face_nodes[2 * f + k]);
+    return static_cast<int>(lone.size());
+}
+
 void check_case(Checks& checks, const Case& c, const std::vector<Polyline>& fractures,
                 const std::string& name) {
     ApiMesh mesh;
@@ -144,6 +160,7 @@ void check_case(Checks& checks, const Case& c, const std::vector<Polyline>& frac
     for (std::size_t f = 0; f < fractures.size(); ++f)
         checks.is_close(mesh.fracture_length(static_cast<int>(f)), length_of(fractures[f]), 1e-13,
                         name + ": length");
+    checks.is_equal(lone_sectors(mesh), 0, name + ": two cells or more in each sector");
     for (int p = 0; p < mesh.counts.n_fracture_points; ++p)
         for (int k = mesh.point_first[p]; k < mesh.point_first[p + 1]; ++k) {
             const int cell = mesh.point_cells[k];

@@ -6,7 +6,6 @@ module app_journal
    use mesh_types, only: mesh_t, network_t
    use output_progress, only: progress_t, progress_values_t
    use output_run, only: run_output_t
-   use results_fields, only: intersection_fields_t
    use results_rows, only: history_row_t, probe_row_t
    use simulation_types, only: simulation_t, snapshot_t
    implicit none(type, external)
@@ -145,7 +144,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_vtu  !< .false.: only the rows of fractures.csv
       type(snapshot_t), allocatable :: fields
-      type(intersection_fields_t) :: none
       logical :: has_vtu
 
       has_vtu = .true.
@@ -153,9 +151,8 @@ contains
       if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
-      allocate (none%point(0), none%pressure(0))
-      call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, none, &
-                                   error, self%owes_rows, has_vtu)
+      call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, &
+                                   fields%intersection, error, self%owes_rows, has_vtu)
       self%owes_rows = .false.
       if (has_vtu) self%owes_vtu = .false.
    end subroutine write_fields

@@ -1,8 +1,9 @@
 !> The equations of one time step on the fractures: contact at both ends of every cell, and the
-!! fluid (coarse_fracture_flow). Their unknowns are those of fracture_layout_t.
+!! fluid (coarse_fracture_flow, coarse_joint_flow). Their unknowns are those of fracture_layout_t.
 module coarse_equations
    use base_kinds, only: ik, rk
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
+   use coarse_joint_flow, only: fill_branch, fill_joint
    use coarse_fractures, only: cell_fluid_t, fracture_system_t
    use contact_law, only: contact_equations
    implicit none(type, external)
@@ -42,6 +43,12 @@ contains
       end do
       do k = 1, self%layout%n_flows
          call fill_flow(k, x, self)
+      end do
+      do k = 1, self%layout%n_joints
+         call fill_joint(k, x, self)
+      end do
+      do k = 1, self%layout%n_branches
+         call fill_branch(k, x, self)
       end do
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
    end subroutine evaluate

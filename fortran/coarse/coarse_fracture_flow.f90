@@ -18,7 +18,7 @@ module coarse_fracture_flow
    implicit none(type, external)
    private
 
-   public :: fill_balance, fill_equilibrium, fill_exchange, fill_flow
+   public :: conducting_aperture, fill_balance, fill_equilibrium, fill_exchange, fill_flow
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 

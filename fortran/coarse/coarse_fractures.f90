@@ -6,6 +6,7 @@
 module coarse_fractures
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
+   use coarse_joints, only: joints_t
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_state, only: fracture_cells_t, state_t
    use contact_dense, only: dense_system_t
@@ -33,6 +34,7 @@ module coarse_fractures
       type(condensed_t), pointer :: condensed => null()
       type(fracture_cells_t), pointer :: cells => null()
       integer(ik), pointer :: connections(:, :) => null()  !< (2, m) cells that exchange fluid
+      type(joints_t), pointer :: joints => null()
       real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), pointer :: before => null()  !< at the last accepted time
       type(newton_settings_t) :: settings
@@ -67,10 +69,11 @@ module coarse_fractures
 contains
 
    !> Units, and the part of the derivatives that does not change within the step.
-   subroutine prepare(condensed, cells, connections, settings, dt, g, before, eq)
+   subroutine prepare(condensed, cells, connections, joints, settings, dt, g, before, eq)
       type(condensed_t), intent(in), target :: condensed
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
+      type(joints_t), intent(in), target :: joints
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
@@ -84,10 +87,11 @@ contains
       eq%condensed => condensed
       eq%cells => cells
       eq%connections => connections
+      eq%joints => joints
       eq%g => g
       eq%before => before
       eq%settings = settings
-      eq%layout = fracture_layout(n, size(connections, 2, kind=ik))
+      eq%layout = fracture_layout(n, size(connections, 2, kind=ik), joints%branch_count(), joints%n)
       eq%dt = dt
       eq%stiffness = settings%young/reference
       eq%unit = reference**2/settings%young

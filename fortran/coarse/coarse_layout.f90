@@ -7,7 +7,8 @@
 !! Condensed onto the fractures, q, per fracture cell:
 !!   [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-
 !! All unknowns on the fractures, x: per fracture cell the same and p_F; after the last cell the
-!! flows along the fractures, one per pair of cells that exchange fluid.
+!! flows along the fractures, one per pair of cells that exchange fluid; then those into joints, one
+!! per branch; then the pressures of the joints.
 module coarse_layout
    use base_kinds, only: ik
    use mesh_types, only: mesh_t
@@ -30,11 +31,15 @@ module coarse_layout
    !> Numbers in x.
    type, extends(condensed_layout_t) :: fracture_layout_t
       integer(ik) :: n_flows = 0  !< pairs of cells that exchange fluid
+      integer(ik) :: n_branches = 0  !< cells that reach a joint, by joint
+      integer(ik) :: n_joints = 0
    contains
       procedure :: count => fracture_count
       procedure :: cell_count
       procedure :: at_pressure
       procedure :: at_flow
+      procedure :: at_branch
+      procedure :: at_joint
    end type fracture_layout_t
 
 contains
@@ -47,13 +52,17 @@ contains
    end function condensed_layout
 
    !> The layout of x.
-   pure type(fracture_layout_t) function fracture_layout(n_cells, n_flows)
+   pure type(fracture_layout_t) function fracture_layout(n_cells, n_flows, n_branches, n_joints)
       integer(ik), intent(in) :: n_cells  !< fracture cells
       integer(ik), intent(in) :: n_flows  !< pairs of cells that exchange fluid
+      integer(ik), intent(in) :: n_branches  !< flows into joints
+      integer(ik), intent(in) :: n_joints
 
       fracture_layout%n_cells = n_cells
       fracture_layout%per_cell = 7
       fracture_layout%n_flows = n_flows
+      fracture_layout%n_branches = n_branches
+      fracture_layout%n_joints = n_joints
    end function fracture_layout
 
    !> How many unknowns there are.
@@ -67,7 +76,7 @@ contains
    pure integer(ik) function fracture_count(self)
       class(fracture_layout_t), intent(in) :: self
 
-      fracture_count = self%cell_count() + self%n_flows
+      fracture_count = self%cell_count() + self%n_flows + self%n_branches + self%n_joints
    end function fracture_count
 
    !> How many of the unknowns belong to a single cell; they come first.
@@ -110,6 +119,22 @@ contains
 
       at_flow = self%cell_count() + pair
    end function at_flow
+
+   !> Flow of a branch into its joint.
+   elemental integer(ik) function at_branch(self, branch)
+      class(fracture_layout_t), intent(in) :: self
+      integer(ik), intent(in) :: branch
+
+      at_branch = self%at_flow(self%n_flows) + branch
+   end function at_branch
+
+   !> Pressure of a joint.
+   elemental integer(ik) function at_joint(self, joint)
+      class(fracture_layout_t), intent(in) :: self
+      integer(ik), intent(in) :: joint
+
+      at_joint = self%at_branch(self%n_branches) + joint
+   end function at_joint
 
    !> How many blocks the whole body has.
    pure integer(ik) function block_count(mesh)

@@ -15,6 +15,7 @@ module coarse_model
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fractures, only: newton_settings_t
+   use coarse_joints, only: find_joints, joints_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
@@ -26,7 +27,7 @@ module coarse_model
    implicit none(type, external)
    private
 
-   public :: coarse_model_t, new_state
+   public :: coarse_model_t, new_state, rest_fluid
 
    !> Everything that belongs to one mesh.
    type :: coarse_model_t
@@ -38,6 +39,7 @@ module coarse_model
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      type(joints_t) :: joints  !< where they exchange it otherwise
       real(rk), allocatable :: ahead(:)  !< (tips) how far the mesh goes on beyond each, closed [m]
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
@@ -50,7 +52,7 @@ module coarse_model
 
 contains
 
-   !> Discretize on a mesh. Refuses joints of fractures, for which there is no flow law here.
+   !> Discretize on a mesh.
    subroutine set_mesh(self, mesh, scene, timers, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -72,7 +74,10 @@ contains
                                            young=scene%material%young)
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
-      if (.not. allocated(error)) call find_connections(mesh, self%connections)
+      if (.not. allocated(error)) then
+         call find_connections(mesh, self%connections)
+         call find_joints(mesh, self%sides, self%joints)
+      end if
       if (allocated(self%ahead)) deallocate (self%ahead)
       allocate (self%ahead(mesh%fracture%n_tips), source=0.0_rk)
       call self%condensed%solver%release()
@@ -107,7 +112,19 @@ contains
       allocate (state%contact(2, n), source=state_stick)
       allocate (state%void(n), source=0.0_rk)
       state%aperture = cells%residual_aperture
+      call rest_fluid(model, state)
    end subroutine new_state
+
+   !> Nothing flows along the fractures, and joints have the pressures of the cells around them.
+   subroutine rest_fluid(model, state)
+      class(coarse_model_t), intent(in) :: model
+      type(state_t), intent(inout) :: state
+      integer(ik) :: j
+
+      state%flow = spread(0.0_rk, 1, size(model%connections, 2))
+      state%branch_flow = spread(0.0_rk, 1, int(model%joints%branch_count()))
+      state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
+   end subroutine rest_fluid
 
    !> Undrained response to the load, the fractures having the pressure of the rock around them.
    subroutine equilibrate(self, mesh, dt, state, timers, report, error)
@@ -120,15 +137,20 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: time
       integer(ik), allocatable :: connections(:, :)
+      type(joints_t) :: joints
 
       time = state%time
       self%settings%equilibrate = .true.
       connections = self%connections
       self%connections = connections(:, :0)
+      joints = self%joints
+      self%joints = joints_t()
       call self%advance(mesh, dt, state, timers, report, error)
       self%settings%equilibrate = .false.
       self%connections = connections
+      self%joints = joints
       state%time = time
+      if (report%converged) call rest_fluid(self, state)
    end subroutine equilibrate
 
    !> One backward Euler step. The state changes only if the step converges (report%converged); an
@@ -176,8 +198,8 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%condensed, self%cells, self%connections, self%settings, dt, g, &
-                              state, q, report)
+         call solve_fractures(self%condensed, self%cells, self%connections, self%joints, &
+                              self%settings, dt, g, state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
       end if
@@ -212,6 +234,8 @@ contains
          balance = balance + sum(self%condensed%length*(held - (before%aperture - before%void) &
                          + held*self%settings%compressibility*(after%pressure - before%pressure))) &
                    - dt*sum(self%cells%injection)
+         if (self%joints%n > 0) balance = balance - dt*sum(self%joints%injection) &
+                                          + dt*self%joints%outflow(after%branch_flow)
       end if
       if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
       if (self%drained) then

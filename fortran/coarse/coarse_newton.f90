@@ -4,6 +4,7 @@ module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_equations, only: equations_t
+   use coarse_joints, only: joints_t
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
@@ -20,10 +21,12 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, cells, connections, settings, dt, g, state, q, report)
+   subroutine solve_fractures(condensed, cells, connections, joints, settings, dt, g, state, q, &
+                              report)
       type(condensed_t), intent(in), target :: condensed
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
+      type(joints_t), intent(in), target :: joints
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
@@ -34,7 +37,7 @@ contains
       type(iteration_report_t) :: found
       real(rk), allocatable :: x(:)
 
-      call prepare(condensed, cells, connections, settings, dt, g, state, eq)
+      call prepare(condensed, cells, connections, joints, settings, dt, g, state, eq)
       call first_guess(eq, state, x)
       call iterate(eq, x, iteration_settings_t(tolerance=settings%tolerance, &
                                                iterations_max=settings%iterations_max, &
@@ -74,6 +77,9 @@ contains
          end do
          x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%void(i))
       end do
+      do i = 1, eq%layout%n_joints
+         x(eq%layout%at_joint(i)) = eq%joints%mean_pressure(i, state%pressure)
+      end do
    end subroutine first_guess
 
    !> Check the solution against the law itself and make it the state.
@@ -107,6 +113,11 @@ contains
          report%reason = "a fracture cell has less fluid than is drawn from it"
          return
       end if
+      if (is_overdrawn(eq, x)) then
+         report%converged = .false.
+         report%reason = "more fluid is drawn from where fractures meet than flows there"
+         return
+      end if
       do i = 1, condensed%n
          do end = 1, 2
             at = condensed%layout%at_jump(i, end)
@@ -135,6 +146,26 @@ contains
       state%pressure = fluid%pressure
       state%void = fluid%void
       state%contact = reshape(eq%state, shape(state%contact))
+      associate (layout => eq%layout, to_flow => eq%unit/dt)
+         state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
+         state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
+         state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
+      end associate
    end subroutine accept
+
+   !> A joint, which holds no fluid that could become vapour, would have a pressure below that of
+   !! vapour: only a well can draw it so low.
+   pure logical function is_overdrawn(eq, x)
+      type(equations_t), intent(in) :: eq
+      real(rk), intent(in) :: x(:)  !< the solution [Pa]
+      integer(ik) :: j
+
+      is_overdrawn = .false.
+      do j = 1, eq%layout%n_joints
+         if (eq%joints%is_outlet(j)) cycle
+         is_overdrawn = is_overdrawn .or. x(eq%layout%at_joint(j)) &
+                        < eq%settings%vapour_pressure - contact_residual_max*eq%stress_scale
+      end do
+   end function is_overdrawn
 
 end module coarse_newton

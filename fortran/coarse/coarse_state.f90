@@ -37,6 +37,10 @@ module coarse_state
       real(rk), allocatable :: aperture(:)
       !> (n) part of a that vapour fills, where the pressure is that of vapour [m]
       real(rk), allocatable :: void(:)
+      ! Flow along the fractures, of the pairs and branches of the mesh:
+      real(rk), allocatable :: flow(:)  !< (pairs) from the first cell to the second [m2/s]
+      real(rk), allocatable :: branch_flow(:)  !< (branches) into the joints [m2/s]
+      real(rk), allocatable :: joint_pressure(:)  !< (joints) [Pa]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 

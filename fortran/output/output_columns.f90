@@ -9,7 +9,8 @@ module output_columns
    implicit none(type, external)
    private
 
-   public :: always, with_error, with_fluid, with_fractures, with_growth, with_toughness
+   public :: always, with_error, with_fluid, with_fractures, with_growth
+   public :: with_joints, with_toughness
    public :: without_fluid
    public :: applies, column_t, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns, tip_columns
@@ -24,6 +25,7 @@ module output_columns
    character(len=*), parameter :: without_fluid = "without a fluid"
    character(len=*), parameter :: with_growth = "without a fluid, with growth"
    character(len=*), parameter :: with_toughness = "with tips and a toughness"
+   character(len=*), parameter :: with_joints = "with a fluid and joints"
    character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
 
    !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
@@ -49,13 +51,17 @@ module output_columns
       column_t("dt_s", "s", with_fluid, "Length of the step: time_s since the row before"), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem in the step"), &
       column_t("well_pressure_pa", "Pa", with_fluid, &
-               "Fluid pressure, mean over the fracture cells of the wells; 0 without a well"), &
+               "Fluid pressure, mean over the fracture cells and joints of the wells; 0 "// &
+               "without a well"), &
       column_t("injected_m2", "m2", with_fluid, "Fluid injected so far"), &
       column_t("leakoff_m2", "m2", with_fluid, &
                "Fluid that went from the fractures into the rock so far; negative: the other "// &
                "way"), &
       column_t("prefilled_m2", "m2", with_fluid, &
                "Fluid that new fracture cells brought along so far"), &
+      column_t("outflow_m2", "m2", with_fluid, &
+               "Fluid that left through ends of fractures on sides with a pressure so far; "// &
+               "negative: entered"), &
       column_t("fracture_volume_m2", "m2", always, &
                "Volume of the fractures: aperture, without a fluid opening, times length"), &
       column_t("mass_error_relative", "-", with_fluid, &
@@ -128,6 +134,8 @@ module output_columns
       column_t("traction_t_pa", "Pa", always, "Tangential traction of contact"), &
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
       column_t("void_m", "m", with_fluid, "Part of the aperture that vapour fills"), &
+      column_t("flow_m2_s", "m2/s", with_fluid, &
+               "Flow of fluid along the fracture, mean of the cell's two ends"), &
       column_t("state", "-", always, "State of contact"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
@@ -167,7 +175,10 @@ module output_columns
       column_t("dofs.fracture_face_pressure", "-", with_fluid, &
                "Pore pressure on the faces of the fractures"), &
       column_t("dofs.fracture_pressure", "-", with_fluid, "Pressure in the fractures"), &
-      column_t("dofs.fracture_flow", "-", with_fluid, "Flow between fracture cells"), &
+      column_t("dofs.fracture_flow", "-", with_fluid, &
+               "Flow between fracture cells, and from them to where fractures meet"), &
+      column_t("dofs.intersection_pressure", "-", with_joints, &
+               "Pressure where fractures meet or end on a side with a pressure"), &
       column_t("dofs.windows", "-", with_fluid, "Displacement in the windows around the tips"), &
       column_t("used", "-", always, "Features that the run used, in words"), &
       column_t("left_out", "-", always, "Features that it did without, in words"), &
@@ -257,10 +268,12 @@ module output_columns
       column_t("jump", "m", always, "Jump of the displacement: normal, tangential"), &
       column_t("traction", "Pa", always, "Traction of contact: normal, tangential"), &
       column_t("pressure", "Pa", with_fluid, "Fluid pressure in the fracture"), &
+      column_t("flow", "m2/s", with_fluid, "Flow of fluid along the fracture"), &
       column_t("state", "-", always, "State of contact: 0 stick, 1 slip, 2 open")]
 
    type(column_t), parameter :: intersection_fields(*) = [ &
-      column_t("pressure", "Pa", with_fluid, "Fluid pressure where fractures meet")]
+      column_t("pressure", "Pa", with_fluid, &
+               "Fluid pressure where fractures meet or end on a side with a pressure")]
 
    type(word_t), parameter :: contact_words(*) = [ &
       word_t("stick", "the faces touch and hold"), &

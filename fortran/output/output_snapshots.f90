@@ -164,6 +164,7 @@ contains
          call add_pair(grid, "traction", fields%traction_n, fields%traction_t)
       end if
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      if (allocated(fields%flow)) call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
       call grid%add_legend("fracture_names", names)

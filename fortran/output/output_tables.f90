@@ -73,6 +73,7 @@ contains
          call table%put("injected_m2", row%injected)
          call table%put("leakoff_m2", row%leakoff)
          call table%put("prefilled_m2", row%prefilled)
+         call table%put("outflow_m2", row%outflow)
          call table%put("fracture_volume_m2", row%fracture_volume)
          call table%put("mass_error_relative", row%mass_error_relative)
          call table%put("max_slip_m", row%max_slip)
@@ -152,6 +153,7 @@ contains
             call put_if_there(table, "traction_t_pa", fields%traction_t, cell)
             call put_if_there(table, "pressure_pa", fields%pressure, cell)
             call put_if_there(table, "void_m", fields%void, cell)
+            call put_if_there(table, "flow_m2_s", fields%flow, cell)
             if (allocated(fields%state)) then
                call table%put("state", state_name(fields%state(cell)))
             else

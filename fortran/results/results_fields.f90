@@ -29,6 +29,7 @@ module results_fields
       real(rk), allocatable :: traction_t(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: void(:)  !< (n_cells) part of the aperture that vapour fills [m]
+      real(rk), allocatable :: flow(:)  !< (n_cells) of fluid along tau [m2/s]
       integer(ik), allocatable :: state(:)  !< (n_cells) of contact_states
    end type fracture_fields_t
 

@@ -14,6 +14,7 @@ module results_rows
       real(rk) :: well_pressure = 0.0_rk  !< mean over the injected cells [Pa]
       real(rk) :: injected = 0.0_rk  !< fluid injected so far [m2]
       real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
+      real(rk) :: outflow = 0.0_rk  !< fluid out of fractures that end on the boundary so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
       real(rk) :: fracture_volume = 0.0_rk  !< [m2]
       real(rk) :: mass_error_relative = 0.0_rk  !< [-]

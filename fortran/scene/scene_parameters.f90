@@ -92,7 +92,9 @@ module scene_parameters
               "on the whole body under a load that rises or falls."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
-              "boundary; it must not run along the boundary."), &
+              "boundary; it must not run along the boundary. With a fluid such an end is "// &
+              "sealed, unless the side has a pressure, which then is that of the end; and "// &
+              "fractures may cross, touch or share ends as long as none grows."), &
       group_t("side", repeated=.true., &
              meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
               "its edges, of a disc its rim or an arc of it. Per component either the "// &
@@ -108,7 +110,8 @@ module scene_parameters
       group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
               "is at the start, or into its cell nearest to a point. That point must lie "// &
-              "within `size_fracture` of the fracture."), &
+              "within `size_fracture` of the fracture; where fractures meet, the place where "// &
+              "they do is fed, and all of them."), &
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &

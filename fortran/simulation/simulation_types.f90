@@ -13,7 +13,7 @@ module simulation_types
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_chronicle, only: chronicle_t, event_arrest, event_growth, event_joint, &
                                 event_opening, event_remesh, event_slip_onset
-   use results_fields, only: fracture_fields_t, matrix_fields_t
+   use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use results_rows, only: history_row_t, probe_row_t, tip_row_t
    use results_summary, only: summary_t
    use scene_plausible, only: doubts_of_scene
@@ -30,6 +30,7 @@ module simulation_types
       type(mesh_t) :: mesh
       type(matrix_fields_t) :: matrix
       type(fracture_fields_t) :: fracture
+      type(intersection_fields_t) :: intersection
    end type snapshot_t
 
    !> One scene on its way.

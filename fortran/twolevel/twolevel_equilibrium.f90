@@ -22,7 +22,6 @@ module twolevel_equilibrium
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
-   use twolevel_wells, only: mean_pressure
    implicit none(type, external)
    private
 
@@ -97,7 +96,7 @@ contains
          call self%evaluate(timers, error)
          if (allocated(error)) exit
          call self%certainty%see_try(total_length(self%network), &
-                                     mean_pressure(self%share, self%state%pressure))
+                                     self%well_pressure())
          if (.not. is_last) then
             trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
                                 self%tip%drive%intensity/self%rules%toughness, &

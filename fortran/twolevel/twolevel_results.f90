@@ -6,18 +6,17 @@ module twolevel_results
    use coarse_fields, only: cell_stresses, nodal_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
-   use mesh_types, only: fracture_mesh_t
+   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
    use results_rows, only: history_row_t, probe_row_t
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
    use twolevel_state, only: two_levels_t
-   use twolevel_wells, only: mean_pressure
    implicit none(type, external)
    private
 
    public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
-   public :: probes_of_levels
+   public :: fracture_flow, probes_of_levels
    public :: slip_moment, snapshot_of_levels
 
 contains
@@ -52,10 +51,12 @@ contains
          row%injected = simulation%injected
          row%leakoff = simulation%leaked
          row%prefilled = simulation%prefilled
+         row%outflow = simulation%outflow
          row%fracture_length = total_length(simulation%network)
          row%n_tips = size(simulation%tip)
          if (simulation%mesh%fracture%n_cells > 0) then
-            row%well_pressure = mean_pressure(simulation%share, state%pressure)
+            row%well_pressure = simulation%well_pressure()
+            row%n_intersections = count(is_intersection(simulation%mesh%fracture))
             row%fracture_volume = sum((state%aperture - state%void &
                                        - simulation%model%cells%roughness) &
                                       *simulation%model%condensed%length)
@@ -147,8 +148,40 @@ contains
          fracture%pressure = state%pressure
          fracture%void = state%void
          fracture%state = cell_states(simulation)
+         fracture%flow = fracture_flow(simulation)
+         snapshot%intersection%point = simulation%model%joints%point
+         snapshot%intersection%pressure = state%joint_pressure
       end associate
    end function snapshot_of_levels
+
+   !> Flow along each fracture cell in its direction, the mean of its two ends [m2/s].
+   pure function fracture_flow(simulation) result(flow)
+      class(two_levels_t), intent(in) :: simulation
+      real(rk) :: flow(simulation%mesh%fracture%n_cells)
+      integer(ik) :: b, k
+
+      flow = 0.0_rk
+      associate (state => simulation%state, pairs => simulation%model%connections, &
+                 joints => simulation%model%joints)
+         do k = 1, size(pairs, 2, kind=ik)
+            flow(pairs(:, k)) = flow(pairs(:, k)) + 0.5_rk*state%flow(k)
+         end do
+         do b = 1, joints%branch_count()
+            flow(joints%cell(b)) = flow(joints%cell(b)) &
+                                   + merge(-0.5_rk, 0.5_rk, joints%end(b) == 1)*state%branch_flow(b)
+         end do
+      end associate
+   end function fracture_flow
+
+   !> The points inside the body where fractures meet.
+   pure function is_intersection(fracture)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical :: is_intersection(fracture%n_points)
+      integer(ik) :: i
+
+      is_intersection = [(all(fracture%point_kind(i) /= [point_interior, point_tip, &
+                                                         point_boundary]), i=1, fracture%n_points)]
+   end function is_intersection
 
    !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
    !! those of the coarse mesh go on beyond them, closed.
@@ -187,7 +220,11 @@ contains
          call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2))
+         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2) &
+                                 + simulation%model%joints%branch_count())
+         if (simulation%model%joints%n > 0) then
+            call summary%count_dofs("intersection_pressure", simulation%model%joints%n)
+         end if
       end associate
       if (simulation%scene%growth%intensities) then
          call summary%count_dofs("windows", simulation%windows%n_unknowns())

@@ -23,7 +23,7 @@ module twolevel_simulation
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_wells, only: mean_pressure, next_switch
+   use twolevel_wells, only: next_switch
    implicit none(type, external)
    private
 
@@ -89,7 +89,8 @@ contains
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
          call summary%note(any(scene%sides%pressure_given), "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
-         call summary%leave_out_feature("intersections: fractures do not meet")
+         call summary%note(self%model%joints%n > 0, "intersections: flow from fracture to "// &
+                           "fracture or out of the body", "intersections: fractures do not meet")
       end associate
    end subroutine note_features
 
@@ -390,7 +391,7 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
 
       associate (tip => self%tip, toughness => self%rules%toughness)
-         call self%certainty%accept(self%dt, mean_pressure(self%share, self%state%pressure), &
+         call self%certainty%accept(self%dt, self%well_pressure(), &
                                     tip%advance > 0.0_rk, tolerance + hypot( &
                                     tip%intensity%k1_error, tip%intensity%k2_error)/toughness, &
                                     self%segment%steep(self%segment%slope), &

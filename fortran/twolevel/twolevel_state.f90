@@ -6,7 +6,7 @@ module twolevel_state
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use coarse_fields, only: nodal_values
    use coarse_geometry, only: cell_area
-   use coarse_model, only: coarse_model_t, new_state
+   use coarse_model, only: coarse_model_t, new_state, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
@@ -23,7 +23,7 @@ module twolevel_state
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
    use twolevel_certainty, only: certainty_t
-   use twolevel_wells, only: rate, share_wells, transfer_shares
+   use twolevel_wells, only: feed_joints, mean_pressure, rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
@@ -51,6 +51,7 @@ module twolevel_state
       logical :: values_are_current = .false.
       logical :: undrained = .false.  !< the state is the undrained response to the load
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
@@ -59,6 +60,7 @@ module twolevel_state
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
+      real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
    contains
       procedure :: mesh_levels
@@ -68,6 +70,7 @@ module twolevel_state
       procedure :: step_error
       procedure :: errs
       procedure :: book_step
+      procedure :: well_pressure
       procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
@@ -96,6 +99,8 @@ contains
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, scene, timers, error)
       if (allocated(error)) return
+      call feed_joints(self%scene%injections, self%mesh%fracture, self%model%joints, self%share, &
+                       self%joint_share)
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) call self%windows%begin(self%tip)
@@ -119,8 +124,8 @@ contains
                             self%scene%material%young, length)
    end subroutine follow_trend
 
-   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for fluid
-   !! has no law yet at joints.
+   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for the
+   !! coarse mesh cannot make joints of them yet.
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
@@ -191,8 +196,12 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      self%model%cells%injection = matmul(self%share, &
-                                          rate(self%scene%injections, self%state%time, dt))
+      associate (rates => rate(self%scene%injections, self%state%time, dt))
+         self%model%cells%injection = matmul(self%share, rates)
+         if (self%model%joints%n > 0) then
+            self%model%joints%injection = matmul(self%joint_share, rates)
+         end if
+      end associate
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
       self%values_are_current = .false.
@@ -223,6 +232,14 @@ contains
       end associate
    end function errs
 
+   !> Mean pressure at the wells; 0 without any [Pa].
+   pure real(rk) function well_pressure(self)
+      class(two_levels_t), intent(in) :: self
+
+      well_pressure = mean_pressure(self%share, self%state%pressure, self%joint_share, &
+                                    self%state%joint_pressure)
+   end function well_pressure
+
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
       class(two_levels_t), intent(inout) :: self
@@ -231,6 +248,10 @@ contains
       self%injected = self%injected + dt*sum(self%model%cells%injection)
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
+         if (self%model%joints%n > 0) then
+            self%injected = self%injected + dt*sum(self%model%joints%injection)
+            self%outflow = self%outflow + dt*self%model%joints%outflow(self%state%branch_flow)
+         end if
       end if
    end subroutine book_step
 
@@ -304,6 +325,10 @@ contains
       call transfer_levels(self, mesh, map)
       call timers%stop(phase_transfer)
       call self%model%set_mesh(self%mesh, self%scene, timers, error)
+      if (allocated(error)) return
+      call feed_joints(self%scene%injections, self%mesh%fracture, self%model%joints, self%share, &
+                       self%joint_share)
+      call rest_fluid(self%model, self%state)
    end subroutine remesh_coarse
 
    !> Carry cells, state and wells over to a new coarse mesh.

@@ -1,13 +1,14 @@
 !> Wells: which fracture cells they feed, at which rate, and when they start and end.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_time, same_value
+   use base_tolerances, only: same_place, same_time, same_value
+   use coarse_joints, only: joints_t
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
    private
 
-   public :: mean_pressure, next_switch, rate, share_wells, transfer_shares
+   public :: feed_joints, mean_pressure, next_switch, rate, share_wells, transfer_shares
 
 contains
 
@@ -38,6 +39,35 @@ contains
       end do
    end subroutine share_wells
 
+   !> Wells whose point is where their fracture meets others feed the joint itself, and no cell.
+   pure subroutine feed_joints(wells, fracture, joints, share, joint_share)
+      type(injection_t), intent(in) :: wells(:)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(joints_t), intent(in) :: joints
+      real(rk), intent(inout) :: share(:, :)  !< (fracture cells, wells) [-]
+      real(rk), allocatable, intent(out) :: joint_share(:, :)  !< (joints, wells) [-]
+      real(rk) :: distance, near
+      integer(ik) :: b, w
+
+      allocate (joint_share(joints%n, size(wells)), source=0.0_rk)
+      do w = 1, size(wells, kind=ik)
+         if (.not. wells(w)%at_point) cycle
+         do b = 1, joints%branch_count()
+            associate (cell => joints%cell(b), joint => joints%joint(b))
+               if (joints%is_outlet(joint)) cycle
+               if (fracture%cell_fracture(cell) /= wells(w)%fracture) cycle
+               distance = norm2(fracture%point_xy(:, joints%point(joint)) &
+                                - [wells(w)%x, wells(w)%y])
+               near = same_place*(fracture%cell_s(2, cell) - fracture%cell_s(1, cell))
+               if (distance > near) cycle
+               share(:, w) = 0.0_rk
+               joint_share(:, w) = 0.0_rk
+               joint_share(joint, w) = 1.0_rk
+            end associate
+         end do
+      end do
+   end subroutine feed_joints
+
    !> The shares on a new mesh: the wells go on feeding the cells that they fed.
    pure function transfer_shares(map, before) result(after)
       type(mesh_map_t), intent(in) :: map
@@ -61,15 +91,21 @@ contains
       if (time + 0.5_rk*dt > well%start .and. time + 0.5_rk*dt < well%end) q = well%rate
    end function rate
 
-   !> Mean pressure of the cells that wells feed; 0 without any [Pa].
-   pure real(rk) function mean_pressure(share, pressure) result(mean)
+   !> Mean pressure of the cells and joints that wells feed; 0 without any [Pa].
+   pure real(rk) function mean_pressure(share, pressure, joint_share, joint_pressure) result(mean)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
       real(rk), intent(in) :: pressure(:)  !< (fracture cells) [Pa]
-      logical :: is_well(size(pressure))
+      real(rk), intent(in) :: joint_share(:, :)  !< (joints, wells) [-]
+      real(rk), intent(in) :: joint_pressure(:)  !< (joints) [Pa]
+      logical :: is_well(size(pressure)), is_fed(size(joint_pressure))
 
       is_well = sum(share, dim=2) > 0.0_rk
+      is_fed = sum(joint_share, dim=2) > 0.0_rk
       mean = 0.0_rk
-      if (any(is_well)) mean = sum(pressure, mask=is_well)/count(is_well)
+      if (any(is_well) .or. any(is_fed)) then
+         mean = (sum(pressure, mask=is_well) + sum(joint_pressure, mask=is_fed)) &
+                /(count(is_well) + count(is_fed))
+      end if
    end function mean_pressure
 
    !> The next time at which a well starts or ends, or the scene does [s].

@@ -146,6 +146,7 @@ def _history(fluid: bool) -> dict[str, list[object]]:
             "injected_m2": list(injected),
             "leakoff_m2": list(0.6 * injected),
             "prefilled_m2": [0.0] * STEPS,
+            "outflow_m2": [0.0] * STEPS,
         }
         columns["fracture_volume_m2"] = list(1.0e-4 + 0.4 * injected)
         columns["mass_error_relative"] = [0.0, *[1.0e-13] * (STEPS - 1)]

@@ -111,17 +111,24 @@ def test_balance_adds_up_as_written(wet_run: Path) -> None:
     assert np.asarray(errors.lines[0].get_ydata())[0] == np.finfo(float).eps
 
 
-def test_prefilled_volume_is_shown_where_there_is_one(own_run: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("prefilled_m2", "prefilled new cells"),
+        ("outflow_m2", "out through ends of fractures"),
+    ],
+)
+def test_rarer_volumes_are_shown_where_there_are_some(name: str, label: str, own_run: Path) -> None:
     path = own_run / "history.csv"
     header, *rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
-    column = header.index("prefilled_m2")
+    column = header.index(name)
     for row in rows:
         row[column] = "2e-5"
     text = "\n".join(",".join(row) for row in [header, *rows])
     path.write_text(text + "\n", encoding="utf-8")
     volumes = balance(read_run(own_run)).axes[0]
     labels = [str(line.get_label()) for line in volumes.lines]
-    assert labels[3] == "prefilled new cells"
+    assert labels[3] == label
     assert np.asarray(volumes.lines[3].get_ydata())[0] == pytest.approx(0.2, rel=1e-12)
 
 

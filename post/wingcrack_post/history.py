@@ -173,8 +173,12 @@ def balance(run: Run) -> Figure:
         ("leaked off into the rock", table.number("leakoff_m2")),
         ("fracture volume, change", volume - volume[0]),
     ]
-    if table.has("prefilled_m2") and np.any(table.number("prefilled_m2") != 0.0):
-        series.append(("prefilled new cells", table.number("prefilled_m2")))
+    for name, label in (
+        ("prefilled_m2", "prefilled new cells"),
+        ("outflow_m2", "out through ends of fractures"),
+    ):
+        if table.has(name) and np.any(table.number(name) != 0.0):
+            series.append((label, table.number(name)))
     unit = area_unit(*(values for _, values in series))
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.6)
     volumes, errors = figure.subplots(1, 2)

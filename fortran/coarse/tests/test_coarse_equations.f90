@@ -102,7 +102,9 @@ contains
    end subroutine some_unknowns
 
    type(fracture_layout_t) function layout_of_model()
-      layout_of_model = fracture_layout(mesh%fracture%n_cells, size(model%connections, 2, kind=ik))
+      layout_of_model = fracture_layout(mesh%fracture%n_cells, &
+                                        size(model%connections, 2, kind=ik), &
+                                        model%joints%branch_count(), model%joints%n)
    end function layout_of_model
 
    !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial
@@ -146,7 +148,8 @@ contains
       settings = model%settings
       settings%equilibrate = equilibrate
       settings%vapour_pressure = vapour_pressure
-      call prepare(model%condensed, model%cells, model%connections, settings, dt, g, state, eq)
+      call prepare(model%condensed, model%cells, model%connections, model%joints, settings, dt, g, &
+                   state, eq)
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

@@ -1,0 +1,210 @@
+!> Where fluid goes from one fracture into others, or out of the body: the joints of a mesh.
+!!
+!! A joint is a fracture point at which cells meet otherwise than one after the other along a
+!! fracture: T, X, V, several fractures through one point, the ends of several on one place of the
+!! boundary. An outlet is an end on a side whose pressure is given. Each has a pressure of its own,
+!! and each cell that reaches it a flow into it (coarse_joint_flow).
+!!
+!! A joint holds no fluid: the cells around it reach to the point itself, so their volumes, aperture
+!! times length, count the few square millimetres there already, and a volume a*a would count them
+!! twice.
+module coarse_joints
+   use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
+   use mesh_types, only: fracture_mesh_t, mesh_t, point_boundary, point_interior, point_tip
+   use scene_types, only: boundary_side_t
+   implicit none(type, external)
+   private
+
+   public :: find_joints, joints_t
+
+   !> Joints and outlets of one mesh. A branch is a cell that reaches one of them; its flow is
+   !! positive into it.
+   type :: joints_t
+      integer(ik) :: n = 0  !< joints and outlets
+      integer(ik), allocatable :: point(:)  !< (n) fracture point
+      logical, allocatable :: is_outlet(:)  !< (n) its pressure is that of the side
+      real(rk), allocatable :: side_pressure(:)  !< (n) of outlets [Pa]
+      real(rk), allocatable :: injection(:)  !< (n) Q into the joint now [m2/s]
+      type(lists_t) :: branches  !< (n lists) numbers of the branches of each
+      integer(ik), allocatable :: cell(:)  !< (branches) fracture cell
+      integer(ik), allocatable :: joint(:)  !< (branches) where it goes
+      integer(ik), allocatable :: end(:)  !< (branches) 1: the cell's start is there, 2: its end
+      !> (branches) the cell beyond the joint in which the fracture, or in a V the way, goes on; 0:
+      !! none
+      integer(ik), allocatable :: beyond(:)
+   contains
+      procedure :: branch_count
+      procedure :: mean_pressure
+      procedure :: outflow
+   end type joints_t
+
+contains
+
+   !> The joints and outlets of a mesh.
+   pure subroutine find_joints(mesh, sides, joints)
+      type(mesh_t), intent(in) :: mesh
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(joints_t), intent(out) :: joints
+      logical, allocatable :: is_given(:)
+      real(rk), allocatable :: given(:)
+      integer(ik) :: b, k, n_branches, point
+
+      allocate (is_given(mesh%fracture%n_points), given(mesh%fracture%n_points))
+      call find_side_pressures(mesh, sides, is_given, given)
+      associate (fracture => mesh%fracture)
+         allocate (joints%point, source=pack([(point, point=1, fracture%n_points)], &
+                                             [(is_joint(fracture%point_kind(point), &
+                                                        fracture%point_cells%length(point), &
+                                                        is_given(point)), &
+                                               point=1, fracture%n_points)]))
+         joints%n = size(joints%point, kind=ik)
+         joints%is_outlet = is_given(joints%point)
+         joints%side_pressure = given(joints%point)
+         allocate (joints%injection(joints%n), source=0.0_rk)
+         allocate (joints%branches%first(joints%n + 1), source=1_ik)
+         do k = 1, joints%n
+            joints%branches%first(k + 1) = joints%branches%first(k) &
+                                           + fracture%point_cells%length(joints%point(k))
+         end do
+         n_branches = joints%branches%first(joints%n + 1) - 1
+         allocate (joints%branches%item, source=[(b, b=1, n_branches)])
+         allocate (joints%cell(n_branches), joints%joint(n_branches), joints%end(n_branches))
+         do k = 1, joints%n
+            associate (first => joints%branches%first(k), last => joints%branches%last(k))
+               joints%cell(first:last) = fracture%point_cells%of(joints%point(k))
+               joints%joint(first:last) = k
+               do b = first, last
+                  joints%end(b) = merge(1_ik, 2_ik, &
+                                        fracture%cell_points(1, joints%cell(b)) == joints%point(k))
+               end do
+            end associate
+         end do
+         allocate (joints%beyond(n_branches))
+         do b = 1, n_branches
+            joints%beyond(b) = cell_beyond(fracture, joints, b)
+         end do
+      end associate
+   end subroutine find_joints
+
+   !> Where the way goes on beyond the joint of a branch; 0 if it does not. Cells are stored along
+   !! each fracture.
+   pure integer(ik) function cell_beyond(fracture, joints, branch) result(cell)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(joints_t), intent(in) :: joints
+      integer(ik), intent(in) :: branch
+      integer(ik) :: b, j, step
+
+      cell = 0
+      j = joints%joint(branch)
+      step = merge(-1_ik, 1_ik, joints%end(branch) == 1)
+      do b = joints%branches%first(j), joints%branches%last(j)
+         associate (own => joints%cell(branch), other => joints%cell(b))
+            if (other - own == step .and. &
+                fracture%cell_fracture(other) == fracture%cell_fracture(own)) cell = other
+            if (joints%branches%length(j) == 2 .and. b /= branch) cell = other
+         end associate
+      end do
+   end function cell_beyond
+
+   !> Whether fluid takes more ways at a fracture point than along one fracture.
+   pure logical function is_joint(kind, n_cells, is_given)
+      integer(ik), intent(in) :: kind  !< of the point
+      integer(ik), intent(in) :: n_cells  !< that meet there
+      logical, intent(in) :: is_given  !< it lies on a side with a pressure
+
+      select case (kind)
+      case (point_interior, point_tip)
+         is_joint = .false.
+      case (point_boundary)
+         is_joint = is_given .or. n_cells > 1
+      case default
+         is_joint = .true.
+      end select
+   end function is_joint
+
+   !> The fracture points on sides whose pressure is given; in a corner the mean of two.
+   pure subroutine find_side_pressures(mesh, sides, is_given, given)
+      type(mesh_t), intent(in) :: mesh
+      type(boundary_side_t), intent(in) :: sides(:)
+      logical, intent(out) :: is_given(:)  !< (fracture points)
+      real(rk), intent(out) :: given(:)  !< (fracture points) [Pa]; 0 elsewhere
+      integer(ik) :: around(size(is_given)), f, k, point
+      integer(ik), allocatable :: point_of_node(:)
+
+      given = 0.0_rk
+      around = 0
+      is_given = .false.
+      if (.not. any(sides%pressure_given)) return
+      allocate (point_of_node(mesh%n_nodes), source=0_ik)
+      do k = 1, mesh%fracture%n_cells
+         call name_nodes(mesh, k, point_of_node)
+      end do
+      do f = 1, mesh%n_faces
+         if (mesh%face_side(f) == 0) cycle
+         if (.not. sides(mesh%face_side(f))%pressure_given) cycle
+         do k = 1, 2
+            point = point_of_node(mesh%face_nodes(k, f))
+            if (point == 0) cycle
+            if (mesh%fracture%point_kind(point) /= point_boundary) cycle
+            given(point) = given(point) + sides(mesh%face_side(f))%pressure
+            around(point) = around(point) + 1
+         end do
+      end do
+      is_given = around > 0
+      given = given/max(around, 1_ik)
+   end subroutine find_side_pressures
+
+   !> The fracture points at which the nodes of both faces of a fracture cell lie.
+   pure subroutine name_nodes(mesh, cell, point_of_node)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell  !< fracture cell
+      integer(ik), intent(inout) :: point_of_node(:)
+      integer(ik) :: k, side
+      real(rk) :: distance(2)
+
+      associate (points => mesh%fracture%cell_points(:, cell))
+         do side = 1, 2
+            associate (nodes => mesh%face_nodes(:, mesh%fracture%cell_faces(side, cell)))
+               do k = 1, 2
+                  distance = norm2(mesh%fracture%point_xy(:, points) &
+                                   - spread(mesh%xy(:, nodes(k)), 2, 2), dim=1)
+                  point_of_node(nodes(k)) = points(minloc(distance, dim=1))
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine name_nodes
+
+   !> How many cells reach a joint; one that does so at both ends counts twice.
+   pure integer(ik) function branch_count(self)
+      class(joints_t), intent(in) :: self
+
+      branch_count = 0
+      if (allocated(self%cell)) branch_count = size(self%cell, kind=ik)
+   end function branch_count
+
+   !> The mean pressure of the cells around a joint; the side's at an outlet.
+   pure real(rk) function mean_pressure(self, joint, pressure)
+      class(joints_t), intent(in) :: self
+      integer(ik), intent(in) :: joint
+      real(rk), intent(in) :: pressure(:)  !< (fracture cells) [Pa]
+
+      if (self%is_outlet(joint)) then
+         mean_pressure = self%side_pressure(joint)
+      else
+         mean_pressure = sum(pressure(self%cell(self%branches%of(joint)))) &
+                         /self%branches%length(joint)
+      end if
+   end function mean_pressure
+
+   !> What leaves the body through the ends of fractures [m2/s].
+   pure real(rk) function outflow(self, flow)
+      class(joints_t), intent(in) :: self
+      real(rk), intent(in) :: flow(:)  !< (branches) into the joints [m2/s]
+
+      outflow = 0.0_rk
+      if (self%n > 0) outflow = sum(flow, mask=self%is_outlet(self%joint))
+   end function outflow
+
+end module coarse_joints
