@@ -275,7 +275,7 @@ contains
          do i = 1, size(self%tip, kind=ik)
             alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
             alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
-                          max(same_drive*self%rules%toughness, hypot(off, off(i)))
+               max(same_drive*self%rules%toughness, hypot(off, off(i)))
             alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
          end do
       end associate

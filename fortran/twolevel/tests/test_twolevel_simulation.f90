@@ -9,6 +9,8 @@ program test_twolevel_simulation
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
    use growth_network, only: end_gain
+   use growth_tip, only: tip_t
+   use twolevel_probe, only: measure_rivals
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -18,6 +20,8 @@ program test_twolevel_simulation
    type(timers_t) :: timers
 
    call test_wells()
+   call test_well_in_the_middle(0.4_rk)
+   call test_well_in_the_middle(0.45_rk)
    call test_refused_step()
    call test_growth("conserved")
    call test_growth("prefilled")
@@ -76,6 +80,34 @@ contains
          end associate
       end do
    end subroutine test_wells
+
+   !> A well in the middle of a fracture feeds both halves alike, however many cells they have.
+   subroutine test_well_in_the_middle(length)
+      real(rk), intent(in) :: length  !< of the fracture [m]
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      real(rk) :: moment
+      integer(ik) :: i
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call add_fracture(scene, "cut", [1.0_rk - 0.5_rk*length, 1.0_rk + 0.5_rk*length], &
+                        [1.0_rk, 1.0_rk], 0.5_rk, 0.0_rk)
+      scene%injections = [injection_t(fracture=1, at_point=.true., x=1.0_rk, y=1.0_rk, &
+                                      rate=1.0e-6_rk)]
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "a well in the middle")
+      moment = 0.0_rk
+      associate (fracture => simulation%mesh%fracture)
+         do i = 1, fracture%n_cells
+            moment = moment + simulation%share(i, 1) &
+                     *(0.5_rk*sum(fracture%point_xy(1, fracture%cell_points(:, i))) - 1.0_rk)
+         end do
+      end associate
+      call checks%is_close(moment, 0.0_rk, 1.0e-9_rk, "half to each side")
+      call checks%is_close(sum(simulation%share), 1.0_rk, 1.0e-14_rk, "all of it")
+      call checks%is_true(count(simulation%share > 0.0_rk) <= 2, "to the nearest")
+   end subroutine test_well_in_the_middle
 
    !> A sealed body squeezed from all sides by rollers, which looks the same from both ends of the
    !! fracture in its middle; fluid is let into that.
@@ -233,6 +265,7 @@ contains
          ratio = simulation%tip%drive%intensity/simulation%scene%material%toughness
          if (simulation%is_initial) cycle
          call checks%is_true(maxval(ratio) < 1.006_rk, "at most the toughness")
+         call check_probe(simulation)
          if (any(simulation%tip%advance > 0.1_rk*increment)) then
             grown = grown + 1
             ! A new piece of a path begins with a twentieth of its length, and a kink.
@@ -250,6 +283,43 @@ contains
                            "fluid is conserved")
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
    end subroutine test_equilibrium
+
+   !> How the tips act on each other, measured in the last step, leaves everything as it was. Either
+   !! tip needs the fluid of the fracture for its growth, and mirrors the other.
+   subroutine check_probe(simulation)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(state_t) :: state
+      type(tip_t) :: tip(2)
+      type(error_t), allocatable :: error
+      logical :: has_measured
+
+      if (.not. all(simulation%segment%is_open)) return
+      state = simulation%state
+      tip = simulation%tip
+      call simulation%rivals%begin(2)
+      call measure_rivals(simulation, spread(.true., 1, 2), simulation%dt, timers, has_measured, &
+                          error)
+      call checks%no_error(error, "tips are set back")
+      call checks%is_true(has_measured .eqv. any(simulation%segment%reached &
+                                                 >= 0.5_rk*simulation%segment%length), &
+                          "from half of a piece on")
+      call checks%is_close(maxval(abs(simulation%state%unknowns - state%unknowns)), 0.0_rk, &
+                           0.0_rk, "the state stays")
+      call checks%is_close(simulation%state%time, state%time, 0.0_rk, "and its time")
+      call checks%is_close(maxval(abs([simulation%tip(1)%xy - tip(1)%xy, &
+                                       simulation%tip(2)%xy - tip(2)%xy, &
+                                       simulation%tip%drive%intensity - tip%drive%intensity])), &
+                           0.0_rk, 0.0_rk, "and the tips")
+      if (.not. has_measured) return
+      associate (matrix => simulation%rivals%measured)
+         call checks%is_true(all(matrix < 0.0_rk), "growth takes fluid from both")
+         call checks%is_close(matrix(1, 1), matrix(2, 2), 0.1_rk*maxval(abs(matrix)), "mirrored")
+         call checks%is_close(matrix(1, 2), matrix(2, 1), 0.1_rk*maxval(abs(matrix)), "both ways")
+      end associate
+      ! The windows are asked anew, for the state to go on from.
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "windows")
+   end subroutine check_probe
 
    !> Steps chosen by their error, with tries that are not taken: time goes on by the step that was
    !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the
