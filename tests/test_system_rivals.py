@@ -48,17 +48,9 @@ def test_equal_fractures_go_together(tmp_path: Path) -> None:
 
 def test_a_viscous_fluid_holds_them_together(tmp_path: Path) -> None:
     """Who runs ahead of the fluid loses pressure: there is no bifurcation."""
-    wells = [
-        (
-            f"&injection fracture = '{name}', rate = 1.0e-6 /",
-            f"&injection fracture = '{name}', rate = 1.0e-6, x = 0.0, y = {y} /",
-        )
-        for name, y in (("lower", -0.3), ("upper", 0.3))
-    ]
     out = run(
         tmp_path,
         coarse_pair(
-            *wells,
             ("viscosity = 2.6e-5", "viscosity = 0.26"),
             ("&time end = 40.0 /", "&time end = 90.0 /"),
         ),

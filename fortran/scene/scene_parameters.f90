@@ -107,8 +107,8 @@ module scene_parameters
               "unless at a tip: each face has nodes of its own."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
-         "is at the start, or into its cell nearest to a point, or half into each of two. That "// &
-              "point must lie within `size_fracture` of the fracture."), &
+              "is at the start, or into its cell nearest to a point. That point must lie "// &
+              "within `size_fracture` of the fracture."), &
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &

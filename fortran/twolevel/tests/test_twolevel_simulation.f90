@@ -20,8 +20,6 @@ program test_twolevel_simulation
    type(timers_t) :: timers
 
    call test_wells()
-   call test_well_in_the_middle(0.4_rk)
-   call test_well_in_the_middle(0.45_rk)
    call test_refused_step()
    call test_growth("conserved")
    call test_growth("prefilled")
@@ -80,34 +78,6 @@ contains
          end associate
       end do
    end subroutine test_wells
-
-   !> A well in the middle of a fracture feeds both halves alike, however many cells they have.
-   subroutine test_well_in_the_middle(length)
-      real(rk), intent(in) :: length  !< of the fracture [m]
-      type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
-      type(error_t), allocatable :: error
-      real(rk) :: moment
-      integer(ik) :: i
-
-      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
-      call add_fracture(scene, "cut", [1.0_rk - 0.5_rk*length, 1.0_rk + 0.5_rk*length], &
-                        [1.0_rk, 1.0_rk], 0.5_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=1, at_point=.true., x=1.0_rk, y=1.0_rk, &
-                                      rate=1.0e-6_rk)]
-      call simulation%begin(scene, timers, error)
-      call checks%no_error(error, "a well in the middle")
-      moment = 0.0_rk
-      associate (fracture => simulation%mesh%fracture)
-         do i = 1, fracture%n_cells
-            moment = moment + simulation%share(i, 1) &
-                     *(0.5_rk*sum(fracture%point_xy(1, fracture%cell_points(:, i))) - 1.0_rk)
-         end do
-      end associate
-      call checks%is_close(moment, 0.0_rk, 1.0e-9_rk, "half to each side")
-      call checks%is_close(sum(simulation%share), 1.0_rk, 1.0e-14_rk, "all of it")
-      call checks%is_true(count(simulation%share > 0.0_rk) <= 2, "to the nearest")
-   end subroutine test_well_in_the_middle
 
    !> A sealed body squeezed from all sides by rollers, which looks the same from both ends of the
    !! fracture in its middle; fluid is let into that.
