@@ -10,7 +10,8 @@ module mechanics_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use growth_competition, only: corrected_advances, learn_from_trial, preference
+   use growth_competition, only: learn_from_trial, preference
+   use growth_control, only: better_advances, fitted, joined_groups
    use growth_kinds, only: likes, matrix_of_kinds, means, numbered, of_kinds
    use growth_network, only: end_gain, extend, move_end
    use growth_segment, only: segment_t
@@ -235,7 +236,7 @@ contains
       room = self%segment(group)%length - self%segment(group)%accepted
       is_placed = all(.not. self%segment_before(group)%is_open)  ! at the ends of new pieces
       advance = fitted(merge(self%pace(group), 1.0_rk, self%pace(group) > 0.0_rk), room, &
-                       self%segment(group)%accepted, body%rules%increment)
+                       self%segment(group)%accepted, least*body%rules%increment)
       share = 1.0_rk
       share_held = 0.0_rk
       share_missed = 1.0_rk
@@ -247,8 +248,7 @@ contains
          if (.not. self%prefers_one .and. &
              maxval(means(kind, lack)) > tolerance*body%rules%toughness) then
             advance = room
-            call correct(self, group, kind, lack, slope(group), room, body%rules%increment, &
-                         needed_intensity(body), advance)
+            call correct(self, body, group, kind, lack, slope, room, advance)
          end if
       end if
       do try = 1, tries
@@ -296,8 +296,7 @@ contains
             group = pack(group, means(kind, lack) <= tolerance*body%rules%toughness)
             return
          end if
-         call correct(self, group, kind, lack, slope(group), room, body%rules%increment, &
-                      needed_intensity(body), advance)
+         call correct(self, body, group, kind, lack, slope, room, advance)
          if (all(abs(advance - before) <= 1.0e-3_rk*room)) exit
       end do
       self%misfit = maxval(merge(lack, 0.0_rk, advance > 0.0_rk))/body%rules%toughness
@@ -423,39 +422,20 @@ contains
       end do
    end subroutine keep_paths
 
-   !> Better advances. Tips that would go back, or not as far as a mesh can hold, stay.
-   subroutine correct(self, group, kind, lack, slope, room, increment, needed, advance)
+   !> Better advances, with which one of the tips comes to the end of its piece.
+   subroutine correct(self, body, group, kind, lack, slope, room, advance)
       class(increment_t), intent(in) :: self
+      class(loaded_body_t), intent(in) :: body
       integer(ik), intent(in) :: group(:)  !< tips
       integer(ik), intent(in) :: kind(:)  !< of each, from 1
-      real(rk), dimension(size(group)), intent(in) :: lack  !< K_IC - K_eq [Pa m^1/2]
-      real(rk), dimension(size(group)), intent(in) :: slope  !< dK_eq/df [Pa m^1/2]
-      real(rk), dimension(size(group)), intent(in) :: room  !< to the ends of the pieces [m]
-      real(rk), intent(in) :: increment  !< [m]
-      real(rk), intent(in) :: needed  !< intensity of tips that grow [Pa m^1/2]
-      real(rk), dimension(size(group)), intent(inout) :: advance  !< [m]
-      real(rk), parameter :: back = 0.25_rk  ! of an advance is left at least
-      real(rk), dimension(maxval(kind)) :: gain, lack_of, room_of, slope_of
-      real(rk) :: matrix(maxval(kind), maxval(kind))
-      real(rk), allocatable :: change(:)
-      integer(ik), allocatable :: free(:)
-      logical :: is_free(maxval(kind))
-      integer(ik) :: k, leader
+      real(rk), intent(in) :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
+      real(rk), intent(in) :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
+      real(rk), intent(in) :: room(:)  !< of each, to the end of the piece [m]
+      real(rk), intent(inout) :: advance(:)  !< of each [m]
 
-      matrix = matrix_of_kinds(kind, self%matrix)
-      lack_of = of_kinds(kind, means(kind, lack))
-      slope_of = of_kinds(kind, means(kind, slope))
-      room_of = of_kinds(kind, room)
-      gain = of_kinds(kind, means(kind, advance))
-      ! One that stays goes on again where it is not behind.
-      is_free = gain > 0.0_rk .or. lack_of <= tolerance*needed
-      free = pack([(k, k=1, size(gain, kind=ik))], is_free)
-      leader = minloc(lack_of(free), dim=1, kind=ik)  ! has no need to go back
-      allocate (change(size(free)))
-      call corrected_advances(lack_of(free), matrix(free, free), slope_of(free), leader, change)
-      ! The matrix may be that of quite other places: back in steps.
-      gain(free) = min(room_of(free), max(gain(free) + change, back*gain(free)))
-      advance = fitted(gain(kind), room, self%segment(group)%accepted, increment)
+      call better_advances(kind, lack, self%matrix, slope(group), room, &
+                           tolerance*needed_intensity(body), advance)
+      advance = fitted(advance, room, self%segment(group)%accepted, least*body%rules%increment)
    end subroutine correct
 
    !> The first tip that is like each: those that have come equally far, and that the error of the
@@ -494,29 +474,5 @@ contains
                     [(any(self%alike(group) == self%alike(i)) .and. .not. self%tip(i)%arrested, &
                       i=1, size(self%tip, kind=ik))])
    end function with_their_like
-
-   !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
-   !! mesh is none.
-   pure function fitted(advance, room, accepted, increment) result(fit)
-      real(rk), intent(in) :: advance(:), room(:), accepted(:)  !< [m]
-      real(rk), intent(in) :: increment  !< [m]
-      real(rk) :: fit(size(advance))
-
-      fit = room
-      if (.not. maxval(advance/room) > 0.0_rk) return
-      fit = advance/maxval(advance/room)
-      where (accepted + fit < least*increment) fit = 0.0_rk
-      where (fit > 0.999_rk*room) fit = room
-   end function fitted
-
-   !> All tips of two groups, in their order.
-   pure function joined_groups(a, b) result(group)
-      integer(ik), intent(in) :: a(:), b(:)
-      integer(ik), allocatable :: group(:)
-      integer(ik) :: i
-
-      group = pack([(i, i=1, max(maxval(a), maxval(b)))], &
-                   [(any(a == i) .or. any(b == i), i=1, max(maxval(a), maxval(b)))])
-   end function joined_groups
 
 end module mechanics_equilibrium

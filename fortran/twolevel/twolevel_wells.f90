@@ -1,7 +1,7 @@
 !> Wells: which fracture cells they feed, at which rate, and when they start and end.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_place, same_time, same_value
+   use base_tolerances, only: same_place, same_time
    use coarse_joints, only: joints_t
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_types, only: injection_t, scene_t
@@ -13,7 +13,7 @@ module twolevel_wells
 contains
 
    !> The share of each well's rate that each fracture cell takes: all of it the cell nearest to the
-   !! well's point, or two that are equally near, or every cell of its fracture by its length.
+   !! well's point, or every cell of its fracture by its length.
    pure subroutine share_wells(wells, fracture, share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
@@ -31,9 +31,10 @@ contains
                distance(i) = norm2(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), &
                                               dim=2) - [well%x, well%y])
             end do
-            ! Between two cells, half to each: else the last bits of the mesh would decide.
-            if (well%at_point) share(:, w) = merge(1.0_rk, 0.0_rk, distance &
-                                                   <= minval(distance)*(1.0_rk + same_value))
+            if (well%at_point) then
+               share(:, w) = 0.0_rk
+               share(minloc(distance, dim=1), w) = 1.0_rk
+            end if
             share(:, w) = share(:, w)/sum(share(:, w))
          end associate
       end do

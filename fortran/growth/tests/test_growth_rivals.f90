@@ -79,8 +79,8 @@ contains
                            "the tips of one grow together")
    end subroutine test_measure
 
-   !> A try that errs by less than the meshes teaches nothing; one that errs more is told right then.
-   !! What was measured stays.
+   !> A try that errs by less than the meshes teaches nothing; one that errs more is told right
+   !! then. What was measured stays.
    subroutine test_learning()
       type(rivals_t) :: rivals
       type(segment_t) :: segment(n)

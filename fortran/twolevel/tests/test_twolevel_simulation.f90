@@ -9,6 +9,8 @@ program test_twolevel_simulation
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
    use growth_network, only: end_gain
+   use growth_tip, only: tip_t
+   use twolevel_probe, only: measure_rivals
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -233,6 +235,7 @@ contains
          ratio = simulation%tip%drive%intensity/simulation%scene%material%toughness
          if (simulation%is_initial) cycle
          call checks%is_true(maxval(ratio) < 1.006_rk, "at most the toughness")
+         call check_probe(simulation)
          if (any(simulation%tip%advance > 0.1_rk*increment)) then
             grown = grown + 1
             ! A new piece of a path begins with a twentieth of its length, and a kink.
@@ -250,6 +253,43 @@ contains
                            "fluid is conserved")
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
    end subroutine test_equilibrium
+
+   !> How the tips act on each other, measured in the last step, leaves everything as it was. Either
+   !! tip needs the fluid of the fracture for its growth, and mirrors the other.
+   subroutine check_probe(simulation)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(state_t) :: state
+      type(tip_t) :: tip(2)
+      type(error_t), allocatable :: error
+      logical :: has_measured
+
+      if (.not. all(simulation%segment%is_open)) return
+      state = simulation%state
+      tip = simulation%tip
+      call simulation%rivals%begin(2)
+      call measure_rivals(simulation, spread(.true., 1, 2), simulation%dt, timers, has_measured, &
+                          error)
+      call checks%no_error(error, "tips are set back")
+      call checks%is_true(has_measured .eqv. any(simulation%segment%reached &
+                                                 >= 0.5_rk*simulation%segment%length), &
+                          "from half of a piece on")
+      call checks%is_close(maxval(abs(simulation%state%unknowns - state%unknowns)), 0.0_rk, &
+                           0.0_rk, "the state stays")
+      call checks%is_close(simulation%state%time, state%time, 0.0_rk, "and its time")
+      call checks%is_close(maxval(abs([simulation%tip(1)%xy - tip(1)%xy, &
+                                       simulation%tip(2)%xy - tip(2)%xy, &
+                                       simulation%tip%drive%intensity - tip%drive%intensity])), &
+                           0.0_rk, 0.0_rk, "and the tips")
+      if (.not. has_measured) return
+      associate (matrix => simulation%rivals%measured)
+         call checks%is_true(all(matrix < 0.0_rk), "growth takes fluid from both")
+         call checks%is_close(matrix(1, 1), matrix(2, 2), 0.1_rk*maxval(abs(matrix)), "mirrored")
+         call checks%is_close(matrix(1, 2), matrix(2, 1), 0.1_rk*maxval(abs(matrix)), "both ways")
+      end associate
+      ! The windows are asked anew, for the state to go on from.
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "windows")
+   end subroutine check_probe
 
    !> Steps chosen by their error, with tries that are not taken: time goes on by the step that was
    !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the
