@@ -12,6 +12,7 @@ module twolevel_simulation
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
+   use twolevel_doubt, only: improve_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_onset, only: approach_t
@@ -170,6 +171,7 @@ contains
       do
          call try_length(self, is_last, trial, timers, error)
          if (allocated(error)) return
+         if (trial%needs_windows) cycle
          if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
          if (is_last .or. (is_too_short .and. .not. trial%converged)) then
             call raise_error(error, "", trial%why_cut()//", even with a time step of " &
@@ -285,13 +287,9 @@ contains
       self%owes_state = .false.
       if (self%scene%growth%intensities) then
          if (may_grow .and. is_equilibrium(self)) then
-            call estimate_coarse_errors(self, timers, error)
-            if (allocated(error)) return
             call note_equilibrium(self, error)
          else
-            call self%evaluate(timers, error)
-            if (allocated(error)) return
-            call estimate_coarse_errors(self, timers, error)
+            call evaluate_tips(self, timers, error)
             if (allocated(error)) return
             if (may_grow) then
                call follow_tips(self, timers, error)
@@ -312,6 +310,23 @@ contains
          self%owes_state = .false.
       end if
    end subroutine grow
+
+   !> Intensities in a state that tips do not grow in, known well enough to grow after it.
+   subroutine evaluate_tips(self, timers, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: any_improved
+
+      do
+         call self%evaluate(timers, error)
+         if (allocated(error)) return
+         call estimate_coarse_errors(self, timers, error)
+         if (allocated(error) .or. .not. is_equilibrium(self)) return
+         call improve_windows(self, any_improved, error)
+         if (allocated(error) .or. .not. any_improved) return
+      end do
+   end subroutine evaluate_tips
 
    !> What has grown in the step that led to the present state.
    subroutine note_equilibrium(self, error)
