@@ -43,6 +43,8 @@ contains
                return
             end if
             self%windows%built(i) = .false.
+            window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
+            window%uncertain = 0.0_rk
             any_improved = .true.
             call self%chronicle%add_event(self%state%time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &

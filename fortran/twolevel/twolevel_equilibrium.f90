@@ -126,8 +126,10 @@ contains
       self%network = network
       self%values_are_current = .false.
       if (allocated(error) .or. .not. trial%needs_windows) return
-      ! Onsets are looked for from what tips had before the step, and errors known from there.
+      ! Onsets are looked for from what tips had before the step, and errors known from there; on a
+      ! mesh that the step has made that state has no tractions.
       self%undrained = was_undrained
+      if (.not. allocated(self%state%tractions)) return
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine find_equilibrium
