@@ -62,7 +62,10 @@ contains
       if (max(window%found%k1_error, window%found%k2_error) >= maxval(window%uncertain)) then
          if (.not. window%can_be_finer()) return
          window%times_finer = window%times_finer + 1
-         what = "elements of "//brief_text(window%element_size(self%scene), 3)//" m"
+         what = "smaller elements at the tip"
+         if (window%times_finer > 1) then
+            what = "elements of "//brief_text(window%element_size(self%scene), 3)//" m"
+         end if
       else
          if (.not. window%can_be_larger(self%scene)) return
          window%times_larger = window%times_larger + 1

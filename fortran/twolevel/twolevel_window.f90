@@ -30,7 +30,9 @@ module twolevel_window
 
    public :: coarse_values_t, window_t
 
-   integer, parameter :: finer_most = 3  !< times that a window is made finer by a factor of 2
+   !> Times that the rosette is made smaller by a factor of 2; from the second time on the other
+   !! elements are, too.
+   integer, parameter :: finer_most = 4
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
@@ -51,7 +53,7 @@ module twolevel_window
       integer(ik) :: end = 0  !< of the tip, 1 or 2
       integer(ik) :: tip = 0  !< its number in the window's mesh
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
-      integer :: times_finer = 0, times_larger = 0  !< by a factor of 2 each, than the scene says
+      integer :: times_finer = 0, times_larger = 0  !< than the scene says
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
@@ -119,8 +121,8 @@ contains
       ! integral ends at a kink.
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
-      spec%end_radius(end, fracture) = min(spec%rosette_radius, &
-                                           0.5_rk**(1 + self%times_finer)*piece(end, fracture))
+      spec%end_radius(end, fracture) = 0.5_rk**self%times_finer &
+                                       *min(usual_size(scene), 0.5_rk*piece(end, fracture))
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
@@ -152,10 +154,15 @@ contains
       class(window_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
 
-      associate (d => scene%discretization)
-         element_size = 0.5_rk**self%times_finer*d%fine_ratio*d%size_fracture
-      end associate
+      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(scene)
    end function element_size
+
+   !> What the scene says of it [m].
+   pure real(rk) function usual_size(scene)
+      type(scene_t), intent(in) :: scene
+
+      usual_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
+   end function usual_size
 
    pure logical function can_be_finer(self)
       class(window_t), intent(in) :: self

@@ -125,14 +125,14 @@ contains
       integer :: n
 
       call start(0.3_rk, 0.5_rk, simulation)
-      do n = 1, 4
+      do n = 1, 5
          simulation%windows%window%found%k2_error = 0.1_rk*toughness
          simulation%tip%intensity%k2_error = 0.1_rk*toughness
          call improve_windows(simulation, any_improved, error)
          if (allocated(error)) exit
          call checks%is_true(all(simulation%windows%window%times_finer == n), "finer and finer")
       end do
-      call checks%is_true(n == 4, "three times")
+      call checks%is_true(n == 5, "four times")
     call checks%fails_with(error, "error of K over K_IC where a tip would grow 10 % above 5 at "// &
                              "0 s, fracture f, end ", "then the run stops")
    end subroutine test_poor_elements
