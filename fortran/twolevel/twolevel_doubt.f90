@@ -22,8 +22,9 @@ contains
 
    !> Improve the windows of doubtful tips, which are to be evaluated again then. An error if one of
    !! them cannot be improved any more.
-   subroutine improve_windows(self, any_improved, error)
+   subroutine improve_windows(self, time, any_improved, error)
       class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< of the last accepted state [s]
       logical, intent(out) :: any_improved
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: what
@@ -46,7 +47,7 @@ contains
             window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
             window%uncertain = 0.0_rk
             any_improved = .true.
-            call self%chronicle%add_event(self%state%time, event_window, what//": K known to "// &
+            call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
                                           " % of K_IC before", tip%fracture, tip%xy)
          end associate

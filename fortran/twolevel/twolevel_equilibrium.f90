@@ -101,12 +101,12 @@ contains
                if (.not. is_last .and. self%errs(trial%time_error)) exit
                call estimate_coarse_errors(self, timers, error)
                if (allocated(error)) exit
-               call improve_windows(self, trial%needs_windows, error)
+               call improve_windows(self, self%before%time, trial%needs_windows, error)
                if (allocated(error) .or. trial%needs_windows) exit
                return
             end if
             if (any(wants .and. doubtful(self%tip, self%rules%toughness))) then
-               call improve_windows(self, trial%needs_windows, error)
+               call improve_windows(self, self%before%time, trial%needs_windows, error)
                exit
             end if
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &

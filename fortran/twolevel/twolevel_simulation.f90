@@ -323,7 +323,7 @@ contains
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. is_equilibrium(self)) return
-         call improve_windows(self, any_improved, error)
+         call improve_windows(self, self%state%time, any_improved, error)
          if (allocated(error) .or. .not. any_improved) return
       end do
    end subroutine evaluate_tips

@@ -83,7 +83,7 @@ contains
          call checks%is_true(all(now%k1_error <= 0.0_rk), "closed faces have no K_I all the same")
       end associate
       call checks%is_true(all(doubtful(simulation%tip, toughness)), "the tips are doubtful")
-      call improve_windows(simulation, any_improved, error)
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "better windows")
       call checks%is_true(any_improved .and. .not. any(simulation%windows%built), "to be built")
       call checks%is_true(all(simulation%windows%window%times_larger == 1), "larger ones")
@@ -93,7 +93,7 @@ contains
          call checks%is_true(all(abs(now%k2 - known) < 0.02_rk*known), "K is right then")
          call checks%is_true(all(abs(now%k2 - known) <= now%k2_error), "within its error")
       end associate
-      call improve_windows(simulation, any_improved, error)
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "good windows")
       call checks%is_true(.not. any_improved, "that is enough")
    end subroutine test_small_window
@@ -106,7 +106,7 @@ contains
 
       call start(0.3_rk, 0.5_rk, simulation)
       n_unknowns = simulation%windows%n_unknowns()
-      call improve_windows(simulation, any_improved, error)
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "good windows")
       call checks%is_true(.not. any_improved .and. all(simulation%windows%built), "they stay")
       call checks%is_true(simulation%windows%n_unknowns() == n_unknowns, "all of them")
@@ -128,7 +128,7 @@ contains
       do n = 1, 5
          simulation%windows%window%found%k2_error = 0.1_rk*toughness
          simulation%tip%intensity%k2_error = 0.1_rk*toughness
-         call improve_windows(simulation, any_improved, error)
+         call improve_windows(simulation, 0.0_rk, any_improved, error)
          if (allocated(error)) exit
          call checks%is_true(all(simulation%windows%window%times_finer == n), "finer and finer")
       end do
