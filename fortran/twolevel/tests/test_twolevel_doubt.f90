@@ -1,4 +1,4 @@
-!> Windows that are too small for their tips: their intensities are said not to be known, the windows
+!> Windows that are too small for their tips: intensities are said not to be known, the windows
 !> become larger, and the intensities are right then; a good window stays as it is.
 !>
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
