@@ -6,8 +6,8 @@ module growth_network
    implicit none(type, external)
    private
 
-   public :: end_direction, end_gain, end_place, end_vertices, extend, fracture_length, move_end
-   public :: network_of_scene, straighten_end, total_length
+   public :: end_direction, end_gain, end_pieces, end_place, end_vertices, extend, fracture_length
+   public :: move_end, network_of_scene, straighten_end, total_length
 
 contains
 
@@ -74,6 +74,20 @@ contains
       end if
       network%xy(:, v) = xy
    end subroutine move_end
+
+   !> Lengths of the last straight pieces at the starts and ends of the fractures [m].
+   pure function end_pieces(network) result(length)
+      type(network_t), intent(in) :: network
+      real(rk) :: length(2, size(network%first) - 1)
+      integer :: f
+
+      do f = 1, size(network%first) - 1
+         associate (first => network%first(f), last => network%first(f + 1) - 1)
+            length(1, f) = norm2(network%xy(:, first + 1) - network%xy(:, first))
+            length(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
+         end associate
+      end do
+   end function end_pieces
 
    !> Length of all fractures [m].
    pure function total_length(network) result(length)

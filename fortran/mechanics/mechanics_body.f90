@@ -12,6 +12,7 @@ module mechanics_body
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
+   use growth_network, only: end_pieces
    use mechanics_faces, only: face_conditions, face_pressure, given_slip
    use mechanics_loads, only: body_loads, held_boundary
    use mechanics_outline, only: outline_of_scene, outline_t
@@ -286,15 +287,8 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       real(rk) :: radii(2, size(network%first) - 1)
-      integer :: f
 
-      do f = 1, size(network%first) - 1
-         associate (first => network%first(f), last => network%first(f + 1) - 1)
-            radii(1, f) = norm2(network%xy(:, first + 1) - network%xy(:, first))
-            radii(2, f) = norm2(network%xy(:, last) - network%xy(:, last - 1))
-         end associate
-      end do
-      radii = min(scene%discretization%rosette_radius, 0.5_rk*radii)
+      radii = min(scene%discretization%rosette_radius, 0.5_rk*end_pieces(network))
    end function end_radii
 
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.

@@ -16,6 +16,7 @@ module mechanics_simulation
    use results_chronicle, only: event_bifurcation
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: load_t, scene_t
+   use simulation_doubt, only: doubtful, stop_on_doubt
    use simulation_types, only: snapshot_t
    implicit none(type, external)
    private
@@ -214,6 +215,8 @@ contains
       self%shown_network = self%network
       self%shown_mesh = self%body%mesh
       if (.not. allocated(self%ending) .and. self%has_onset) then
+         call refuse_doubt(self, error)
+         if (allocated(error)) return
          call self%dead_load%begin_increment(self)
          call self%increment%take(self, self%scene%load%to, timers, error)
          if (.not. allocated(error)) then
@@ -238,6 +241,23 @@ contains
       end if
       if (allocated(self%ending)) call self%dead_load%stop_growth(self)
    end subroutine grow_in_equilibrium
+
+   !> No tip grows whose intensities are not known.
+   subroutine refuse_doubt(self, error)
+      class(mechanics_simulation_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), toughness => self%rules%toughness)
+            if (.not. doubtful(tip, toughness)) cycle
+            call stop_on_doubt(self%watch, tip, toughness, &
+                               self%scene%fractures(tip%fracture)%name, self%last_state())
+            call self%heed_limits(error)
+            return
+         end associate
+      end do
+   end subroutine refuse_doubt
 
    !> The tips have grown in the increment that led to the present state.
    subroutine note_increment(self)

@@ -293,7 +293,9 @@ module output_columns
              "a fluid a row where it begins and one where it ends, with the energy released"), &
       word_t("bifurcation", "tips grow together, but any difference between them would grow: "// &
              "one of them could run ahead of the others"), &
-      word_t("remesh", "the mesh has followed the growth")]
+      word_t("remesh", "the mesh has followed the growth"), &
+      word_t("window", "stress intensity factors of a tip that would grow are not known well "// &
+             "enough: its window becomes larger or finer, as `detail` says")]
 
    type(word_t), parameter :: joint_words(*) = [ &
       word_t("boundary", "a fracture ends on the outer boundary"), &

@@ -9,7 +9,7 @@ module results_chronicle
    public :: chronicle_t, event_t
    public :: event_arrest, event_bifurcation, event_growth, event_growth_onset
    public :: event_joint, event_opening
-   public :: event_remesh, event_slip_onset, event_step_cut, event_unstable
+   public :: event_remesh, event_slip_onset, event_step_cut, event_unstable, event_window
 
    ! Kinds of events.
    character(len=*), parameter :: event_slip_onset = "slip_onset"
@@ -22,6 +22,7 @@ module results_chronicle
    character(len=*), parameter :: event_unstable = "unstable_growth"
    character(len=*), parameter :: event_bifurcation = "bifurcation"
    character(len=*), parameter :: event_remesh = "remesh"
+   character(len=*), parameter :: event_window = "window"
 
    !> A row of events.csv. What does not apply to it is left empty.
    type :: event_t

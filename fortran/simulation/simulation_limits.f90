@@ -10,7 +10,7 @@ module simulation_limits
    public :: verdict_fine, verdict_stop, verdict_warning
    public :: limit_angle, limit_aperture, limit_contact, limit_forward_error, limit_jump
    public :: limit_keq, limit_k_error, limit_k_methods, limit_mass, limit_pressure_load
-   public :: limit_pressure_stiffness, limit_strain, limit_time_error
+   public :: limit_k_to_grow, limit_pressure_stiffness, limit_strain, limit_time_error
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -33,7 +33,7 @@ module simulation_limits
                          limit_aperture = 4, limit_jump = 5, limit_strain = 6, &
                          limit_pressure_load = 7, limit_pressure_stiffness = 8, &
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
-                         limit_keq = 12, limit_time_error = 13
+                         limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -81,6 +81,12 @@ module simulation_limits
               "that of both levels", &
               "growth in this state is not certain: give smaller cells around the tip, or with "// &
               "a fluid a larger window"), &
+      limit_t("error of K over K_IC where a tip would grow", "%", with_growth, 5.0_rk, 5.0_rk, &
+              "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
+              "is at K_IC within it; with a fluid after its window was improved; not with law "// &
+              "= 'paris'", &
+              "growth cannot be decided: give a smaller size_fracture, with a fluid a larger "// &
+              "window, without one &adaptive"), &
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
               "Largest K_eq, over K_IC, of the tips that may grow, when growth in the state is "// &
               "done", &

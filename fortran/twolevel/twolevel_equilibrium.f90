@@ -18,10 +18,13 @@ module twolevel_equilibrium
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
+   use simulation_doubt, only: doubtful
+   use twolevel_doubt, only: improve_windows
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
+   use twolevel_trust, only: estimate_coarse_errors
    implicit none(type, external)
    private
 
@@ -52,7 +55,8 @@ contains
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
    !! goes too far, unless the step is the last try: so short that nothing but growth happens in
    !! it, until that arrests. Nothing is accepted yet; a step that does not show an equilibrium
-   !! leaves the state before.
+   !! leaves the state before. So does one in which a tip would grow, or might, whose intensities
+   !! are not known well enough: its window is a better one then.
    subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -71,7 +75,9 @@ contains
       type(segment_t) :: segment(size(self%tip))
       type(network_t) :: network
       integer :: k
+      logical :: was_undrained
 
+      was_undrained = self%undrained
       tip = self%tip
       segment = self%segment
       network = self%network
@@ -115,7 +121,15 @@ contains
             if (.not. any(wants)) then
                trial%time_error = self%step_error(dt)
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
-               if (is_last .or. .not. self%errs(trial%time_error)) return
+               if (.not. is_last .and. self%errs(trial%time_error)) exit
+               call estimate_coarse_errors(self, timers, error)
+               if (allocated(error)) exit
+               call improve_windows(self, self%before%time, trial%needs_windows, error)
+               if (allocated(error) .or. trial%needs_windows) exit
+               return
+            end if
+            if (any(wants .and. doubtful(self%tip, self%rules%toughness))) then
+               call improve_windows(self, self%before%time, trial%needs_windows, error)
                exit
             end if
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
@@ -135,6 +149,13 @@ contains
       self%segment = segment
       self%network = network
       self%values_are_current = .false.
+      if (allocated(error) .or. .not. trial%needs_windows) return
+      ! Onsets are looked for from what tips had before the step, and errors known from there; on a
+      ! mesh that the step has made that state has no tractions.
+      self%undrained = was_undrained
+      if (.not. allocated(self%state%tractions)) return
+      call self%evaluate(timers, error)
+      if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine find_equilibrium
 
    !> The tried state is accepted.

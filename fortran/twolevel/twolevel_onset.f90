@@ -13,7 +13,7 @@ module twolevel_onset
       logical :: is_followed = .false.  !< there is a last state
       real(rk) :: time = 0.0_rk  !< [s]
       logical :: has_come = .false.  !< K_eq has reached the toughness
-      real(rk) :: onset = 0.0_rk  !< when it first did, else the last time [s]
+      real(rk) :: onset = 0.0_rk  !< when it first did [s]
       real(rk) :: drive = 0.0_rk  !< K_eq [Pa m^1/2]
       real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
       real(rk) :: rate = 0.0_rk  !< of it in the last step [Pa m^1/2/s]
@@ -21,6 +21,7 @@ module twolevel_onset
       real(rk) :: error = 0.0_rk  !< of K_eq, of all steps together, with its sign [Pa m^1/2]
    contains
       procedure :: follow
+      procedure :: onset_before
       procedure :: uncertainty
    end type approach_t
 
@@ -39,8 +40,8 @@ contains
       step = time - self%time
       ! What a finite increment needs, and a new mesh around the tip, may hold it back after that.
       if (.not. self%has_come) then
-         self%onset = time
          self%has_come = drive >= toughness
+         self%onset = time
          if (self%has_come .and. self%is_followed) then
             self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
          end if
@@ -58,6 +59,18 @@ contains
       self%drive = drive
       self%drive_error = drive_error
    end subroutine follow
+
+   !> When K_eq has reached the toughness [s]: in a followed state, else at the rate of the last
+   !! one, at the latest where the tip is found to have grown.
+   elemental real(rk) function onset_before(self, time, toughness)
+      class(approach_t), intent(in) :: self
+      real(rk), intent(in) :: time  !< of the first state in which it has [s]
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+
+      onset_before = self%onset
+      if (self%has_come .or. .not. self%rate > 0.0_rk) return
+      onset_before = min(time, self%time + (toughness - self%drive)/self%rate)
+   end function onset_before
 
    !> How far the time of the onset may be off [s]: what K_eq may be off, over its rate. Huge where
    !! it does not rise.

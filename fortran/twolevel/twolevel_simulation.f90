@@ -14,6 +14,7 @@ module twolevel_simulation
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
+   use twolevel_doubt, only: improve_windows
    use twolevel_equilibrium, only: accept_equilibrium, could_part, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_onset, only: approach_t
@@ -175,6 +176,7 @@ contains
       do
          call try_length(self, is_last, trial, timers, error)
          if (allocated(error)) return
+         if (trial%needs_windows) cycle
          if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
          if (is_last .or. (is_too_short .and. .not. trial%converged)) then
             call raise_error(error, "", trial%why_cut()//", even with a time step of " &
@@ -312,13 +314,9 @@ contains
       self%owes_state = .false.
       if (self%scene%growth%intensities) then
          if (may_grow .and. is_equilibrium(self)) then
-            call estimate_coarse_errors(self, timers, error)
-            if (allocated(error)) return
             call note_equilibrium(self, error)
          else
-            call self%evaluate(timers, error)
-            if (allocated(error)) return
-            call estimate_coarse_errors(self, timers, error)
+            call evaluate_tips(self, timers, error)
             if (allocated(error)) return
             if (may_grow) then
                call follow_tips(self, timers, error)
@@ -341,6 +339,23 @@ contains
       end if
    end subroutine grow
 
+   !> Intensities in a state that tips do not grow in, known well enough to grow after it.
+   subroutine evaluate_tips(self, timers, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: any_improved
+
+      do
+         call self%evaluate(timers, error)
+         if (allocated(error)) return
+         call estimate_coarse_errors(self, timers, error)
+         if (allocated(error) .or. .not. is_equilibrium(self)) return
+         call improve_windows(self, self%state%time, any_improved, error)
+         if (allocated(error) .or. .not. any_improved) return
+      end do
+   end subroutine evaluate_tips
+
    !> What has grown in the step that led to the present state.
    subroutine note_equilibrium(self, error)
       class(twolevel_simulation_t), intent(inout) :: self
@@ -358,7 +373,7 @@ contains
    !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
    subroutine note_onsets(self)
       class(twolevel_simulation_t), intent(inout) :: self
-      real(rk) :: error
+      real(rk) :: error, onset
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
@@ -367,9 +382,10 @@ contains
             approach%is_over = self%segment(i)%gain > 0.0_rk
             if (approach%is_over) then
                error = approach%uncertainty(tolerance*self%rules%toughness)
-               call self%chronicle%add_event(approach%onset, event_growth_onset, &
-                                             "known to "//brief_text(error, 3)//" s", &
-                                             tip%fracture, tip%origin)
+               onset = approach%onset_before(self%state%time, self%rules%toughness)
+               call self%chronicle%add_event(onset, event_growth_onset, "known to " &
+                                             //brief_text(error, 3)//" s", tip%fracture, &
+                                             tip%origin)
             else
                call approach%follow(self%state%time, tip%drive%intensity, &
                                     norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &

@@ -4,7 +4,7 @@ module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use coarse_fields, only: nodal_values
+   use coarse_fields, only: curved_displacement, nodal_values
    use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
@@ -260,12 +260,18 @@ contains
       class(two_levels_t), intent(inout) :: self
 
       if (self%values_are_current) return
-      if (allocated(self%coarse_values%nodal)) deallocate (self%coarse_values%nodal)
-      allocate (self%coarse_values%nodal(3, self%mesh%n_nodes))
-      call nodal_values(self%mesh, self%model%rock, self%model%regions, self%state%unknowns, &
-                        self%state%tractions, self%coarse_values%nodal)
-      self%coarse_values%law = self%model%cells%law
-      self%coarse_values%is_grown = self%model%cells%roughness > 0.0_rk
+      associate (values => self%coarse_values, model => self%model, state => self%state, &
+                 n => self%mesh%n_nodes)
+         if (allocated(values%nodal)) deallocate (values%nodal, values%displacement, &
+                                                  values%gradient)
+         allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
+         call nodal_values(self%mesh, model%rock, model%regions, state%unknowns, &
+                           state%tractions, values%nodal)
+         call curved_displacement(self%mesh, model%rock, model%regions, state%unknowns, &
+                                  state%tractions, values%displacement, values%gradient)
+         values%law = model%cells%law
+         values%is_grown = model%cells%roughness > 0.0_rk
+      end associate
       self%values_are_current = .true.
    end subroutine update_values
 

@@ -18,6 +18,7 @@ module twolevel_window
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
+   use growth_network, only: end_pieces
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: scene_t
@@ -29,12 +30,19 @@ module twolevel_window
 
    public :: coarse_values_t, window_t
 
+   !> Times that the rosette is made smaller by a factor of 2; from the second time on the other
+   !! elements are, too.
+   integer, parameter :: finer_most = 4
+
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
 
    !> What a window takes from the coarse level.
    type :: coarse_values_t
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      !> For interpolation that is exact for quadratic fields (curved_displacement)
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
       logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
    end type coarse_values_t
@@ -45,6 +53,7 @@ module twolevel_window
       integer(ik) :: end = 0  !< of the tip, 1 or 2
       integer(ik) :: tip = 0  !< its number in the window's mesh
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
+      integer :: times_finer = 0, times_larger = 0  !< than the scene says
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
@@ -63,10 +72,15 @@ module twolevel_window
       real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
    contains
       procedure :: build
+      procedure :: edge_length
+      procedure :: element_size
+      procedure :: can_be_finer
+      procedure :: can_be_larger
       procedure :: set_rock
       procedure :: project
       procedure :: intensity
       procedure :: intensity_with
+      procedure :: curved_edge
       procedure :: with_coarse_error
       procedure :: displacement_at
    end type window_t
@@ -81,28 +95,34 @@ contains
       integer(ik), intent(in) :: fracture, end
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
+      real(rk), allocatable :: piece(:, :)
       real(rk) :: tip(2), half
       integer(ik) :: side
 
       self%fracture = fracture
       self%end = end
       tip = network%xy(:, merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1))
-      half = 0.5_rk*scene%discretization%window
+      half = 0.5_rk*self%edge_length(scene)
       self%lower = tip - half
       self%upper = tip + half
-      call clear_edges(network, 0.3_rk*scene%discretization%fine_ratio &
-                       *scene%discretization%size_fracture, self%lower, self%upper)
+      call clear_edges(network, 0.3_rk*self%element_size(scene), self%lower, self%upper)
       self%lower = max(self%lower, [scene%domain%x_min, scene%domain%y_min])
       self%upper = min(self%upper, [scene%domain%x_max, scene%domain%y_max])
       spec%x_min = self%lower(1)
       spec%y_min = self%lower(2)
       spec%x_max = self%upper(1)
       spec%y_max = self%upper(2)
-      spec%size_fracture = scene%discretization%fine_ratio*scene%discretization%size_fracture
+      spec%size_fracture = self%element_size(scene)
       spec%size_boundary = spec%size_fracture + grading*norm2(self%upper - self%lower)/2.0_rk
       spec%is_window = .true.
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
+      ! Two elements fit on the last straight piece of this tip, for the domain of the interaction
+      ! integral ends at a kink.
+      piece = end_pieces(network)
+      spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
+      spec%end_radius(end, fracture) = 0.5_rk**self%times_finer &
+                                       *min(usual_size(scene), 0.5_rk*piece(end, fracture))
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
@@ -120,6 +140,44 @@ contains
          end if
       end do
    end subroutine build
+
+   !> Of the square that the body cuts [m].
+   pure real(rk) function edge_length(self, scene)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+
+      edge_length = 2.0_rk**self%times_larger*scene%discretization%window
+   end function edge_length
+
+   !> Of the elements at the fractures [m].
+   pure real(rk) function element_size(self, scene)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+
+      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(scene)
+   end function element_size
+
+   !> What the scene says of it [m].
+   pure real(rk) function usual_size(scene)
+      type(scene_t), intent(in) :: scene
+
+      usual_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
+   end function usual_size
+
+   pure logical function can_be_finer(self)
+      class(window_t), intent(in) :: self
+
+      can_be_finer = self%times_finer < finer_most
+   end function can_be_finer
+
+   !> It is not the whole body yet.
+   pure logical function can_be_larger(self, scene)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      integer :: side
+
+      can_be_larger = .not. all([(on_body(self, scene, side), side=1, side_count)])
+   end function can_be_larger
 
    !> A side of the window lies on that side of the body.
    pure logical function on_body(self, scene, side)
@@ -249,16 +307,14 @@ contains
       integer(ik) :: v
 
       associate (fine => self%model%mesh)
-         do v = 1, fine%n_nodes
-            if (v > fine%n_vertices .and. .not. fine%on_boundary(v)) cycle
+         do v = 1, fine%n_vertices
             associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               self%loads%boundary_displacement(:, v) = matmul(values%nodal(1:2, nodes), &
-                                                               self%weight(:, v))
-               if (v > fine%n_vertices) cycle
                self%loads%pore_pressure(v) = dot_product(values%nodal(3, nodes), self%weight(:, v))
             end associate
          end do
       end associate
+      self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
+                                                          values%gradient)
       if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
       if (.not. allocated(self%contact) .or. allocated(self%contact_mesh)) then
          call remember_contact(self, state)
@@ -277,6 +333,32 @@ contains
       call tip_intensity(self%model, self%loads, self%displacement, self%tip, self%found, error)
       if (.not. allocated(error)) result = self%with_coarse_error()
    end subroutine intensity
+
+   !> The window's edge with displacements that are quadratic in each coarse cell: linear between
+   !! the nodes, and half of what the gradients there add. Zero at other nodes.
+   pure function curved_edge(self, coarse, displacement, gradient) result(edge)
+      class(window_t), intent(in) :: self
+      type(mesh_t), intent(in) :: coarse
+      real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
+      real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
+      real(rk), allocatable :: edge(:, :)  !< (2, n_nodes) [m]
+      integer(ik) :: k, v
+
+      associate (fine => self%model%mesh)
+         allocate (edge(2, fine%n_nodes), source=0.0_rk)
+         do v = 1, fine%n_nodes
+            if (.not. fine%on_boundary(v)) cycle
+            associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
+               do k = 1, 3
+                  edge(:, v) = edge(:, v) + self%weight(k, v) &
+                               *(displacement(:, nodes(k)) &
+                                 + 0.5_rk*matmul(gradient(:, :, nodes(k)), &
+                                                 fine%xy(:, v) - coarse%xy(:, nodes(k))))
+               end do
+            end associate
+         end do
+      end associate
+   end function curved_edge
 
    !> K_I and K_II under the last solution's loads with other displacements on the edge. Nothing is
    !! remembered of it.

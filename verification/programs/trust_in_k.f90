@@ -3,7 +3,8 @@
 !! same body without a fluid, with that pressure on its faces, has the same K, found there on
 !! adaptive meshes of the whole body without coarse level or windows.
 !!
-!! Argument: `given` for the arrangements below, or `random` for as many that are drawn.
+!! Argument: `fitted` for the arrangements below and as many that are drawn, with which the safety
+!! factor was chosen, `unseen` for others that were drawn after that.
 !!
 !! Writes values.csv, a row for each K_I and K_II that is not zero, and summary.csv.
 program trust_in_k
@@ -81,18 +82,22 @@ program trust_in_k
 
    real(rk), allocatable :: values(:, :)
    type(table_t) :: table
+   integer(ik), parameter :: n = size(arrangements, kind=ik)
    integer(ik) :: i
    integer(int64) :: seed = 20261122_int64
 
    allocate (values(8, 0))
    call table%open("values.csv", "arrangement,tip,mode,reference,found,corrected,stated,"// &
                    "of_window,error,error_corrected,scale")
-   do i = 1, size(arrangements, kind=ik)
-      if (text_argument(1) == "random") then
-         call compare(random_arrangement())
-      else
+   if (text_argument(1) == "fitted") then
+      do i = 1, n
          call compare(arrangements(i))
-      end if
+      end do
+   else
+      seed = 987654_int64
+   end if
+   do i = n + 1, 2*n
+      call compare(random_arrangement())
    end do
    call table%close()
    call summarize()

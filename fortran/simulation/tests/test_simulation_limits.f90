@@ -1,11 +1,12 @@
 !> Limits of a run: verdicts at, above and below them and for what is no number; what is kept of the
-!> first and the worst value; docs/limits.md is what the tables say.
+!> first and the worst value; tips that are doubtful; docs/limits.md is what the tables say.
 program test_simulation_limits
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_texts, only: text_t
    use growth_tip, only: tip_t
    use simulation_describe, only: describe_limits
+   use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
    use simulation_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, &
                                 limits, verdict_fine, verdict_stop, verdict_warning
    use simulation_watch, only: watch_t, worst_place
@@ -19,6 +20,7 @@ program test_simulation_limits
    call test_verdicts()
    call test_watch()
    call test_tips()
+   call test_doubt()
    call test_worst()
    open (newunit=code, status="scratch", action="readwrite")
    call describe_limits(code)
@@ -35,11 +37,13 @@ contains
 
       do i = 1, size(limits)
          l = limits(i)
-         associate (outwards => merge(1.001_rk, 0.999_rk, l%stop > l%warning))
+         associate (outwards => merge(1.001_rk, 0.999_rk, l%stop >= l%warning))
             call checks%is_true(judge(i, l%warning) == verdict_fine, trim(l%name)//": at warning")
-            call checks%is_true(judge(i, outwards*l%warning) == verdict_warning, &
-                                trim(l%name)//": past warning")
-            call checks%is_true(judge(i, l%stop) == verdict_warning, trim(l%name)//": at stop")
+            if (abs(l%stop - l%warning) > 0.0_rk) then  ! else nothing is only warned of
+               call checks%is_true(judge(i, outwards*l%warning) == verdict_warning, &
+                                   trim(l%name)//": past warning")
+               call checks%is_true(judge(i, l%stop) == verdict_warning, trim(l%name)//": at stop")
+            end if
             call checks%is_true(judge(i, outwards*l%stop) == verdict_stop, &
                                 trim(l%name)//": past stop")
             call checks%is_true(judge(i, ieee_value(1.0_rk, ieee_quiet_nan)) == verdict_stop, &
@@ -128,6 +132,33 @@ contains
       list = watch%sentences()
       call checks%is_true(index(list(1)%text, "states") == 0, "faces that do not move")
    end subroutine test_tips
+
+   !> What is not known to 5 % of K_IC is doubtful where K_eq reaches K_IC within it.
+   subroutine test_doubt()
+      type(watch_t) :: watch
+      type(tip_t) :: tips(4)
+      type(error_t), allocatable :: error
+
+      tips%drive%intensity = [0.93e6_rk, 0.95e6_rk, 1.0e6_rk, 3.0e6_rk]
+      tips%intensity%k1_error = 0.06e6_rk
+      tips%intensity%k2_error = 0.01e6_rk
+      call checks%is_true(all(doubtful(tips, 1.0e6_rk) &
+                              .eqv. [.false., .true., .true., .false.]), "within the error")
+      tips(4)%intensity%k2_error = 0.16e6_rk
+      call checks%is_true(doubtful(tips(4), 1.0e6_rk), "far above K_IC the share of K_eq counts")
+      call checks%is_close(uncertainty(tips(4), 1.0e6_rk), 16.0_rk/3.0_rk, 1.0e-9_rk, "in per cent")
+      tips%intensity%k1_error = 0.049e6_rk
+      tips(4)%intensity%k2_error = 0.0_rk
+      call checks%is_true(.not. any(doubtful(tips, 1.0e6_rk)), "known")
+      tips(3)%intensity%k2_error = 0.2e6_rk
+      tips(3)%end = 2
+      call stop_on_doubt(watch, tips(3), 1.0e6_rk, "f1  ", "9 s")
+      call watch%stop_run(error)
+      call checks%fails_with(error, "error of K over K_IC where a tip would grow 20 % above 5 "// &
+                             "at 9 s, fracture f1, end 2, (0, 0) m; ", "the run stops")
+      tips%arrested = .true.
+      call checks%is_true(.not. any(doubtful(tips, 1.0e6_rk)), "arrested tips do not grow")
+   end subroutine test_doubt
 
    subroutine test_worst()
       real(rk) :: values(3)

@@ -38,6 +38,15 @@ contains
       call approach%follow(21*h, 1.9_rk, 0.01_rk, 2.0_rk)
       call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
                            "for the first time")
+      ! A tip at 1.9 after a rise of 0.01 in a step of h, found to have grown: at this rate, but no
+      ! later than then.
+      approach = approach_t()
+      call approach%follow(0.0_rk, 1.89_rk, 0.0_rk, 2.0_rk)
+      call approach%follow(h, 1.9_rk, 0.0_rk, 2.0_rk)
+      call checks%is_close(approach%onset_before(100.0_rk*h, 2.0_rk), 11.0_rk*h, 1.0e-12_rk, &
+                           "at the last rate")
+      call checks%is_close(approach%onset_before(2.0_rk*h, 2.0_rk), 2.0_rk*h, 1.0e-12_rk, &
+                           "no later than growth")
    end subroutine test_curved
 
    !> An intensity that does not rise tells nothing about the time.

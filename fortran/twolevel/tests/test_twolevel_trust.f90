@@ -10,7 +10,7 @@ program test_twolevel_trust
    use scene_types, only: scene_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_trust, only: curved_edge, estimate_coarse_errors
+   use twolevel_trust, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: ends_x(2) = [0.8_rk, 1.2_rk], ends_y(2) = [0.9_rk, 1.1_rk]
@@ -200,7 +200,7 @@ contains
                gradient(:, 2, v) = [-x, 4.0_rk*y - 3.0_rk*x + 1.0_rk]
             end associate
          end do
-         edge = curved_edge(simulation, window, values, gradient)
+         edge = window%curved_edge(mesh, values, gradient)
          worst = 0.0_rk
          do v = 1, window%model%mesh%n_nodes
             if (.not. window%model%mesh%on_boundary(v)) cycle

@@ -1,0 +1,140 @@
+!> Windows that are too small for their tips: intensities are said not to be known, the windows
+!> become larger, and the intensities are right then; a good window stays as it is.
+!>
+!> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
+!> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
+program test_twolevel_doubt
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: step_report_t
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: scene_t
+   use simulation_doubt, only: doubtful
+   use twolevel_doubt, only: improve_windows
+   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_trust, only: estimate_coarse_errors
+   implicit none(type, external)
+
+   real(rk), parameter :: a = 0.05_rk  !< half-length [m]
+   real(rk), parameter :: pressure = 6.8e6_rk, friction = 0.5_rk
+   real(rk), parameter :: known = (5.0e6_rk - friction*(15.0e6_rk - pressure)) &
+                          *sqrt(acos(-1.0_rk)*a)  !< K_II [Pa m^1/2]
+   real(rk), parameter :: toughness = 4.2e5_rk  !< K_eq is 2 % below it [Pa m^1/2]
+   type(checks_t) :: checks
+   type(timers_t) :: timers
+
+   call test_small_window()
+   call test_good_window()
+   call test_poor_elements()
+   call checks%finish()
+
+contains
+
+   !> The initial state, evaluated, with errors.
+   subroutine start(window, fine_ratio, simulation)
+      real(rk), intent(in) :: window  !< [m]
+      real(rk), intent(in) :: fine_ratio
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), parameter :: along = a*sqrt(0.5_rk)
+      type(scene_t) :: scene
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%material%biot = 1.0e-6_rk
+      scene%material%porosity = 1.0e-6_rk
+      scene%material%toughness = toughness
+      scene%fluid%compressibility = 1.0e-3_rk
+      scene%initial%pressure = pressure
+      scene%discretization%size_fracture = 0.02_rk
+      scene%discretization%fine_ratio = fine_ratio
+      scene%discretization%window = window
+      call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], friction, &
+                        0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "begin")
+      call simulation%equilibrate(timers, report, error)
+      call checks%no_error(error, "initial state")
+      call evaluate(simulation)
+   end subroutine start
+
+   subroutine evaluate(simulation)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(error_t), allocatable :: error
+
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "tips")
+      call estimate_coarse_errors(simulation, timers, error)
+      call checks%no_error(error, "errors")
+   end subroutine evaluate
+
+   !> Smaller than the coarse cell at its tip: nothing is known, and K is far off; then larger.
+   subroutine test_small_window()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      logical :: any_improved
+
+      call start(0.02_rk, 0.25_rk, simulation)
+      associate (now => simulation%tip%intensity)
+         call checks%is_true(all(abs(now%k2 - known) > 0.1_rk*known), "K is far off")
+         call checks%is_true(all(now%k2_error > 0.9_rk*abs(now%k2)), "and said to be unknown")
+         call checks%is_true(all(now%k1_error <= 0.0_rk), "closed faces have no K_I all the same")
+      end associate
+      call checks%is_true(all(doubtful(simulation%tip, toughness)), "the tips are doubtful")
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call checks%no_error(error, "better windows")
+      call checks%is_true(any_improved .and. .not. any(simulation%windows%built), "to be built")
+      call checks%is_true(all(simulation%windows%window%times_larger == 1), "larger ones")
+      call checks%is_true(size(simulation%chronicle%events) == 2, "an event for each")
+      call evaluate(simulation)
+      associate (now => simulation%tip%intensity)
+         call checks%is_true(all(abs(now%k2 - known) < 0.02_rk*known), "K is right then")
+         call checks%is_true(all(abs(now%k2 - known) <= now%k2_error), "within its error")
+      end associate
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call checks%no_error(error, "good windows")
+      call checks%is_true(.not. any_improved, "that is enough")
+   end subroutine test_small_window
+
+   subroutine test_good_window()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      logical :: any_improved
+      integer(ik) :: n_unknowns
+
+      call start(0.3_rk, 0.5_rk, simulation)
+      n_unknowns = simulation%windows%n_unknowns()
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call checks%no_error(error, "good windows")
+      call checks%is_true(.not. any_improved .and. all(simulation%windows%built), "they stay")
+      call checks%is_true(simulation%windows%n_unknowns() == n_unknowns, "all of them")
+      associate (now => simulation%tip%intensity)
+         ! What verification/tip_cells allows.
+         call checks%is_true(all(abs(now%k2 - known) < 0.01_rk*known), "K is right")
+      end associate
+   end subroutine test_good_window
+
+   !> Where the window's own error is the larger one its elements become smaller, until no more is
+   !> left to be done: then the run stops.
+   subroutine test_poor_elements()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      logical :: any_improved
+      integer :: n
+
+      call start(0.3_rk, 0.5_rk, simulation)
+      do n = 1, 5
+         simulation%windows%window%found%k2_error = 0.1_rk*toughness
+         simulation%tip%intensity%k2_error = 0.1_rk*toughness
+         call improve_windows(simulation, 0.0_rk, any_improved, error)
+         if (allocated(error)) exit
+         call checks%is_true(all(simulation%windows%window%times_finer == n), "finer and finer")
+      end do
+      call checks%is_true(n == 5, "four times")
+    call checks%fails_with(error, "error of K over K_IC where a tip would grow 10 % above 5 at "// &
+                             "0 s, fracture f, end ", "then the run stops")
+   end subroutine test_poor_elements
+
+end program test_twolevel_doubt

@@ -1,0 +1,77 @@
+!> A tip whose intensities are not known does not grow on them: its window is improved first, and
+!! where that does not help the run stops.
+!!
+!! Which part of the stated error is the larger one decides how: the window's own asks for smaller
+!! elements, the coarse level's, which comes in over the edge, for an edge farther away. A window
+!! stays as good as it was made, and goes along with its tip.
+module twolevel_doubt
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text
+   use growth_tip, only: tip_t
+   use results_chronicle, only: event_window
+   use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
+   use twolevel_state, only: two_levels_t
+   use twolevel_window, only: window_t
+   implicit none(type, external)
+   private
+
+   public :: improve_windows
+
+contains
+
+   !> Improve the windows of doubtful tips, which are to be evaluated again then. An error if one of
+   !! them cannot be improved any more.
+   subroutine improve_windows(self, time, any_improved, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< of the last accepted state [s]
+      logical, intent(out) :: any_improved
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: what
+      integer(ik) :: i
+
+      any_improved = .false.
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), window => self%windows%window(i), &
+                    toughness => self%rules%toughness)
+            if (.not. doubtful(tip, toughness)) cycle
+            call improve_window(self, window, what)
+            if (.not. allocated(what)) then
+               call stop_on_doubt(self%watch, tip, toughness, &
+                                  self%scene%fractures(tip%fracture)%name, &
+                                  brief_text(self%state%time, 6)//" s")
+               call self%heed_limits(error)
+               return
+            end if
+            self%windows%built(i) = .false.
+            window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
+            window%uncertain = 0.0_rk
+            any_improved = .true.
+            call self%chronicle%add_event(time, event_window, what//": K known to "// &
+                                          brief_text(uncertainty(tip, toughness), 3)// &
+                                          " % of K_IC before", tip%fracture, tip%xy)
+         end associate
+      end do
+   end subroutine improve_windows
+
+   !> Smaller elements or a larger window, next time it is meshed; in words, if that is possible.
+   subroutine improve_window(self, window, what)
+      class(two_levels_t), intent(in) :: self
+      type(window_t), intent(inout) :: window
+      character(len=:), allocatable, intent(out) :: what
+
+      if (max(window%found%k1_error, window%found%k2_error) >= maxval(window%uncertain)) then
+         if (.not. window%can_be_finer()) return
+         window%times_finer = window%times_finer + 1
+         what = "smaller elements at the tip"
+         if (window%times_finer > 1) then
+            what = "elements of "//brief_text(window%element_size(self%scene), 3)//" m"
+         end if
+      else
+         if (.not. window%can_be_larger(self%scene)) return
+         window%times_larger = window%times_larger + 1
+         what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
+      end if
+   end subroutine improve_window
+
+end module twolevel_doubt

@@ -1,0 +1,135 @@
+"""Tips whose stress intensity factors are not known, through the real program.
+
+A crack of 0.1 m at 45 degrees, closed and slipping, whose fluid keeps its pressure: in a plane
+without end K_II = (tau - mu (sigma_n - p)) sqrt(pi a), and K_eq = 2/sqrt(3) K_II, 2 % below K_IC.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from system_scene import call, numbers, record, rows
+
+pytestmark = pytest.mark.usefixtures("program")
+
+SCENE = """\
+&domain x_min = 0.0, x_max = 2.0, y_min = 0.0, y_max = 2.0 /
+&material
+  young = 40.0e9, poisson = {poisson}, toughness = {toughness}
+  biot = 1.0e-6, porosity = 1.0e-6, permeability = 1.0e-30
+/
+&fluid compressibility = 1.0e-3, viscosity = 1.0e-4 /
+&fracture
+  name = 'f1'
+  x = 0.9646446609406726, 1.0353553390593274
+  y = 0.9646446609406726, 1.0353553390593274
+  friction = 0.5, aperture = 1.0e-3
+/
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&side name = 'right', x_traction = -20.0e6 /
+&side name = 'top', y_traction = -10.0e6 /
+&initial pressure = 6.8e6 /
+&time end = 1.0, step = 1.0 /
+&coarse size_fracture = 0.02, size_boundary = 0.2 /
+&fine window = {window}, size_ratio = {ratio} /
+&growth {growth} /
+"""
+K_II = (5.0e6 - 0.5 * (15.0e6 - 6.8e6)) * math.sqrt(math.pi * 0.05)
+
+
+def run(place: Path, **choices: object) -> tuple[int, str]:
+    """Run the scene with some choices: status, last line of stderr."""
+    usual = {"poisson": 0.2, "toughness": 4.2e5, "window": 0.3, "ratio": 0.5}
+    text = SCENE.format(**{**usual, "growth": "enabled = .true.", **choices})
+    (place / "scene.nml").write_text(text)
+    done = call(place, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
+    return done.returncode, done.stderr.splitlines()[-1] if done.stderr else ""
+
+
+def windows(place: Path) -> list[str]:
+    """Tell what became of windows."""
+    events = rows(place / "out" / "events.csv")
+    return [event["detail"] for event in events if event["kind"] == "window"]
+
+
+def test_a_window_that_is_too_small_becomes_larger(tmp_path: Path) -> None:
+    """It is smaller than the coarse cell at its tip; K would be a third too small in it."""
+    assert run(tmp_path, window=0.02, ratio=0.25) == (0, "")
+    assert len(windows(tmp_path)) == 2  # one for each tip
+    assert all(detail.startswith("a window of 0.04 m: ") for detail in windows(tmp_path))
+    found = numbers(tmp_path / "out" / "tips.csv", "k2_pa_sqrtm")
+    assert found == pytest.approx([K_II] * len(found), rel=0.02)
+    assert record(tmp_path / "out")["warnings"] == [
+        "&fluid: compressibility is 0.001 1/Pa: water has 4e-10 1/Pa, a gas the inverse of its "
+        "pressure"
+    ]
+
+
+def test_a_good_window_stays(tmp_path: Path) -> None:
+    """Its elements are as many as if no tip could grow."""
+    assert run(tmp_path) == (0, "")
+    assert windows(tmp_path) == []
+    told = record(tmp_path / "out")["dofs"]
+    found = numbers(tmp_path / "out" / "tips.csv", "k2_pa_sqrtm")
+    assert found == pytest.approx([K_II] * len(found), rel=0.01)
+    assert run(tmp_path, growth="intensities = .true.") == (0, "")
+    assert record(tmp_path / "out")["dofs"] == told
+
+
+def test_where_no_window_helps_the_run_stops(tmp_path: Path) -> None:
+    """Rock that hardly changes its volume is too stiff in few elements, larger windows or not."""
+    status, reason = run(tmp_path, poisson=0.4999999, ratio=1.0)
+    assert status == 1
+    assert reason.startswith(
+        "wingcrack: after 0 s: a limit of the run is passed: error of K over K_IC where a tip would"
+        " grow "
+    )
+    assert " % above 5 at 0 s, fracture f1, end " in reason
+    assert "give a smaller size_fracture, with a fluid a larger window" in reason
+    out = tmp_path / "out"
+    assert record(out)["status"] == "failed"
+    assert windows(tmp_path)
+    assert numbers(out / "history.csv", "time_s") == [0.0]
+    assert numbers(out / "fractures.csv", "time_s")[-1] == 0.0
+
+
+@pytest.mark.parametrize("growth", ["intensities = .true.", "enabled = .true., law = 'paris'"])
+def test_others_are_only_warned(tmp_path: Path, growth: str) -> None:
+    assert run(tmp_path, window=0.02, ratio=0.25, growth=growth) == (0, "")
+    assert windows(tmp_path) == []
+    doubt = "estimated error of a stress intensity factor "
+    warnings = record(tmp_path / "out")["warnings"]
+    assert isinstance(warnings, list)
+    assert any(warning.startswith(doubt) for warning in warnings) == ("paris" in growth)
+
+
+def test_a_body_without_fluid_is_not_grown_in_either(tmp_path: Path) -> None:
+    """Nearly incompressible again: K is known to 14 %, and &adaptive mends that."""
+    scene = """\
+&domain x_min = -1.0, x_max = 1.0, y_min = -1.0, y_max = 1.0 /
+&material young = 10.0e9, poisson = 0.4999, toughness = 1.0e6 /
+&fracture
+  name = 'crack', friction = 0.3
+  x = -0.21213203435596426, 0.21213203435596426
+  y = -0.21213203435596426, 0.21213203435596426
+/
+&side name = 'top', y_traction = -10.0e6 /
+&side name = 'bottom', y_traction = 10.0e6 /
+&restraint x = -1.0, y = -1.0, x_displacement = 0.0, y_displacement = 0.0 /
+&restraint x = 1.0, y = -1.0, y_displacement = 0.0 /
+&fe size_fracture = 0.05, size_boundary = 0.3 /
+&growth enabled = .true., increment = 0.05, stop_gain = 0.1 /
+"""
+    (tmp_path / "scene.nml").write_text(scene)
+    done = call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
+    assert done.returncode == 1
+    reason = done.stderr.splitlines()[-1]
+    assert "error of K over K_IC where a tip would grow " in reason
+    assert "fracture crack, end " in reason
+    assert not [row for row in rows(tmp_path / "out" / "events.csv") if row["kind"] == "growth"]
+    (tmp_path / "scene.nml").write_text(scene + "&adaptive enabled = .true. /\n")
+    done = call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
+    assert done.returncode == 0
