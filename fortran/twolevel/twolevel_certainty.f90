@@ -8,9 +8,9 @@
 !! in equilibrium by itself. Before growth the errors of the steps in time add up, with their signs.
 !!
 !! To that comes what the coarse cells leave: at each tip a crack opens, slips and leaks as if it
-!! were longer or shorter by a tenth of its cell at most (coarse_tips: 0.05 in each). Fluid that leaks
-!! off along a length that is wrong by some share makes the pressure wrong by the same share of
-!! what it has risen. Layers of viscous flow at a tip, which need finer cells, are not in it.
+!! were longer or shorter by a tenth of its cell at most (coarse_tips: 0.05 in each). Fluid that
+!! leaks off along a length that is wrong by some share makes the pressure wrong by the same share
+!! of what it has risen. Layers of viscous flow at a tip, which need finer cells, are not in it.
 module twolevel_certainty
    use base_kinds, only: rk
    implicit none(type, external)

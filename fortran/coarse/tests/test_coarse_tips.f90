@@ -86,8 +86,9 @@ contains
       end do
    end subroutine test_lengths
 
-   !> Steady flow from a crack to the sides of a square, whose pressure is 0. The flow is 2 pi K/mu p
-   !! / ln(2 R/a), with the conformal radius R of the square, 1.0787052 of its half-side.
+   !> Steady flow from a crack to the sides of a square, whose pressure is 0. The flow is
+   !! 2 pi K/mu p / ln(2 R/a), with the conformal radius R of the square, 1.0787052 of its
+   !! half-side.
    subroutine test_leak_off()
       real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
       real(rk), parameter :: a = 0.1_rk, cell = 2.0_rk*a/10.0_rk, radius = 1.0787052023767587_rk
