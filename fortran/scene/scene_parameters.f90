@@ -109,7 +109,8 @@ module scene_parameters
               "unless at a tip: each face has nodes of its own."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
-              "is at the start, or into its cell nearest to a point. That point must lie "// &
+              "is at the start, or into its cell nearest to a point (two that are equally "// &
+              "near: half each). That point must lie "// &
               "within `size_fracture` of the fracture; where fractures meet, the place where "// &
               "they do is fed, and all of them."), &
       group_t("initial", implied=.true., scenes=in_fluid, &

@@ -19,11 +19,12 @@ module twolevel_state
    use simulation_laws, only: law_of_fracture
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
+   use twolevel_certainty, only: certainty_t
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
-   use twolevel_certainty, only: certainty_t
-   use twolevel_wells, only: feed_joints, mean_pressure, rate, share_wells, transfer_shares
+   use twolevel_wells, only: between_cells, feed_joints, mean_pressure, rate, share_wells, &
+                             transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
@@ -232,11 +233,27 @@ contains
       end associate
    end function errs
 
-   !> Mean pressure at the wells; 0 without any [Pa].
+   !> Mean pressure at the wells; 0 without any [Pa]. That of a cell is at its middle; a well
+   !! between two cells is half a cell away, which the fluid that it gives to the cell has to flow.
    pure real(rk) function well_pressure(self)
       class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%pressure))
+      logical :: between(size(self%share, 2))
+      integer(ik) :: w
 
-      well_pressure = mean_pressure(self%share, self%state%pressure, self%joint_share, &
+      pressure = self%state%pressure
+      between = between_cells(self%scene%injections, self%share)
+      do w = 1, size(between, kind=ik)
+         if (.not. between(w)) cycle
+         associate (cells => self%model%cells, length => self%model%condensed%length, &
+                    viscosity => self%model%settings%viscosity)
+            where (self%share(:, w) > 0.0_rk)
+               pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
+                          /self%state%aperture**3
+            end where
+         end associate
+      end do
+      well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
                                     self%state%joint_pressure)
    end function well_pressure
 

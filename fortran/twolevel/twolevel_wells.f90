@@ -1,19 +1,20 @@
 !> Wells: which fracture cells they feed, at which rate, and when they start and end.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_place, same_time
+   use base_tolerances, only: same_place, same_time, same_value
    use coarse_joints, only: joints_t
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_types, only: injection_t, scene_t
    implicit none(type, external)
    private
 
-   public :: feed_joints, mean_pressure, next_switch, rate, share_wells, transfer_shares
+public :: between_cells, feed_joints, mean_pressure, next_switch, rate, share_wells, transfer_shares
 
 contains
 
    !> The share of each well's rate that each fracture cell takes: all of it the cell nearest to the
-   !! well's point, or every cell of its fracture by its length.
+   !! well's point, or half of it each of two that are equally near, or every cell of its fracture
+   !! by its length.
    pure subroutine share_wells(wells, fracture, share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
@@ -31,10 +32,9 @@ contains
                distance(i) = norm2(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), &
                                               dim=2) - [well%x, well%y])
             end do
-            if (well%at_point) then
-               share(:, w) = 0.0_rk
-               share(minloc(distance, dim=1), w) = 1.0_rk
-            end if
+            ! Between two cells: else the last bits of the mesh would decide which way fluid goes.
+            if (well%at_point) share(:, w) = merge(1.0_rk, 0.0_rk, distance &
+                                                   <= minval(distance)*(1.0_rk + same_value))
             share(:, w) = share(:, w)/sum(share(:, w))
          end associate
       end do
@@ -68,6 +68,15 @@ contains
          end do
       end do
    end subroutine feed_joints
+
+   !> Wells that stand between two cells.
+   pure function between_cells(wells, share) result(between)
+      type(injection_t), intent(in) :: wells(:)
+      real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
+      logical :: between(size(wells))
+
+      between = wells%at_point .and. count(share > 0.0_rk, dim=1) == 2
+   end function between_cells
 
    !> The shares on a new mesh: the wells go on feeding the cells that they fed.
    pure function transfer_shares(map, before) result(after)
