@@ -46,6 +46,10 @@ module twolevel_equilibrium
    !> Errors of the intensities that do not tell tips from each other, over K_IC [-].
    real(rk), parameter :: same_drive = 0.01_rk
 
+   !> The same for tips that have grown equally far so far: their paths differ by what their meshes
+   !! do, which changes their intensities by more than the errors of these [-].
+   real(rk), parameter :: in_company = 0.03_rk
+
    !> Tips could part where a lead of one increment changes K_eq/K_IC by more than this: twice what
    !! does not tell them from each other [-].
    real(rk), parameter :: could_part = 2.0_rk*same_drive
@@ -82,6 +86,7 @@ contains
       segment = self%segment
       network = self%network
       kind = kinds_of_tips(self)
+      self%kind = kind
       has_begun = .false.
       self%before = self%state
       call self%segment%restart()
@@ -291,20 +296,34 @@ contains
       integer(ik) :: kind(size(self%tip))
       logical :: alike(size(self%tip), size(self%tip))
       real(rk), parameter :: same_gain = 0.02_rk  ! of an increment
-      real(rk) :: off(size(self%tip))
-      integer(ik) :: i
+      real(rk), dimension(size(self%tip)) :: least, off
+      integer(ik) :: i, j
 
       associate (drive => self%tip%drive%intensity, gain => self%segment%gain)
          off = max(self%tip%intensity%k1_error, self%tip%intensity%k2_error)
          do i = 1, size(self%tip, kind=ik)
             alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
+            least = [(merge(in_company, same_drive, keep_company(self, i, j)), &
+                      j=1, size(least, kind=ik))]
             alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
-               max(same_drive*self%rules%toughness, hypot(off, off(i)))
+               max(least*self%rules%toughness, hypot(off, off(i)))
             alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
          end do
       end associate
       kind = numbered(likes(alike))
    end function kinds_of_tips
+
+   !> Two tips have grown, equally far, and neither would run ahead if it got a lead: what parts
+   !! them then is chance.
+   pure logical function keep_company(self, i, j)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i, j
+
+      keep_company = .false.
+      if (.not. allocated(self%kind) .or. i == j) return
+      if (self%kind(i) /= self%kind(j) .or. .not. self%segment(i)%gain > 0.0_rk) return
+      keep_company = self%rivals%preference_of([i, j])*self%rules%increment <= could_part
+   end function keep_company
 
    !> New segments for tips, which stand at the ends of their paths: their directions are found in
    !! the tried state; then the coarse level, back in the state before the step, gets their cells.

@@ -57,6 +57,7 @@ module twolevel_state
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
       type(rivals_t) :: rivals  !< how the tips act on each other
+      integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far so far
       type(certainty_t) :: certainty  !< how well lengths and pressures are known
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]
