@@ -14,6 +14,10 @@ module growth_rivals
    !> What has been measured for a tip holds until it has gone so many lengths of its piece on.
    real(rk), parameter :: holds_for = 8.0_rk
 
+   !> Share of the last measurement of a tip in the mean with the earlier ones: each errs by some
+   !! per cent of K_IC per increment.
+   real(rk), parameter :: fresh = 0.5_rk
+
    !> Share of a piece that a tip has gone along where it is measured.
    real(rk), parameter :: half_way = 0.5_rk
 
@@ -23,8 +27,8 @@ module growth_rivals
 
    !> What is known of the tips.
    type :: rivals_t
-      real(rk), allocatable :: measured(:, :)  !< (tips, tips) d(K_eq,i/K_IC)/da_j [1/m]
-      real(rk), allocatable :: matrix(:, :)  !< the same, with what tries have taught
+      real(rk), allocatable :: measured(:, :)  !< (tips, tips) mean of d(K_eq,i/K_IC)/da_j [1/m]
+      real(rk), allocatable :: matrix(:, :)  !< as measured last, with what tries have taught
       logical, allocatable, private :: is_known(:)  !< (tips) columns of it
       real(rk), allocatable, private :: known_at(:)  !< (tips) gain of each then [m]
    contains
@@ -68,8 +72,10 @@ contains
       real(rk), intent(in) :: before(:), after(:)  !< (tips) excess of K_eq over K_IC [-]
       type(segment_t), intent(in) :: segment  !< of that tip
 
-      self%measured(:, tip) = (after - before)/moved
-      self%matrix(:, tip) = self%measured(:, tip)
+      self%matrix(:, tip) = (after - before)/moved
+      associate (share => merge(fresh, 1.0_rk, self%is_known(tip)))
+         self%measured(:, tip) = share*self%matrix(:, tip) + (1.0_rk - share)*self%measured(:, tip)
+      end associate
       self%is_known(tip) = .true.
       self%known_at(tip) = segment%gain
    end subroutine note

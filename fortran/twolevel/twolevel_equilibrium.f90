@@ -13,7 +13,7 @@ module twolevel_equilibrium
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use coarse_state, only: step_report_t
-   use growth_kinds, only: likes, numbered
+   use growth_kinds, only: numbered
    use growth_network, only: end_place, extend, total_length
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
@@ -28,7 +28,7 @@ module twolevel_equilibrium
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, could_part, find_equilibrium, tolerance
+   public :: accept_equilibrium, find_equilibrium, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
@@ -42,17 +42,6 @@ module twolevel_equilibrium
    !> A step that errs this much with the tips where they were cannot be taken, whatever they do
    !! [-].
    real(rk), parameter :: much = 4.0_rk
-
-   !> Errors of the intensities that do not tell tips from each other, over K_IC [-].
-   real(rk), parameter :: same_drive = 0.01_rk
-
-   !> The same for tips that have grown equally far so far: their paths differ by what their meshes
-   !! do, which changes their intensities by more than the errors of these [-].
-   real(rk), parameter :: in_company = 0.03_rk
-
-   !> Tips could part where a lead of one increment changes K_eq/K_IC by more than this: twice what
-   !! does not tell them from each other [-].
-   real(rk), parameter :: could_part = 2.0_rk*same_drive
 
 contains
 
@@ -85,8 +74,10 @@ contains
       tip = self%tip
       segment = self%segment
       network = self%network
-      kind = kinds_of_tips(self)
-      self%kind = kind
+      call self%company%find_kinds(tip%drive%intensity/self%rules%toughness, &
+                                   max(tip%intensity%k1_error, tip%intensity%k2_error) &
+                                   /self%rules%toughness, segment%gain, tip%arrested, &
+                                   self%rules%increment, self%rivals, kind)
       has_begun = .false.
       self%before = self%state
       call self%segment%restart()
@@ -170,6 +161,8 @@ contains
       self%tip%advance = advances(self)
       where (self%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%segment%gain = self%segment%gain + self%tip%advance
+      call self%company%accept(self%tip%drive%intensity/self%rules%toughness, self%tip%advance, &
+                               self%rules%increment)
       call self%segment%accept()
    end subroutine accept_equilibrium
 
@@ -287,43 +280,6 @@ contains
       in_play = self%segment%is_open .and. (excesses(self) > -tolerance .or. &
                                             self%segment%reached > self%segment%lowest())
    end function tips_in_play
-
-   !> The kinds of the tips. Alike are those that have come equally far, with intensities equal
-   !! within what these may be off. Else the last bits of their meshes would decide which of them
-   !! runs ahead where nothing else does.
-   function kinds_of_tips(self) result(kind)
-      class(two_levels_t), intent(in) :: self
-      integer(ik) :: kind(size(self%tip))
-      logical :: alike(size(self%tip), size(self%tip))
-      real(rk), parameter :: same_gain = 0.02_rk  ! of an increment
-      real(rk), dimension(size(self%tip)) :: least, off
-      integer(ik) :: i, j
-
-      associate (drive => self%tip%drive%intensity, gain => self%segment%gain)
-         off = max(self%tip%intensity%k1_error, self%tip%intensity%k2_error)
-         do i = 1, size(self%tip, kind=ik)
-            alike(:, i) = abs(gain - gain(i)) <= same_gain*self%rules%increment
-            least = [(merge(in_company, same_drive, keep_company(self, i, j)), &
-                      j=1, size(least, kind=ik))]
-            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= &
-               max(least*self%rules%toughness, hypot(off, off(i)))
-            alike(:, i) = alike(:, i) .and. .not. (self%tip%arrested .or. self%tip(i)%arrested)
-         end do
-      end associate
-      kind = numbered(likes(alike))
-   end function kinds_of_tips
-
-   !> Two tips have grown, equally far, and neither would run ahead if it got a lead: what parts
-   !! them then is chance.
-   pure logical function keep_company(self, i, j)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i, j
-
-      keep_company = .false.
-      if (.not. allocated(self%kind) .or. i == j) return
-      if (self%kind(i) /= self%kind(j) .or. .not. self%segment(i)%gain > 0.0_rk) return
-      keep_company = self%rivals%preference_of([i, j])*self%rules%increment <= could_part
-   end function keep_company
 
    !> New segments for tips, which stand at the ends of their paths: their directions are found in
    !! the tried state; then the coarse level, back in the state before the step, gets their cells.

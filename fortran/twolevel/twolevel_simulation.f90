@@ -6,6 +6,7 @@ module twolevel_simulation
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
+   use growth_company, only: could_part
    use growth_network, only: total_length
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_bifurcation, event_growth_onset, event_step_cut, &
@@ -15,7 +16,7 @@ module twolevel_simulation
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
-   use twolevel_equilibrium, only: accept_equilibrium, could_part, find_equilibrium, tolerance
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths

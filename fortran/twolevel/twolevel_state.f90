@@ -8,6 +8,7 @@ module twolevel_state
    use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use growth_company, only: company_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
    use growth_rivals, only: rivals_t
@@ -57,7 +58,7 @@ module twolevel_state
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
       type(rivals_t) :: rivals  !< how the tips act on each other
-      integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far so far
+      type(company_t) :: company  !< which of them grow as one
       type(certainty_t) :: certainty  !< how well lengths and pressures are known
       logical :: has_new_mesh = .false.  !< since the last accepted state
       real(rk) :: injected = 0.0_rk  !< so far [m2]

@@ -1,0 +1,119 @@
+!> Tips that only chance tells from each other grow as one; those that something real does, do not.
+program test_growth_company
+   use testing_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use growth_company, only: company_t, could_part
+   use growth_rivals, only: rivals_t
+   use growth_segment, only: segment_t
+   implicit none(type, external)
+
+   type(checks_t) :: checks
+   real(rk), parameter :: increment = 5.0e-3_rk
+   real(rk), parameter :: known(2) = 0.0_rk
+   logical, parameter :: neither(2) = .false.
+
+   call test_before_growth()
+   call test_chance()
+   call test_difference()
+   call test_rivals()
+   call checks%finish()
+
+contains
+
+   !> Tips that rest are alike if their errors do not tell them from each other.
+   subroutine test_before_growth()
+      call checks%is_true(are_one(0.99_rk, 0.995_rk, 0.0_rk), "half a per cent")
+      call checks%is_true(.not. are_one(0.99_rk, 0.96_rk, 0.0_rk), "three per cent")
+      call checks%is_true(are_one(0.99_rk, 0.96_rk, 0.025_rk), "three, known to two and a half")
+      call checks%is_true(.not. are_one(0.99_rk, 0.99_rk, 0.0_rk, gain=[0.0_rk, increment]), &
+                          "not equally far")
+   end subroutine test_before_growth
+
+   !> In company, meshes throw one and the other back by six per cent in turns.
+   subroutine test_chance()
+      type(company_t) :: company
+      type(rivals_t) :: rivals
+      integer(ik) :: kind(2)
+      real(rk) :: drive(2), gain
+      integer :: i
+
+      call rivals%begin(2)
+      drive = 1.0_rk
+      gain = 0.0_rk
+      do i = 1, 100
+         call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+         call checks%is_true(kind(1) == kind(2), "by chance")
+         drive = [1.0_rk, 0.94_rk]
+         if (mod(i, 2) == 0) drive = drive([2, 1])
+         call company%accept(drive, spread(0.4_rk*increment, 1, 2), increment)
+         gain = gain + 0.4_rk*increment
+      end do
+      ! The very first moment of a piece says little.
+      call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), increment)
+      call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+      call checks%is_true(kind(1) == kind(2), "a moment")
+   end subroutine test_chance
+
+   !> One of two lacks what it lacks for good.
+   subroutine test_difference()
+      call checks%is_true(steps_in_company(0.02_rk) > 100, "2 % may be the meshes")
+      call checks%is_true(steps_in_company(0.04_rk) <= 15, "4 % not over several increments")
+      call checks%is_true(steps_in_company(0.20_rk) <= 3, "20 % soon")
+   end subroutine test_difference
+
+   !> Where a lead drives a tip on, only what the errors allow is alike.
+   subroutine test_rivals()
+      real(rk), parameter :: worth(2) = [0.9_rk, 1.1_rk]*could_part/increment
+      integer, parameter :: steps(2) = [101, 1]
+      integer :: k
+
+      do k = 1, 2
+         call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "rivals")
+      end do
+   end subroutine test_rivals
+
+   !> Two tips that have grown nowhere yet, or as far as given, are of one kind.
+   logical function are_one(one, other, off, gain)
+      real(rk), intent(in) :: one, other, off  !< [-]
+      real(rk), intent(in), optional :: gain(2)  !< [m]
+      type(company_t) :: company
+      type(rivals_t) :: rivals
+      integer(ik) :: kind(2)
+      real(rk) :: come(2)
+
+      call rivals%begin(2)
+      come = 0.0_rk
+      if (present(gain)) come = gain
+      call company%find_kinds([one, other], [off, off], come, neither, increment, rivals, kind)
+      are_one = kind(1) == kind(2)
+   end function are_one
+
+   !> Steps of a fifth of an increment for which two tips of which one lacks a share of K_IC are one
+   !! kind, 101 at most.
+   integer function steps_in_company(lack, lead) result(steps)
+      real(rk), intent(in) :: lack  !< [-]
+      real(rk), intent(in), optional :: lead  !< what a lead is worth [1/m]
+      type(company_t) :: company
+      type(rivals_t) :: rivals
+      type(segment_t) :: segment
+      integer(ik) :: kind(2)
+      real(rk) :: drive(2), gain
+      real(rk), parameter :: moved = 0.2_rk*increment
+
+      call rivals%begin(2)
+      if (present(lead)) then
+         call rivals%note(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
+         call rivals%note(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
+      end if
+      drive = 1.0_rk
+      gain = 0.0_rk
+      do steps = 0, 100
+         call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+         if (kind(1) /= kind(2)) return
+         drive = [1.0_rk, 1.0_rk - lack]
+         call company%accept(drive, [moved, moved], increment)
+         gain = gain + moved
+      end do
+   end function steps_in_company
+
+end program test_growth_company
