@@ -10,9 +10,12 @@
 !! To that comes what the coarse cells leave: at each tip a crack opens, slips and leaks as if it
 !! were longer or shorter by a tenth of its cell at most (coarse_tips: 0.05 in each). Fluid that
 !! leaks off along a length that is wrong by some share makes the pressure wrong by the same share
-!! of what it has risen. Layers of viscous flow at a tip, which need finer cells, are not in it.
+!! of what it has risen; and where all of it leaks off, a crack in equilibrium grows until its true
+!! length takes the fluid, so its tips are off by as much once more. Layers of viscous flow at a
+!! tip, which need finer cells, are not in it.
 module twolevel_certainty
    use base_kinds, only: rk
+   use twolevel_course, only: course_t
    implicit none(type, external)
    private
 
@@ -28,11 +31,7 @@ module twolevel_certainty
       integer, private :: tries = 0  !< of the present step
       real(rk), private :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two
       real(rk), private :: slope = 0.0_rk  !< of the pressure over the length [Pa/m]
-      logical, private :: is_followed = .false.  !< there is a last state
-      real(rk), private :: last = 0.0_rk  !< pressure of that [Pa]
-      real(rk), private :: rate = 0.0_rk  !< of the pressure in the last step [Pa/s]
-      real(rk), private :: step = 0.0_rk  !< the last one [s]
-      real(rk), private :: by_steps = 0.0_rk  !< errors of the steps, with their signs [Pa]
+      type(course_t), private :: course  !< of the pressure [Pa]
    contains
       procedure :: begin_step
       procedure :: see_try
@@ -65,7 +64,7 @@ contains
 
    !> A step has been accepted.
    pure subroutine accept(self, step, pressure, grows, excess_error, excess_slope, cell, &
-                          length, rise)
+                          length, rise, leaked)
       class(certainty_t), intent(inout) :: self
       real(rk), intent(in) :: step  !< [s]
       real(rk), intent(in) :: pressure  !< at the wells [Pa]
@@ -75,22 +74,14 @@ contains
       real(rk), intent(in) :: cell(:)  !< (tips) length of the coarse cell there [m]
       real(rk), intent(in) :: length  !< of all fractures [m]
       real(rk), intent(in) :: rise  !< of the pressure, from the lowest to the highest so far [Pa]
+      real(rk), intent(in) :: leaked  !< share of the injected fluid that has leaked off [-]
 
       if (.not. allocated(self%tip)) allocate (self%tip(size(grows)), source=0.0_rk)
-      where (grows) self%tip = excess_error/abs(excess_slope) + share*cell
+      where (grows) self%tip = excess_error/abs(excess_slope) + share*cell*(1.0_rk + leaked)
       self%length = sum(self%tip)
-      if (self%is_followed .and. step > 0.0_rk) then
-         if (self%step > 0.0_rk) then
-            self%by_steps = self%by_steps + step/(step + self%step) &
-                            *(pressure - self%last - step*self%rate)
-         end if
-         self%rate = (pressure - self%last)/step
-         self%step = step
-      end if
-      if (any(grows)) self%by_steps = 0.0_rk
-      self%is_followed = .true.
-      self%last = pressure
-      self%pressure = abs(self%slope)*self%length + abs(self%by_steps)
+      call self%course%follow(step, pressure)
+      if (any(grows)) self%course%error = 0.0_rk
+      self%pressure = abs(self%slope)*self%length + abs(self%course%error)
       if (length > 0.0_rk) self%pressure = self%pressure + share*sum(cell)/length*rise
    end subroutine accept
 

@@ -2,6 +2,7 @@
 !! known at which it begins to grow.
 module twolevel_onset
    use base_kinds, only: rk
+   use twolevel_course, only: course_t
    implicit none(type, external)
    private
 
@@ -10,15 +11,11 @@ module twolevel_onset
    !> The last accepted state of a tip, and the error of its intensity by the steps in time.
    type :: approach_t
       logical :: is_over = .false.  !< the tip has grown
-      logical :: is_followed = .false.  !< there is a last state
       real(rk) :: time = 0.0_rk  !< [s]
       logical :: has_come = .false.  !< K_eq has reached the toughness
       real(rk) :: onset = 0.0_rk  !< when it first did [s]
-      real(rk) :: drive = 0.0_rk  !< K_eq [Pa m^1/2]
+      type(course_t) :: drive  !< K_eq [Pa m^1/2]
       real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
-      real(rk) :: rate = 0.0_rk  !< of it in the last step [Pa m^1/2/s]
-      real(rk) :: step = 0.0_rk  !< the last one [s]
-      real(rk) :: error = 0.0_rk  !< of K_eq, of all steps together, with its sign [Pa m^1/2]
    contains
       procedure :: follow
       procedure :: onset_before
@@ -27,8 +24,7 @@ module twolevel_onset
 
 contains
 
-   !> Take note of an accepted state. A step h after one of length h_b errs by h/(h + h_b) (change -
-   !! h (rate before)), as in twolevel_trend; the first one, from rest, has none to compare with.
+   !> Take note of an accepted state.
    elemental subroutine follow(self, time, drive, drive_error, toughness)
       class(approach_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -42,21 +38,12 @@ contains
       if (.not. self%has_come) then
          self%has_come = drive >= toughness
          self%onset = time
-         if (self%has_come .and. self%is_followed) then
-            self%onset = self%time + step*(toughness - self%drive)/(drive - self%drive)
+         if (self%has_come .and. self%drive%is_followed) then
+            self%onset = self%time + step*(toughness - self%drive%value)/(drive - self%drive%value)
          end if
       end if
-      if (self%is_followed .and. step > 0.0_rk) then
-         if (self%step > 0.0_rk) then
-            self%error = self%error + step/(step + self%step) &
-                         *(drive - self%drive - step*self%rate)
-         end if
-         self%rate = (drive - self%drive)/step
-         self%step = step
-      end if
-      self%is_followed = .true.
+      call self%drive%follow(step, drive)
       self%time = time
-      self%drive = drive
       self%drive_error = drive_error
    end subroutine follow
 
@@ -68,8 +55,8 @@ contains
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
       onset_before = self%onset
-      if (self%has_come .or. .not. self%rate > 0.0_rk) return
-      onset_before = min(time, self%time + (toughness - self%drive)/self%rate)
+      if (self%has_come .or. .not. self%drive%rate > 0.0_rk) return
+      onset_before = min(time, self%time + (toughness - self%drive%value)/self%drive%rate)
    end function onset_before
 
    !> How far the time of the onset may be off [s]: what K_eq may be off, over its rate. Huge where
@@ -79,8 +66,9 @@ contains
       real(rk), intent(in) :: tolerance  !< on K_eq of growing tips [Pa m^1/2]
 
       uncertainty = huge(1.0_rk)
-      if (self%rate > 0.0_rk) uncertainty = (abs(self%error) &
-                                             + self%drive_error + tolerance)/self%rate
+      if (self%drive%rate > 0.0_rk) then
+         uncertainty = (abs(self%drive%error) + self%drive_error + tolerance)/self%drive%rate
+      end if
    end function uncertainty
 
 end module twolevel_onset

@@ -2,24 +2,20 @@
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text, integer_text
+   use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
-   use growth_company, only: could_part
-   use growth_network, only: total_length
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_bifurcation, event_growth_onset, event_step_cut, &
-                                event_unstable
+   use results_chronicle, only: event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, tolerance
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_onset, only: approach_t
-   use twolevel_places, only: tip_cell_lengths
+   use twolevel_notes, only: note_certainty, notes_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_moment, snapshot_of_levels
    use twolevel_state, only: two_levels_t
@@ -37,11 +33,10 @@ module twolevel_simulation
       logical :: is_after_switch = .false.  !< of a well: the last step
       logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
-      logical :: was_bifurcation = .false.  !< in the last step with growth
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
-      type(approach_t), allocatable :: approach(:)  !< (tips) to their first growth
+      type(notes_t) :: notes  !< of growth in equilibrium
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
    contains
@@ -69,7 +64,7 @@ contains
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
-      allocate (self%approach(size(self%tip)))
+      call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
@@ -249,8 +244,10 @@ contains
                             <= self%state%time*(1.0_rk + same_time)
       call self%book_step(self%dt)
       self%tip%advance = 0.0_rk
-      if (is_equilibrium(self)) call accept_equilibrium(self)
-      if (is_equilibrium(self)) call note_competition(self)
+      if (is_equilibrium(self)) then
+         call accept_equilibrium(self)
+         call self%notes%note_competition(self)
+      end if
       call self%stepper%step_done(trial, self%dt)
       call self%trend%accept(self%before, self%state, self%dt)
       if (.not. is_unstable) return
@@ -259,27 +256,6 @@ contains
       ! The rates of such a step mean nothing for the next.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
-
-   !> Tips of which one could run ahead of the others.
-   subroutine note_competition(self)
-      class(twolevel_simulation_t), intent(inout) :: self
-      real(rk) :: lead
-      logical :: is_bifurcation
-      integer(ik), allocatable :: group(:)
-      integer(ik) :: i
-
-      group = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%advance > 0.0_rk)
-      if (size(group) < 2) return
-      lead = self%rivals%preference_of(group)*self%rules%increment
-      is_bifurcation = lead > could_part
-      if (is_bifurcation .and. .not. self%was_bifurcation) then
-         call self%chronicle%add_event(self%state%time, event_bifurcation, &
-                                       integer_text(size(group, kind=ik))// &
-                                       " tips grow; a lead of one increment is worth "// &
-                                       brief_text(100.0_rk*lead, 3)//" % of K")
-      end if
-      self%was_bifurcation = is_bifurcation
-   end subroutine note_competition
 
    !> An accepted state: contact and the run's largest values.
    subroutine note_state(self, mass_error_relative)
@@ -327,13 +303,13 @@ contains
             end if
          end if
          if (allocated(error)) return
-         if (is_equilibrium(self)) call note_onsets(self)
+         if (is_equilibrium(self)) call self%notes%note_onsets(self)
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      if (states_errors(self)) call note_certainty(self)
+      if (states_errors(self)) call note_certainty(self, self%dt)
       if (self%state%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.
@@ -371,51 +347,12 @@ contains
       call watch_mesh(self, error)
    end subroutine note_equilibrium
 
-   !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
-   subroutine note_onsets(self)
-      class(twolevel_simulation_t), intent(inout) :: self
-      real(rk) :: error, onset
-      integer(ik) :: i
-
-      do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), approach => self%approach(i))
-            if (approach%is_over) cycle
-            approach%is_over = self%segment(i)%gain > 0.0_rk
-            if (approach%is_over) then
-               error = approach%uncertainty(tolerance*self%rules%toughness)
-               onset = approach%onset_before(self%state%time, self%rules%toughness)
-               call self%chronicle%add_event(onset, event_growth_onset, "known to " &
-                                             //brief_text(error, 3)//" s", tip%fracture, &
-                                             tip%origin)
-            else
-               call approach%follow(self%state%time, tip%drive%intensity, &
-                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &
-                                    self%rules%toughness)
-            end if
-         end associate
-      end do
-   end subroutine note_onsets
-
    !> Errors of length and pressure are estimated: not with increments of a given law.
    pure logical function states_errors(self)
       class(twolevel_simulation_t), intent(in) :: self
 
       states_errors = is_equilibrium(self) .or. .not. self%scene%growth%enabled
    end function states_errors
-
-   !> How well length and pressure are known in the present state.
-   subroutine note_certainty(self)
-      class(twolevel_simulation_t), intent(inout) :: self
-
-      associate (tip => self%tip, toughness => self%rules%toughness)
-         call self%certainty%accept(self%dt, self%well_pressure(), &
-                                    tip%advance > 0.0_rk, tolerance + hypot( &
-                                    tip%intensity%k1_error, tip%intensity%k2_error)/toughness, &
-                                    self%segment%steep(self%segment%slope), &
-                                    tip_cell_lengths(self), total_length(self%network), &
-                                    self%trend%pressure_rise())
-      end associate
-   end subroutine note_certainty
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
    !! still to be found.

@@ -16,7 +16,8 @@ contains
 
    !> K_eq/K_IC falls by 5 per metre at either of two tips, the pressure by 1e6 Pa per metre of
    !! length. With 1 % in K_eq a tip is off by 2 mm, the pressure by 4 kPa; a tenth of the cells of
-   !! 10 mm adds 1 mm each, and 1 % of the 3e6 Pa that the pressure has risen on 0.2 m.
+   !! 10 mm adds 1 mm each and, with half of the fluid leaked off, half of that, and 1 % of the 3e6
+   !! Pa that the pressure has risen on 0.2 m.
    subroutine test_growth()
       type(certainty_t) :: certainty
 
@@ -24,11 +25,11 @@ contains
       call certainty%see_try(0.19_rk, 3.01e6_rk)
       call certainty%see_try(0.2_rk, 3.0e6_rk)
       call accept(certainty, [.true., .true.])
-      call checks%is_close(certainty%length, 6.0e-3_rk, 1.0e-12_rk, "length")
-      call checks%is_close(certainty%pressure, 6.0e3_rk + 0.01_rk*3.0e6_rk, 1.0e-3_rk, "pressure")
+      call checks%is_close(certainty%length, 7.0e-3_rk, 1.0e-12_rk, "length")
+      call checks%is_close(certainty%pressure, 7.0e3_rk + 0.01_rk*3.0e6_rk, 1.0e-3_rk, "pressure")
       ! A tip that rests stays as far off as it was.
       call accept(certainty, [.false., .false.])
-      call checks%is_close(certainty%length, 6.0e-3_rk, 1.0e-12_rk, "length at rest")
+      call checks%is_close(certainty%length, 7.0e-3_rk, 1.0e-12_rk, "length at rest")
 
    end subroutine test_growth
 
@@ -37,7 +38,7 @@ contains
       logical, intent(in) :: grows(2)
 
       call certainty%accept(1.0_rk, 3.0e6_rk, grows, [0.01_rk, 0.01_rk], [-5.0_rk, -5.0_rk], &
-                            [0.01_rk, 0.01_rk], 0.2_rk, 3.0e6_rk)
+                            [0.01_rk, 0.01_rk], 0.2_rk, 3.0e6_rk, 0.5_rk)
    end subroutine accept
 
    !> p' = 2 t by backward Euler with the step h is h t too large at t; of the first step, which has
@@ -50,10 +51,10 @@ contains
       integer :: n
 
       p = 0.0_rk
-      call certainty%accept(0.0_rk, p, no_tips, none, none, none, 0.0_rk, 0.0_rk)
+      call certainty%accept(0.0_rk, p, no_tips, none, none, none, 0.0_rk, 0.0_rk, 0.0_rk)
       do n = 1, 20
          p = p + h*2.0_rk*(n*h)
-         call certainty%accept(h, p, no_tips, none, none, none, 0.0_rk, 0.0_rk)
+         call certainty%accept(h, p, no_tips, none, none, none, 0.0_rk, 0.0_rk, 0.0_rk)
       end do
       call checks%is_close(certainty%pressure, p - 4.0_rk - h**2, 1.0e-12_rk, "error of the steps")
       call checks%is_close(certainty%length, 0.0_rk, 0.0_rk, "nothing has grown")

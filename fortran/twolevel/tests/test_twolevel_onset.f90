@@ -29,7 +29,7 @@ contains
          call approach%follow(n*h, k, 0.01_rk, 2.0_rk)
       end do
       call checks%is_close(k - t**2, h*t, 1.0e-12_rk, "the error that there is")
-      call checks%is_close(approach%error, h*t - h**2, 1.0e-12_rk, "what is known of it")
+      call checks%is_close(approach%drive%error, h*t - h**2, 1.0e-12_rk, "what is known of it")
       call checks%is_close(approach%uncertainty(0.03_rk), (h*t - h**2 + 0.04_rk)/(2.0_rk*t), &
                            1.0e-12_rk, "in time")
       ! K = 0.01 n (n + 1) passes 2 between n = 13 and 14, by straight lines.
