@@ -1,19 +1,22 @@
 !> How far the intensities of the windows can be trusted: the coarse level's part of their errors.
 !!
-!! A window takes the displacement on its edge from the coarse level. Two comparisons show what is
-!! wrong with it:
+!! A window takes the displacement on its edge and the rock's pressure from the coarse level. Three
+!! comparisons show what is wrong with them:
 !!   - Inside the windows, on the fractures and in the rock, these know better than the coarse
 !!     level, which gets what they found as a defect correction (Hackbusch 1984), all windows at
 !!     once. What that changes in K counts as it is.
 !!   - Between the coarse level's cells the displacement is interpolated so that quadratic fields
 !!     are exact (window_t%curved_edge). What K differs by with linear interpolation, one order
 !!     lower, counts by half.
-!! This costs a substitution in the factors of the coarse level and two solutions of each window,
+!!   - The pressure is linear in each cell. What K differs by with that of the cells' middles, one
+!!     order lower, counts by half: slip presses and draws on the rock around a tip, and layers that
+!!     are thinner than a cell show there.
+!! This costs a substitution in the factors of the coarse level and three solutions of each window,
 !! whose mesh and factors stay.
 !!
-!! What the coarse level gets wrong outside of all windows, and its fluid pressure, is not seen. The
-!! safety factor is the smallest, in tenths, with which 95 % of the stated errors hold in 62
-!! arrangements (verification/trust_in_k); in 31 others 96 % do.
+!! What the coarse level gets wrong outside of all windows, and the fractures' pressure, is not
+!! seen. The safety factor is the smallest, in tenths, with which 95 % of the stated errors hold in
+!! 62 arrangements (verification/trust_in_k); in 31 others 96 % do.
 module twolevel_trust
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -30,7 +33,7 @@ module twolevel_trust
    public :: estimate_coarse_errors
 
    real(rk), parameter :: safety = 1.8_rk  !< error over what the comparisons show [-]
-   real(rk), parameter :: share_of_order = 0.5_rk  !< that the second comparison counts by [-]
+   real(rk), parameter :: share_of_order = 0.5_rk  !< that a comparison with a lower one counts by [-]
 
 contains
 
@@ -51,7 +54,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: displacement(2, self%mesh%n_nodes), gradient(2, 2, self%mesh%n_nodes)
       real(rk) :: straight(2, 2, self%mesh%n_nodes)
-      real(rk) :: better(2), worse(2)
+      real(rk) :: better(2), rough(2), worse(2)
       integer(ik) :: i
 
       call improve(self, displacement, gradient, error)
@@ -59,15 +62,21 @@ contains
       straight = 0.0_rk
       do i = 1, size(self%tip, kind=ik)
          associate (window => self%windows%window(i), linear => self%coarse_values%nodal(:2, :))
-            call window%intensity_with(window%curved_edge(self%mesh, displacement, gradient), &
-                                       better, error)
+            call window%intensity_with(better, error, &
+                                       edge=window%curved_edge(self%mesh, displacement, gradient))
             if (allocated(error)) return
-            call window%intensity_with(window%curved_edge(self%mesh, linear, straight), worse, &
-                                       error)
+            call window%intensity_with(worse, error, &
+                                       edge=window%curved_edge(self%mesh, linear, straight))
             if (allocated(error)) return
+            rough = [window%found%k1, window%found%k2]
+            if (.not. window%undrained) then
+               call window%intensity_with(rough, error, pressure=self%state%unknowns(3, :))
+               if (allocated(error)) return
+            end if
             associate (found => [window%found%k1, window%found%k2])
                window%lacking = better - found
-               window%uncertain = safety*shown(better - found, worse - found, window%found%closed)
+               window%uncertain = safety*shown(better - found, worse - found, rough - found, &
+                                               window%found%closed)
                if (.not. holds_a_cell(self, window)) then
                   window%uncertain = norm2(found)
                   if (window%found%closed) window%uncertain(1) = abs(found(1))
@@ -98,15 +107,17 @@ contains
       end associate
    end function holds_a_cell
 
-   !> What both comparisons show of the errors of K_I and K_II. What acts on one mode acts on both:
+   !> What the comparisons show of the errors of K_I and K_II. What acts on one mode acts on both:
    !! that it hardly changes one of them is chance, unless the law of contact closes the tip.
-   pure function shown(by_correction, by_order, is_closed) result(difference)
-      real(rk), intent(in) :: by_correction(2), by_order(2)  !< [Pa m^1/2]
+   pure function shown(by_correction, by_order, by_pressure, is_closed) result(difference)
+      real(rk), intent(in), dimension(2) :: by_correction, by_order, by_pressure  !< [Pa m^1/2]
       logical, intent(in) :: is_closed
       real(rk) :: difference(2)  !< [Pa m^1/2]
 
-      difference = hypot(norm2(by_correction), share_of_order*norm2(by_order))
-      if (is_closed) difference(1) = hypot(by_correction(1), share_of_order*by_order(1))
+      difference = norm2([by_correction, share_of_order*by_order, share_of_order*by_pressure])
+      if (.not. is_closed) return
+      difference(1) = norm2([by_correction(1), share_of_order*by_order(1), &
+                             share_of_order*by_pressure(1)])
    end function shown
 
    !> What the coarse displacement at the nodes would be if the coarse level agreed with the

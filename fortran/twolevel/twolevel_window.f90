@@ -360,13 +360,14 @@ contains
       end associate
    end function curved_edge
 
-   !> K_I and K_II under the last solution's loads with other displacements on the edge. Nothing is
-   !! remembered of it.
-   subroutine intensity_with(self, edge, k, error)
+   !> K_I and K_II under the last solution's loads with other displacements on the edge, or another
+   !! pressure in the rock. Nothing is remembered of it.
+   subroutine intensity_with(self, k, error, edge, pressure)
       class(window_t), intent(inout) :: self
-      real(rk), intent(in) :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
       real(rk), intent(out) :: k(2)  !< [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
+      real(rk), intent(in), optional :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
+      real(rk), intent(in), optional :: pressure(:)  !< (coarse cells) that of the cell around [Pa]
       type(fine_loads_t) :: loads
       type(contact_t) :: contact
       type(intensity_t) :: result
@@ -374,7 +375,11 @@ contains
 
       k = 0.0_rk
       loads = self%loads
-      loads%boundary_displacement = edge
+      if (present(edge)) loads%boundary_displacement = edge
+      if (present(pressure)) then
+         loads%pore_pressure(:self%model%mesh%n_vertices) = &
+            pressure(self%coarse_cell(:self%model%mesh%n_vertices))
+      end if
       contact = self%contact
       call self%model%solve(loads, displacement, error, contact)
       if (allocated(error)) return
