@@ -24,10 +24,13 @@ contains
       uncertainty = 100.0_rk*error_of_k(tip)/max(toughness, tip%drive%intensity)
    end function uncertainty
 
+   !> What a better window could mend, and what does not pass by itself.
    elemental real(rk) function error_of_k(tip)
       type(tip_t), intent(in) :: tip
 
-      error_of_k = max(tip%intensity%k1_error, tip%intensity%k2_error)
+      associate (k => tip%intensity)
+         error_of_k = max(k%k1_error, k%k2_error) - k%passing_error
+      end associate
    end function error_of_k
 
    !> A tip would grow, or might, and its intensities are not known well enough for that.

@@ -46,6 +46,7 @@ contains
             self%windows%built(i) = .false.
             window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
             window%uncertain = 0.0_rk
+            window%passing = 0.0_rk
             any_improved = .true.
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &

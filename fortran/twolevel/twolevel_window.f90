@@ -70,6 +70,7 @@ module twolevel_window
       !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
       !! last [Pa m^1/2]: what they lack by it, and how large it may be
       real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
+      real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
    contains
       procedure :: build
       procedure :: edge_length
@@ -395,8 +396,9 @@ contains
       intensity = self%found
       intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
       intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
-      intensity%k1_error = intensity%k1_error + self%uncertain(1)
-      intensity%k2_error = intensity%k2_error + self%uncertain(2)
+      intensity%k1_error = intensity%k1_error + self%uncertain(1) + self%passing(1)
+      intensity%k2_error = intensity%k2_error + self%uncertain(2) + self%passing(2)
+      intensity%passing_error = maxval(self%passing)
       call complete_errors(self%model%elasticity%crack_modulus(), intensity)
    end function with_coarse_error
 
