@@ -66,6 +66,7 @@ contains
 
       call timers%start(phase_discretize)
       self%rock = new_rock(scene%material, scene%fluid)
+      if (allocated(self%rock_resistance)) deallocate (self%rock_resistance)
       if (allocated(scene%regions)) then
          call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, self%rock)
          self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
