@@ -79,9 +79,8 @@ Line divided(const Line& line, const SizeField& size) {
         const Vec2 here = line[k];
         bool is_corner = k + 1 == line.size() || distance(line[k - 1], here) > size(here);
         if (k + 1 < line.size())
-            is_corner =
-                is_corner || distance(here, line[k + 1]) > size(here) ||
-                angle_between(here - line[k - 1], line[k + 1] - here) > sharp_turn;
+            is_corner = is_corner || distance(here, line[k + 1]) > size(here) ||
+                        angle_between(here - line[k - 1], line[k + 1] - here) > sharp_turn;
         if (!is_corner && distance(last, here) < size(here))
             continue;
         if (is_corner && distance(last, here) < shortest * size(here) && !is_bound.back()) {

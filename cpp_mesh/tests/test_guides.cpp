@@ -26,7 +26,8 @@ struct Guides {
 double length_on(const ApiMesh& mesh, double a, double b, double c) {
     double length = 0.0;
     for (int f = 0; f < mesh.counts.n_faces; ++f) {
-        const Point p = mesh.node(mesh.face_nodes[2 * f]), q = mesh.node(mesh.face_nodes[2 * f + 1]);
+        const Point p = mesh.node(mesh.face_nodes[2 * f]),
+                    q = mesh.node(mesh.face_nodes[2 * f + 1]);
         if (std::abs(a * p[0] + b * p[1] - c) < 1e-12 && std::abs(a * q[0] + b * q[1] - c) < 1e-12)
             length += std::hypot(q[0] - p[0], q[1] - p[1]);
     }

@@ -74,7 +74,7 @@ contains
                local%matrix(at(i), at(j)) = local%matrix(at(i), at(j)) &
                                             + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
                                                                    matmul(resistivity(:, :, kind), &
-                                                                          lever(:, j)))
+                                                                                       lever(:, j)))
             end do
             local%coupling(at(j), c) = 0.5_rk*sign_out(j)*length(j)
          end do

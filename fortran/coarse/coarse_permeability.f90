@@ -1,17 +1,18 @@
 !> The permeability of cells in a body with regions.
 !!
-!! The mesh does not follow the outlines of regions. A cell within one region has its permeability; a
-!! cell that outlines cut has that of layers as thick as the parts of the cell, which lie as the
+!! The mesh follows the outlines of regions where there is room (mesh_spec_t%guides), not near
+!! fractures and what has grown. A cell within one region has its permeability; a cell that outlines
+!! cut has that of layers as thick as the parts of the cell, which lie as the
 !! outline does there: the pressure gradient along the layers and the flux across them are the same
-!! in all, so for two of them with shares f and 1 - f and the normal n (Backus 1962 for flow)
+!! in all, so for two of them with shares f and 1 - f and the normal n (Milton 2002)
 !!   K = f K1 + (1 - f) K2 - f (1 - f) (dK n)(dK n)^T/(n . ((1 - f) K1 + f K2) n),  dK = K1 - K2:
 !! the mean along, the harmonic mean across. It is symmetric and positive definite as K1 and K2 are.
 !! Its inverse follows from theirs in the same way with along and across exchanged; so found, it
 !! stays definite where the two rocks differ by 1e12 (scene_check_regions allows no more).
 !!
-!! In a cell an outline counts as a straight line with its mean direction there, placed such that the
-!! region has its share of the cell. Each line cuts the region's part off what later regions have
-!! left, so regions that share an outline leave nothing between them.
+!! In a cell an outline counts as a straight line with its mean direction there, placed such that
+!! the region has its share of the cell. Each line cuts the region's part off what later regions
+!! have left, so regions that share an outline leave nothing between them.
 module coarse_permeability
    use base_clip, only: left_part
    use base_kinds, only: ik, rk

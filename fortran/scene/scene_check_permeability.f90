@@ -25,6 +25,8 @@ contains
             call check_record(sheet, i, sheet%has("fluid"), "a scene with &fluid", error)
          case ("region")
             call check_record(sheet, i, .true., "a region", error)
+         case default
+            cycle
          end select
          if (allocated(error)) return
       end do

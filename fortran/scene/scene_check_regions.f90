@@ -87,7 +87,7 @@ contains
          name = "permeability"
          if (.not. sheet%records(sheet%find("region", i))%is_given(name)) name = "permeability_xx"
          call refuse(error, sheet, sheet%find("region", i), name, "of region '"// &
-                     trim(scene%regions(i)%name)//"' and the permeability of the rock around it "// &
+                    trim(scene%regions(i)%name)//"' and the permeability of the rock around it "// &
                      "or of another region differ by more than a factor of 1e12 but must not")
          return
       end do
@@ -117,9 +117,9 @@ contains
       case ("parabola")
          call check_list(sheet, record, region, "x_vertex", region%x_vertex, 1, 2, error)
          if (.not. allocated(error)) call check_equal(sheet, record, region, "y_vertex", &
-                                               region%y_vertex, "x_vertex", region%x_vertex, error)
+                                                region%y_vertex, "x_vertex", region%x_vertex, error)
          if (.not. allocated(error)) call check_equal(sheet, record, region, "curvature", &
-                                              region%curvature, "x_vertex", region%x_vertex, error)
+                                               region%curvature, "x_vertex", region%x_vertex, error)
          return
       case ("half_plane")
          call check_list(sheet, record, region, "x", region%x, 2, 2, error)
@@ -128,7 +128,7 @@ contains
          if (.not. allocated(error)) call check_list(sheet, record, region, "x_other", &
                                                      region%x_other, 2, most_points, error)
          if (.not. allocated(error)) call check_equal(sheet, record, region, "y_other", &
-                                                 region%y_other, "x_other", region%x_other, error)
+                                                   region%y_other, "x_other", region%x_other, error)
       case default
          call check_list(sheet, record, region, "x", region%x, 3, 2*most_points, error)
       end select
@@ -201,8 +201,8 @@ contains
          if (region%shape /= "half_plane") then
             edges = first_crossing(corners)
             if (edges(1) > 0) then
-               call refuse(error, sheet, record, name, "and the rest "//whose//"give an outline "// &
-                           "that crosses or touches itself near "//place_text(corners(:, edges(1))) &
+              call refuse(error, sheet, record, name, "and the rest "//whose//"give an outline "// &
+                          "that crosses or touches itself near "//place_text(corners(:, edges(1))) &
                            //" but its edges must meet at their ends only")
                return
             end if

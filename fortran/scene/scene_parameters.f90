@@ -93,7 +93,7 @@ module scene_parameters
       group_t("region", repeated=.true., scenes=in_fluid, &
               meaning="A part of the body with a permeability of its own; it may reach beyond "// &
               "the body, and fractures may cross it. Regions count in the order of the file: "// &
-              "where two overlap, the later one. Cells need not follow its outline: one that it "// &
+             "where two overlap, the later one. Cells need not follow its outline: one that it "// &
               "cuts takes the layered mean of both sides, so a region should be wider than a "// &
               "few cells."), &
       group_t("fracture", repeated=.true., &

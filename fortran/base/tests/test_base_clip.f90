@@ -40,7 +40,7 @@ contains
 
       ends = reshape(line*1.0_rk, [2, 2])
       call checks%is_close(polygon_area(left_part(corners, ends)), area, none, name)
-      call checks%is_close(polygon_area(left_part(corners(:, size(corners, 2):1:-1), ends)), -area, &
+     call checks%is_close(polygon_area(left_part(corners(:, size(corners, 2):1:-1), ends)), -area, &
                            none, name//", clockwise")
    end subroutine expect
 

@@ -174,7 +174,7 @@ contains
       slope(:, 1) = [0.7e6_rk, -0.4e6_rk]
       ! The second gradient differs by a multiple of the normal.
       flux = dot_product(normal, applied(first, slope(:, 1)))
-      slope(:, 2) = slope(:, 1) + normal*(flux - dot_product(normal, applied(second, slope(:, 1)))) &
+     slope(:, 2) = slope(:, 1) + normal*(flux - dot_product(normal, applied(second, slope(:, 1)))) &
                     /dot_product(normal, applied(second, normal))
       rock = new_rock(scene%material, scene%fluid)
       call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
@@ -196,7 +196,7 @@ contains
          do k = 1, 3
             call corner_gradient(mesh, rock%resistivity, regions, regions%flux, pressure, c, k, &
                                  gradient)
-            call checks%is_close(norm2(gradient - slope(:, side))/norm2(slope), 0.0_rk, 1.0e-10_rk, &
+           call checks%is_close(norm2(gradient - slope(:, side))/norm2(slope), 0.0_rk, 1.0e-10_rk, &
                                  name//": gradient")
          end do
       end do

@@ -127,7 +127,7 @@ contains
       do i = 1, merge(size(a%regions), 0, allocated(a%regions))
          associate (p => a%regions(i), q => b%regions(i))
             if (p%name /= q%name .or. p%shape /= q%shape) return
-            if (.not. (same(numbers(p%x), numbers(q%x)) .and. same(numbers(p%y), numbers(q%y)) .and. &
+          if (.not. (same(numbers(p%x), numbers(q%x)) .and. same(numbers(p%y), numbers(q%y)) .and. &
                        same(numbers(p%x_other), numbers(q%x_other)) .and. &
                        same(numbers(p%y_other), numbers(q%y_other)) .and. &
                        same(numbers(p%x_vertex), numbers(q%x_vertex)) .and. &

@@ -91,54 +91,54 @@ contains
                   "is already taken on line 4 but must be unique")
       call refuse(6, "&region name='h' shape='disc' x=1.5, 1.5", ":6: &region: shape is 'disc' "// &
                   "but must be 'polygon', 'half_plane', 'band' or 'parabola'"//doc)
-      call refuse(6, "&region name='h' shape='half_plane' x=1.5, 1.5 x_vertex=1", ":6: &region: "// &
-                  "x_vertex is given, but only the shape 'parabola' has it, and not 'half_plane'"// &
+     call refuse(6, "&region name='h' shape='half_plane' x=1.5, 1.5 x_vertex=1", ":6: &region: "// &
+                 "x_vertex is given, but only the shape 'parabola' has it, and not 'half_plane'"// &
                   doc)
       call refuse(9, "  x_other=-1, 3 permeability=1e-16 /", ":8: &region: y_other [m], which "// &
                   "the shape 'band' needs, is missing"//doc)
       call refuse(8, "&region name='b' shape='band' x=-1, 0.5, 3", ":8: &region: y [m], which "// &
                   "the shape 'band' needs, is missing"//doc)
       call refuse(10, "&region name='c' shape='parabola' x=1 x_vertex=1.2, 1.4 y_vertex=2*0.5", &
-                  ":10: &region: x is given, but the shape 'parabola' has x_vertex, y_vertex and "// &
+                ":10: &region: x is given, but the shape 'parabola' has x_vertex, y_vertex and "// &
                   "curvature instead"//doc)
       call refuse(3, "", ":4: &region: needs a fluid, but the group &fluid is missing"//doc)
    end subroutine check_names
 
    subroutine check_points()
-      call refuse(5, "  y=0.1, 0.1, 0.4 permeability=1e-14 /", ":5: &region: y of region 'p' has "// &
+    call refuse(5, "  y=0.1, 0.1, 0.4 permeability=1e-14 /", ":5: &region: y of region 'p' has "// &
                   "3 values but must have as many as x, 4"//doc)
       call refuse(4, "&region name='p' x=0.1, 0.5", ":4: &region: x of region 'p' has 2 values "// &
                   "but the shape 'polygon' must have 3 to 2000"//doc)
       call refuse(6, "&region name='h' shape='half_plane' x=1.5, 1.5, 1.5", ":6: &region: x of "// &
                   "region 'h' has 3 values but the shape 'half_plane' must have 2"//doc)
-      call refuse(7, "  y=2*1.0 permeability=1e-14 /", ":6: &region: x of region 'h' and y give "// &
+     call refuse(7, "  y=2*1.0 permeability=1e-14 /", ":6: &region: x of region 'h' and y give "// &
                   "one point twice but must give two, a line"//doc)
-      call refuse(11, "  curvature=1.0 permeability=1e-13 /", ":11: &region: curvature of region "// &
+    call refuse(11, "  curvature=1.0 permeability=1e-13 /", ":11: &region: curvature of region "// &
                   "'c' has 1 value but must have as many as x_vertex, 2"//doc)
       ! A bow tie; a spike; corners on an edge; parabolas and curves that cross.
-      call refuse(5, "  y=0.1, 0.4, 0.1, 0.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
+    call refuse(5, "  y=0.1, 0.4, 0.1, 0.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
                   "of region 'p' give an outline that crosses or touches itself near "// &
                   "(0.1, 0.1) but its edges must meet at their ends only"//doc)
-      call refuse(5, "  y=0.1, 0.3, 0.2, 0.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
+    call refuse(5, "  y=0.1, 0.3, 0.2, 0.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
                   "of region 'p' give an outline that crosses or touches itself near "// &
-                  "(0.5, 0.3) but its edges must meet at their ends only"//doc, &
+                  "(0.1, 0.1) but its edges must meet at their ends only"//doc, &
                   and_4="&region name='p' x=0.1, 0.5, 0.5, 0.5")
       call refuse(11, "  curvature=2.0, 1.0 permeability=1e-13 /", ":10: &region: x_vertex and "// &
                   "the rest of region 'c' give an outline that crosses or touches itself near ")
       call refuse(9, "  x_other=3, -1 y_other=0.9, 0.9 permeability=1e-16 /", ":8: &region: x "// &
                   "and the rest of region 'b' give an outline that crosses or touches itself near ")
-      call refuse(5, "  y=1.1, 1.1, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
+    call refuse(5, "  y=1.1, 1.1, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
                   "of region 'p' give a region without any part of the body but must give one "// &
                   "that holds some of it"//doc)
-      call refuse(5, "  y=1.0, 1.0, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
+    call refuse(5, "  y=1.0, 1.0, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
                   "of region 'p' give a region without any part of the body but must give one "// &
                   "that holds some of it"//doc)
    end subroutine check_points
 
    subroutine check_permeability()
-      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: permeability [m2], which a region "// &
+    call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: permeability [m2], which a region "// &
                   "needs, is missing"//doc)
-      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
+     call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
                   "is -1e-14 but must be a finite number greater than 0.0 [m2]"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-14 permeability_xx=1e-14 /", &
                   ":5: &region: permeability is given beside components of the tensor but must "// &
@@ -146,11 +146,11 @@ contains
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 /", ":6: &region: permeability_yy is "// &
                   "missing but must be given with the other components of the tensor"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-14 "// &
-                  "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must be "// &
+               "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must be "// &
                   "smaller than sqrt(permeability_xx permeability_yy), for the tensor must be "// &
                   "positive definite"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-28 /", ":5: &region: permeability "// &
-                  "of region 'p' and the permeability of the rock around it or of another region "// &
+                "of region 'p' and the permeability of the rock around it or of another region "// &
                   "differ by more than a factor of 1e12 but must not"//doc)
    end subroutine check_permeability
 
