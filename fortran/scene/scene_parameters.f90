@@ -93,9 +93,9 @@ module scene_parameters
       group_t("region", repeated=.true., scenes=in_fluid, &
               meaning="A part of the body with a permeability of its own; it may reach beyond "// &
               "the body, and fractures may cross it. Regions count in the order of the file: "// &
-             "where two overlap, the later one. Cells need not follow its outline: one that it "// &
-              "cuts takes the layered mean of both sides, so a region should be wider than a "// &
-              "few cells."), &
+             "where two overlap, the later one. The coarse cells follow its outline where there "// &
+              "is room; one that the outline cuts, near fractures and where these have grown, "// &
+              "takes the mean of layers, so a region should be wider than a cell."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary. With a fluid such an end is "// &

@@ -102,6 +102,16 @@ contains
          scene%regions(1)%y_other = [b, b]
          scene%regions(2) = new_region("half_plane", [-1.0_rk, 2.0_rk], [b, b], 0.1_rk)
          exact = a + (b - a)*contrast + (1.0_rk - b)*0.1_rk
+      case ("thin across")  ! 0.03 wide, narrower than cells may be
+         allocate (scene%regions(1))
+         scene%regions(1) = new_region("polygon", [a, a + 0.03_rk, a + 0.03_rk, a], &
+                                       [-1, -1, 2, 2]*1.0_rk, 1.0_rk/contrast)
+         exact = 1.0_rk/(0.97_rk + 0.03_rk*contrast)
+      case ("thin along")
+         allocate (scene%regions(1))
+         scene%regions(1) = new_region("polygon", [-1, 2, 2, -1]*1.0_rk, &
+                                       [b, b, b + 0.03_rk, b + 0.03_rk], contrast)
+         exact = 0.97_rk + 0.03_rk*contrast
       case ("diagonal")  ! singular at the corners, p ~ r^(2/3)
          allocate (scene%regions(1))
          scene%regions(1) = new_region("half_plane", [0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], 3.0_rk)
