@@ -93,7 +93,7 @@ module scene_parameters
       group_t("region", repeated=.true., scenes=in_fluid, &
               meaning="A part of the body with a permeability of its own; it may reach beyond "// &
               "the body, and fractures may cross it. Regions count in the order of the file: "// &
-             "where two overlap, the later one. The coarse cells follow its outline where there "// &
+            "where two overlap, the later one. The coarse cells follow its outline where there "// &
               "is room; one that the outline cuts, near fractures and where these have grown, "// &
               "takes the mean of layers, so a region should be wider than a cell."), &
       group_t("fracture", repeated=.true., &
