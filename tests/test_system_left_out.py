@@ -50,6 +50,7 @@ WELL = """\
 &injection fracture = 'f', rate = 5.0e-9 /
 """
 CROSSING = "&fracture name = 'g', x = 0.9, 1.1, y = 1.1, 0.9, friction = 0.5, aperture = 1.0e-3 /\n"
+BAND = "&region name = 'r', x = 0, 2, 2, 0, y = 1.2, 1.2, 1.8, 1.8, permeability = 1e-18 /\n"
 COARSE = "&coarse size_fracture = 0.1, size_boundary = 0.5 /\n"
 
 SCENES = {
@@ -72,6 +73,7 @@ SCENES = {
     "porous body": POROUS + "&coarse size_boundary = 0.5 /\n",
     "with a well": POROUS + COARSE + WELL,
     "with a joint": POROUS + COARSE + WELL + CROSSING,
+    "with a region": POROUS + COARSE + WELL + BAND,
     "two levels": POROUS
     + COARSE
     + WELL
@@ -85,17 +87,28 @@ TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement"
 CONTACT = ("contact_law",)
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
 JOINTS = ("coarse_joint_flow",)
+REGIONS = ("coarse_permeability", "scene_region_outline", "scene_check_regions", "base_clip")
 FILES = ("output_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,
     "open crack": FLUID + TIPS + CONTACT + FILES,
     "its intensities": FLUID + CONTACT + FILES,
     "and VTU files": FLUID + CONTACT,
-    "growing wings": FLUID + FILES,
-    "porous body": ("mechanics_", *WINDOWS, *TIPS, *CONTACT, "coarse_newton", *JOINTS, *FILES),
-    "with a well": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *FILES),
-    "with a joint": ("mechanics_", *WINDOWS, *TIPS, *FILES),
-    "two levels": ("mechanics_", *JOINTS, *FILES),
+    "growing wings": FLUID + REGIONS + FILES,
+    "porous body": (
+        "mechanics_",
+        *WINDOWS,
+        *TIPS,
+        *CONTACT,
+        "coarse_newton",
+        *JOINTS,
+        *REGIONS,
+        *FILES,
+    ),
+    "with a well": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *REGIONS, *FILES),
+    "with a joint": ("mechanics_", *WINDOWS, *TIPS, *REGIONS, *FILES),
+    "with a region": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *FILES),
+    "two levels": ("mechanics_", *JOINTS, *REGIONS, *FILES),
 }
 # The same instrument sees them where they are wanted.
 PRESENT = {
@@ -107,6 +120,7 @@ PRESENT = {
     "porous body": ("coarse_",),
     "with a well": ("coarse_newton", *CONTACT),
     "with a joint": ("coarse_newton", *CONTACT, *JOINTS),
+    "with a region": ("coarse_newton", *CONTACT, *REGIONS),
     "two levels": (*FLUID, *WINDOWS, *TIPS, *CONTACT),
 }
 

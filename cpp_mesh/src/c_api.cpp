@@ -108,6 +108,16 @@ std::vector<std::array<double, 2>> radii_at_ends(int n_fractures, const double* 
     return radii;
 }
 
+std::vector<std::vector<Vec2>> guides_from(const cm_spec& given) {
+    std::vector<std::vector<Vec2>> guides;
+    const double* xy = given.guide_xy;
+    for (int32_t i = 0; i < given.n_guides; ++i) {
+        guides.push_back(points_from(given.guide_count[i], xy));
+        xy += 2 * given.guide_count[i];
+    }
+    return guides;
+}
+
 Specification specification_from(const cm_spec* given, int n_fractures) {
     require(given != nullptr, "no specification was given");
     Specification spec;
@@ -120,6 +130,7 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     if (given->end_radius != nullptr)
         spec.rosette_radii.at_end = radii_at_ends(n_fractures, given->end_radius);
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
+    spec.guides = guides_from(*given);
     return spec;
 }
 

@@ -3,6 +3,7 @@
 #include "check_mesh.hpp"
 #include "errors.hpp"
 #include "gmsh_session.hpp"
+#include "guides.hpp"
 #include "judge.hpp"
 #include "lone_sectors.hpp"
 #include "mesh.hpp"
@@ -22,6 +23,22 @@ bool is_for_elements(const Specification& spec) {
            (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
 }
 
+// The ends of guides on the boundary have the nodes from the given number on.
+void embed_guides(const GuideEdges& guides, int first_on_boundary, Region& region,
+                  std::vector<Vec2>& xy) {
+    std::vector<int> node_of_place;
+    for (std::size_t p = 0; p < guides.places.size(); ++p) {
+        if (guides.on_boundary[p]) {
+            node_of_place.push_back(first_on_boundary++);
+        } else {
+            node_of_place.push_back(static_cast<int>(xy.size()));
+            xy.push_back(guides.places[p]);
+        }
+    }
+    for (const auto& edge : guides.edges)
+        region.embedded.push_back({node_of_place[edge[0]], node_of_place[edge[1]]});
+}
+
 // The sizes are wanted at the nodes of another mesh, or else grow from the fractures.
 Mesh make_mesh(const Specification& specification, const Network& network,
                std::shared_ptr<const NodalSizes> wanted) {
@@ -31,7 +48,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     const Domain& domain = specification.domain;
     const Tolerances tolerances = tolerances_for(domain.box(), specification.size_fracture);
 
-    const Graph graph = judged_graph(specification, network);
+    Graph graph = judged_graph(specification, network);
     if (wanted != nullptr) {
         mesh.size = SizeField(std::move(wanted));
     } else {
@@ -52,6 +69,14 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     if (mesh.size.is_scale_free() || (!specification.is_window && !joints_of(graph).empty()))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);
 
+    const std::size_t n_given = graph.points.size();
+    GuideEdges guides;
+    if (!specification.guides.empty()) {
+        guides = guide_edges(specification.guides, domain, graph, mesh.size);
+        for (std::size_t p = 0; p < guides.places.size(); ++p)
+            if (guides.on_boundary[p])
+                graph.points.push_back({guides.places[p], true});
+    }
     std::vector<Vec2>& xy = mesh.plane.xy;
     std::vector<int> node_of_point;
     for (const GraphPoint& point : graph.points) {
@@ -68,6 +93,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     region.points = nodes_of_lone_points(graph, node_of_point);
     for (const std::vector<int>& ring : skeleton.rings)
         region.loops.push_back(ring);
+    embed_guides(guides, static_cast<int>(n_given), region, xy);
 
     const int n_fixed = static_cast<int>(xy.size());
     mesh.plane.cells = GmshSession::shared()->triangulate(region, mesh.size, xy);

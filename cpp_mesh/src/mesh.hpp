@@ -20,7 +20,8 @@ struct Specification {
     bool is_window = false;
     int rosette_sectors = 0;
     RosetteRadii rosette_radii;
-    std::vector<Vec2> fixed_points; // become nodes
+    std::vector<Vec2> fixed_points;        // become nodes
+    std::vector<std::vector<Vec2>> guides; // lines that cells follow where there is room
 };
 
 // How a remeshed mesh covers the one before.

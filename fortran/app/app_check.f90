@@ -31,6 +31,7 @@ contains
                                                         scene%has_fluid()))
          write (unit, "(a,i0,a,es10.3,a)") "fractures:    ", size(scene%fractures), ", together", &
             length, " m"
+         if (allocated(scene%regions)) write (unit, "(a,i0)") "regions:      ", size(scene%regions)
          if (scene%has_fluid()) write (unit, "(a,i0)") "wells:        ", size(scene%injections)
          write (unit, "(a,i0)") "probes:       ", size(scene%probes)
          if (scene%has_fluid()) then

@@ -29,7 +29,8 @@ contains
    subroutine find_flux_stencil(mesh, resistivity, is_given, given, regions, region, response, &
                                 share, info)
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: resistivity(2, 2)  !< gradient = -resistivity flux [Pa s/m2]
+      !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
+      real(rk), intent(in) :: resistivity(:, :, :)
       logical, intent(in) :: is_given(:)  !< (sides) the scalar is given; else nothing flows there
       real(rk), intent(in) :: given(:)  !< (sides) its value [Pa]
       type(regions_t), intent(in) :: regions
@@ -52,15 +53,16 @@ contains
    !> What the cells' corners around the vertex give.
    subroutine add_corners(mesh, resistivity, regions, region, local)
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: resistivity(2, 2)  !< [Pa s/m2]
+      real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-      integer(ik) :: at(2), c, cell, faces(2), i, j, k
+      integer(ik) :: at(2), c, cell, faces(2), i, j, k, kind
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, w
 
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
+         kind = min(cell, size(resistivity, 3, kind=ik))
          k = findloc(regions%regions_of_block(:, cell), region, dim=1)
          call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
          do j = 1, 2
@@ -71,7 +73,8 @@ contains
             do i = 1, 2
                local%matrix(at(i), at(j)) = local%matrix(at(i), at(j)) &
                                             + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
-                                                                   matmul(resistivity, lever(:, j)))
+                                                                   matmul(resistivity(:, :, kind), &
+                                                                                       lever(:, j)))
             end do
             local%coupling(at(j), c) = 0.5_rk*sign_out(j)*length(j)
          end do
@@ -148,7 +151,7 @@ contains
    pure subroutine corner_gradient(mesh, resistivity, regions, responses, scalars, cell, k, &
                                    gradient)
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: resistivity(2, 2)  !< [Pa s/m2]
+      real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
       type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
       real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
@@ -172,7 +175,7 @@ contains
             velocity = velocity + sign_out(j)*lever(:, j)*flux
          end do
       end associate
-      gradient = -matmul(resistivity, velocity)
+      gradient = -matmul(resistivity(:, :, min(cell, size(resistivity, 3, kind=ik))), velocity)
    end subroutine corner_gradient
 
 end module coarse_diffusion

@@ -19,6 +19,7 @@ module coarse_model
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
    use coarse_regions, only: regions_t
+   use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: place_tips, tip_springs
@@ -41,6 +42,9 @@ module coarse_model
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       type(joints_t) :: joints  !< where they exchange it otherwise
       real(rk), allocatable :: ahead(:)  !< (tips) how far the mesh goes on beyond each, closed [m]
+      !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
+      !! regions differ [-]
+      real(rk), allocatable :: rock_resistance(:)
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -62,6 +66,11 @@ contains
 
       call timers%start(phase_discretize)
       self%rock = new_rock(scene%material, scene%fluid)
+      if (allocated(self%rock_resistance)) deallocate (self%rock_resistance)
+      if (allocated(scene%regions)) then
+         call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, self%rock)
+         self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
+      end if
       self%sides = scene%sides
       self%drained = any(scene%sides%pressure_given)
       associate (choice => scene%discretization, fluid => scene%fluid)
@@ -178,6 +187,9 @@ contains
          call self%condensed%support(tip_springs(mesh%fracture, self%rock, self%condensed, &
                                                  self%ahead))
          call place_tips(mesh%fracture, self%condensed%length, self%ahead, self%cells)
+         if (allocated(self%rock_resistance)) then
+            self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
+         end if
       end if
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)

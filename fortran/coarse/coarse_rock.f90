@@ -6,7 +6,7 @@ module coarse_rock
    implicit none(type, external)
    private
 
-   public :: new_rock, rock_t
+   public :: mean_mobility, new_rock, resistivity_of, rock_t
 
    !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants.
    type :: rock_t
@@ -15,9 +15,10 @@ module coarse_rock
       real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
       real(rk) :: biot = 0.0_rk  !< alpha of the stress in the plane [-]
       real(rk) :: storage = 0.0_rk  !< S at fixed strain in the plane [1/Pa]
-      real(rk) :: resistivity(2, 2) = 0.0_rk  !< inverse of K/mu [Pa s/m2]
-      real(rk) :: mobility = 0.0_rk  !< mean of K/mu [m2/(Pa s)]
-      real(rk) :: permeability(3) = 0.0_rk  !< K_xx, K_yy, K_xy [m2]
+      real(rk) :: mobility = 0.0_rk  !< mean of K/mu of the scene's rock [m2/(Pa s)]
+      ! (.., 1) of a uniform rock, (.., n_cells) where regions differ (coarse_permeability):
+      real(rk), allocatable :: permeability(:, :)  !< (3, ..) K_xx, K_yy, K_xy [m2]
+      real(rk), allocatable :: resistivity(:, :, :)  !< (2, 2, ..) inverse of K/mu [Pa s/m2]
    end type rock_t
 
 contains
@@ -28,7 +29,7 @@ contains
       type(fluid_t), intent(in) :: fluid
       type(rock_t) :: rock
 
-      real(rk) :: determinant, modulus
+      real(rk) :: modulus
 
       associate (e => material%young, nu => material%poisson)
          rock%young = e
@@ -45,15 +46,34 @@ contains
          rock%biot = material%biot*2.0_rk*rock%shear/modulus
          rock%storage = rock%storage + material%biot**2/modulus
       end if
-      rock%permeability = [material%permeability_xx, material%permeability_yy, &
-                           material%permeability_xy]
-      determinant = material%permeability_xx*material%permeability_yy - material%permeability_xy**2
-      rock%resistivity(1, 1) = material%permeability_yy
-      rock%resistivity(2, 2) = material%permeability_xx
-      rock%resistivity(1, 2) = -material%permeability_xy
-      rock%resistivity(2, 1) = -material%permeability_xy
-      rock%resistivity = rock%resistivity*(fluid%viscosity/determinant)
-      rock%mobility = sqrt(determinant)/fluid%viscosity
+      allocate (rock%permeability(3, 1), rock%resistivity(2, 2, 1))
+      rock%permeability(:, 1) = [material%permeability_xx, material%permeability_yy, &
+                                 material%permeability_xy]
+      rock%resistivity(:, :, 1) = resistivity_of(rock%permeability(:, 1), fluid%viscosity)
+      rock%mobility = mean_mobility(rock%permeability(:, 1), fluid%viscosity)
    end function new_rock
+
+   !> The inverse of K/mu.
+   pure function resistivity_of(permeability, viscosity) result(resistivity)
+      real(rk), intent(in) :: permeability(3)  !< K_xx, K_yy, K_xy [m2]
+      real(rk), intent(in) :: viscosity  !< [Pa s]
+      real(rk) :: resistivity(2, 2)  !< [Pa s/m2]
+      real(rk) :: determinant
+
+      determinant = permeability(1)*permeability(2) - permeability(3)**2
+      resistivity(1, 1) = permeability(2)
+      resistivity(2, 2) = permeability(1)
+      resistivity(1, 2) = -permeability(3)
+      resistivity(2, 1) = -permeability(3)
+      resistivity = resistivity*(viscosity/determinant)
+   end function resistivity_of
+
+   !> The geometric mean of K/mu over directions [m2/(Pa s)].
+   pure real(rk) function mean_mobility(permeability, viscosity) result(mobility)
+      real(rk), intent(in) :: permeability(3)  !< K_xx, K_yy, K_xy [m2]
+      real(rk), intent(in) :: viscosity  !< [Pa s]
+
+      mobility = sqrt(permeability(1)*permeability(2) - permeability(3)**2)/viscosity
+   end function mean_mobility
 
 end module coarse_rock

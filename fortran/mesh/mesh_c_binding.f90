@@ -32,6 +32,9 @@ module mesh_c_binding
       integer(c_int32_t) :: n_fixed = 0
       type(c_ptr) :: fixed = c_null_ptr
       type(c_ptr) :: end_radius = c_null_ptr
+      integer(c_int32_t) :: n_guides = 0
+      type(c_ptr) :: guide_count = c_null_ptr
+      type(c_ptr) :: guide_xy = c_null_ptr
    end type cm_spec_t
 
    !> Sizes of the arrays below.

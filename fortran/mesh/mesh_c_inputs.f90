@@ -28,6 +28,9 @@ module mesh_c_inputs
       real(rk), allocatable :: fixed_points(:, :)
       !> (2, n_fractures) rosette radius at start and end [m]; 0: rosette_radius
       real(rk), allocatable :: end_radius(:, :)
+      integer(ik), allocatable :: guide_count(:)  !< points of each guide
+      !> (2, n) lines that cells follow where there is room, one after the other [m]
+      real(rk), allocatable :: guides(:, :)
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -83,6 +86,11 @@ contains
             return
          end if
          if (n_fractures > 0) c_spec%end_radius = c_loc(spec%end_radius)
+      end if
+      if (allocated(spec%guides)) then
+         c_spec%n_guides = ubound(spec%guide_count, 1)
+         c_spec%guide_count = c_loc(spec%guide_count)
+         c_spec%guide_xy = c_loc(spec%guides)
       end if
    end subroutine prepare_spec
 

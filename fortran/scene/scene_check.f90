@@ -8,6 +8,8 @@ module scene_check
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
+   use scene_check_permeability, only: check_given_permeability, check_tensor
+   use scene_check_regions, only: check_given_regions, check_regions
    use scene_check_sides, only: check_parts, check_sides
    use scene_check_table, only: check_table
    use scene_parameters, only: groups
@@ -29,7 +31,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call check_names(sheet, error)
-      if (.not. allocated(error)) call check_permeability(sheet, error)
+      if (.not. allocated(error)) call check_given_permeability(sheet, error)
+      if (.not. allocated(error) .and. sheet%has("region")) call check_given_regions(sheet, error)
       if (.not. allocated(error)) call check_sides(sheet, error)
       if (.not. allocated(error)) call check_table(sheet, error)
       if (.not. allocated(error)) call check_injections(sheet, error)
@@ -43,6 +46,9 @@ contains
 
       call check_domain(sheet, scene, error)
       if (.not. allocated(error)) call check_material(sheet, scene, error)
+      if (.not. allocated(error) .and. allocated(scene%regions)) then
+         call check_regions(sheet, scene, error)
+      end if
       if (.not. allocated(error)) call check_parts(sheet, scene, error)
       if (.not. allocated(error)) call check_support(sheet, scene, error)
       if (scene%has_fluid()) then
@@ -59,7 +65,7 @@ contains
       if (.not. allocated(error)) call check_levels(sheet, scene, error)
    end subroutine check_scene
 
-   !> No two fractures, sides or probes have the same name.
+   !> No two fractures, regions, sides or probes have the same name.
    pure subroutine check_names(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -68,7 +74,7 @@ contains
 
       do i = 1, sheet%length
          select case (groups(sheet%records(i)%group)%name)
-         case ("fracture", "side", "probe")
+         case ("fracture", "region", "side", "probe")
             name = sheet%records(i)%value("name")
          case default
             cycle
@@ -83,30 +89,6 @@ contains
          end do
       end do
    end subroutine check_names
-
-   !> Permeability is a scalar or a tensor.
-   pure subroutine check_permeability(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      logical :: scalar, xx, yy, xy
-      integer :: i
-
-      i = sheet%find("material")
-      scalar = sheet%records(i)%is_given("permeability")
-      xx = sheet%records(i)%is_given("permeability_xx")
-      yy = sheet%records(i)%is_given("permeability_yy")
-      xy = sheet%records(i)%is_given("permeability_xy")
-      if (scalar .and. (xx .or. yy .or. xy)) then
-         call refuse(error, sheet, i, "permeability", "is given beside components of the "// &
-                     "tensor but must be given alone or not at all")
-      else if ((xx .neqv. yy) .or. (xy .and. .not. xx)) then
-         call refuse(error, sheet, i, merge("permeability_yy", "permeability_xx", xx), &
-                     "is missing but must be given with the other components of the tensor")
-      else if (sheet%has("fluid") .and. .not. (scalar .or. xx)) then
-         call refuse(error, sheet, i, "permeability", "[m2], which a scene with &fluid needs, "// &
-                     "is missing")
-      end if
-   end subroutine check_permeability
 
    !> Wells belong to a fracture.
    pure subroutine check_injections(sheet, error)
@@ -164,11 +146,8 @@ contains
                         "makes Skempton's coefficient B = alpha/(K S + alpha^2) of this rock "// &
                         rounded_text(skempton(m, fluid))//", but that must be at most 1; "// &
                         rounded_text(least_compressibility(m))//" 1/Pa would make it 1")
-         else if (.not. abs(m%permeability_xy) < &
-                  sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
-            call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &
-                        " but must be smaller than sqrt(permeability_xx permeability_yy), for "// &
-                        "the tensor must be positive definite")
+         else
+            call check_tensor(sheet, i, m, error)
          end if
       end associate
    end subroutine check_material

@@ -2,7 +2,7 @@
 !! the numbers used.
 module scene_defaults
    use base_kinds, only: rk
-   use scene_types, only: scene_t
+   use scene_types, only: material_t, region_t, scene_t
    implicit none(type, external)
    private
 
@@ -32,11 +32,28 @@ contains
             call default(d%rosette_radius, d%size_boundary)  ! without fractures
          end if
       end associate
+      if (allocated(scene%regions)) call complete(scene%material, scene%regions)
       do i = 1, size(scene%fractures)
          if (scene%fractures(i)%law /= "slip") cycle
          call default(scene%fractures(i)%slip_taper, 0.5_rk*scene%fractures(i)%length())
       end do
    end subroutine resolve_defaults
+
+   !> The rock of regions is that of the scene but for what they give themselves.
+   pure subroutine complete(material, regions)
+      type(material_t), intent(in) :: material  !< of the scene
+      type(region_t), intent(inout) :: regions(:)
+      type(material_t) :: own
+      integer :: i
+
+      do i = 1, size(regions)
+         own = regions(i)%material
+         regions(i)%material = material
+         regions(i)%material%permeability_xx = own%permeability_xx
+         regions(i)%material%permeability_yy = own%permeability_yy
+         regions(i)%material%permeability_xy = own%permeability_xy
+      end do
+   end subroutine complete
 
    !> Steps of a given length, or such that their error is small; fields as often as they are given,
    !! or a hundred times.

@@ -5,11 +5,12 @@ module scene_exchange
    use base_kinds, only: ik, rk
    use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
                                       exchange_side
+   use scene_exchange_rock, only: exchange_material, exchange_region
    use scene_exchange_values, only: exchange, radians, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t
-   use scene_types, only: material_t, name_length, probe_t, scene_t
+   use scene_types, only: probe_t, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -26,8 +27,8 @@ contains
       type(scene_t), intent(out) :: scene
       type(record_t) :: record
       type(value_t) :: value
-      integer :: i, n_fractures, n_injections, n_parts, n_point_loads, n_probes, n_restraints
-      integer :: side
+      integer :: i, n_fractures, n_injections, n_parts, n_point_loads, n_probes, n_regions
+      integer :: n_restraints, side
       logical :: is_rectangle
 
       allocate (scene%fractures(count_of(sheet, "fracture")))
@@ -35,6 +36,7 @@ contains
       allocate (scene%probes(count_of(sheet, "probe")))
       allocate (scene%restraints(count_of(sheet, "restraint")))
       allocate (scene%point_loads(count_of(sheet, "point_load")))
+      if (sheet%has("region")) allocate (scene%regions(count_of(sheet, "region")))
       value = sheet%records(sheet%find("domain"))%value("shape")
       is_rectangle = value%text == "rectangle"
       allocate (scene%parts(merge(0, count_of(sheet, "side"), is_rectangle)))
@@ -42,6 +44,7 @@ contains
       n_fractures = 0
       n_injections = 0
       n_probes = 0
+      n_regions = 0
       n_restraints = 0
       n_point_loads = 0
       do i = 1, sheet%length
@@ -50,6 +53,9 @@ contains
          case ("fracture")
             n_fractures = n_fractures + 1
             call exchange_fracture(record, scene%fractures(n_fractures), .true.)
+         case ("region")
+            n_regions = n_regions + 1
+            call exchange_region(record, scene%regions(n_regions), .true.)
          case ("side")
             if (is_rectangle) then
                value = record%value("name")
@@ -112,6 +118,13 @@ contains
                record = empty_record(group, 0_ik)
                call exchange_fracture(record, source%fractures(i), .false.)
                call drop_foreign(record, source%has_fluid())
+               call add_record(sheet, record)
+            end do
+         case ("region")
+            if (.not. allocated(source%regions)) cycle
+            do i = 1, size(source%regions)
+               record = empty_record(group, 0_ik)
+               call exchange_region(record, source%regions(i), .false.)
                call add_record(sheet, record)
             end do
          case ("side")
@@ -268,31 +281,6 @@ contains
          call exchange(record, "y_max", domain%y_max, reading)
       end select
    end subroutine exchange_domain
-
-   pure subroutine exchange_material(record, material, reading)
-      type(record_t), intent(inout) :: record
-      type(material_t), intent(inout) :: material
-      logical, intent(in) :: reading
-      character(len=name_length) :: plane
-
-      call exchange(record, "young", material%young, reading)
-      call exchange(record, "poisson", material%poisson, reading)
-      call exchange(record, "biot", material%biot, reading)
-      call exchange(record, "porosity", material%porosity, reading)
-      if (reading .and. record%is_set("permeability")) then
-         call exchange(record, "permeability", material%permeability_xx, reading)
-         material%permeability_yy = material%permeability_xx
-      end if
-      call exchange(record, "permeability_xx", material%permeability_xx, reading, nothing=0.0_rk)
-      call exchange(record, "permeability_yy", material%permeability_yy, reading, nothing=0.0_rk)
-      call exchange(record, "permeability_xy", material%permeability_xy, reading, nothing=0.0_rk)
-      call exchange(record, "density", material%density, reading, nothing=0.0_rk)
-      call exchange(record, "toughness", material%toughness, reading, nothing=unlimited)
-      plane = merge("stress", "strain", material%plane_stress)
-      call exchange(record, "plane", plane, reading)
-      material%plane_stress = plane == "stress"
-      call exchange(record, "storage", material%storage, reading)
-   end subroutine exchange_material
 
    pure subroutine exchange_fracture(record, fracture, reading)
       type(record_t), intent(inout) :: record

@@ -90,6 +90,12 @@ module scene_parameters
               meaning="The fluid in pores and fractures. A scene without this group is "// &
               "mechanics only, and can have neither injections nor pressures: finite elements "// &
               "on the whole body under a load that rises or falls."), &
+      group_t("region", repeated=.true., scenes=in_fluid, &
+              meaning="A part of the body with a permeability of its own; it may reach beyond "// &
+              "the body, and fractures may cross it. Regions count in the order of the file: "// &
+            "where two overlap, the later one. The coarse cells follow its outline where there "// &
+              "is room; one that the outline cuts, near fractures and where these have grown, "// &
+              "takes the mean of layers, so a region should be wider than a cell."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary. With a fluid such an end is "// &
@@ -222,6 +228,40 @@ module scene_parameters
                   derived=.true., &
                   meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
                   "about 0 if pressures count from vacuum"), &
+      parameter_t("region", "name", kind_name, need=need_always, &
+                  meaning="Name, different from that of every other region"), &
+      parameter_t("region", "shape", kind_choice, default="'polygon'", &
+                  choices="polygon|half_plane|band|parabola", &
+                  meaning="A polygon, all to the left of a line, between two curves, or to the "// &
+                  "right of a parabola or between two"), &
+      parameter_t("region", "x", kind_reals, "m", absent="a parabola", &
+                  meaning="x of a polygon's corners, either way round; of two points of the "// &
+                  "line; or along the first curve of a band"), &
+      parameter_t("region", "y", kind_reals, "m", absent="a parabola", meaning="y of the same"), &
+      parameter_t("region", "x_other", kind_reals, "m", need_choice, absent="no band", &
+                  of="shape=band", &
+                  meaning="x along the second curve of a band, the same way as the first"), &
+      parameter_t("region", "y_other", kind_reals, "m", need_choice, absent="no band", &
+                  of="shape=band", meaning="y along the second curve"), &
+      parameter_t("region", "x_vertex", kind_reals, "m", need_choice, absent="no parabola", &
+                  of="shape=parabola", &
+                  meaning="x of the vertex of one parabola or of two: x = x_vertex + curvature "// &
+                  "(y - y_vertex)^2"), &
+      parameter_t("region", "y_vertex", kind_reals, "m", need_choice, absent="no parabola", &
+                  of="shape=parabola", meaning="y of the vertex"), &
+      parameter_t("region", "curvature", kind_reals, "1/m", need_choice, absent="no parabola", &
+                  of="shape=parabola", meaning="Positive: open to the right; 0: a straight line"), &
+      parameter_t("region", "permeability", unit="m2", range=positive, &
+                  absent="see permeability_xx", &
+                  meaning="Isotropic permeability; either this or the tensor is required"), &
+      parameter_t("region", "permeability_xx", unit="m2", range=positive, &
+                  absent="see permeability", &
+                  meaning="Component xx of the permeability tensor"), &
+      parameter_t("region", "permeability_yy", unit="m2", range=positive, &
+                  absent="see permeability", &
+                  meaning="Component yy of the permeability tensor"), &
+      parameter_t("region", "permeability_xy", unit="m2", absent="0", &
+                  meaning="Component xy of the permeability tensor"), &
       parameter_t("fracture", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other fracture"), &
       parameter_t("fracture", "x", kind_reals, "m", need_always, &

@@ -2,9 +2,11 @@
 !> wrong units give, and values that do not go together. These are warnings; what cannot be
 !> simulated is refused (scene_check).
 module scene_plausible
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
+   use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
+   use scene_region_outline, only: body_part
    use scene_storage, only: skempton
    use scene_types, only: fracture_t, scene_t
    use scene_words, only: rounded_text
@@ -27,7 +29,7 @@ module scene_plausible
                          of_permeability = 5, of_toughness = 6, of_compressibility = 7, &
                          of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
                          of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
-                         of_stiff_fluid = 16
+                         of_stiff_fluid = 16, of_region = 17, of_width = 18
 
    ! The table keeps its own layout.
    !&<
@@ -66,7 +68,12 @@ module scene_plausible
               "fields are written at most once per step"), &
       doubt_t("fluid", "compressibility", "1/Pa", &
               "above 0, but Skempton's coefficient B exceeds 1", &
-              "a load makes a larger pressure than itself at once then; rock has B of 0.3 to 1")]
+              "a load makes a larger pressure than itself at once then; rock has B of 0.3 to 1"), &
+      doubt_t("region", "permeability", "m2", "above 1e-8", &
+              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+      doubt_t("region", "width", "m", "below size_boundary: twice its area over its outline", &
+              "cells may be wider and mix its permeability with that around it; make "// &
+              "size_boundary smaller")]
    !&>
 
 contains
@@ -82,6 +89,7 @@ contains
       call doubt_material(scene, has_fluid, list)
       call doubt_fractures(scene%fractures, has_fluid, list)
       if (has_fluid) call doubt_flow(scene, list)
+      if (allocated(scene%regions)) call doubt_regions(scene, list)
    end function doubts_of_scene
 
    pure subroutine doubt_material(scene, has_fluid, list)
@@ -124,6 +132,30 @@ contains
          end associate
       end do
    end subroutine doubt_fractures
+
+   !> Regions that the cells may miss, and their permeability.
+   pure subroutine doubt_regions(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk), allocatable :: corners(:, :)
+      real(rk) :: width
+      integer :: i
+      integer(ik) :: k, n
+
+      do i = 1, size(scene%regions)
+         associate (region => scene%regions(i), whose => " '"//trim(scene%regions(i)%name)//"'")
+            associate (largest => max(region%material%permeability_xx, &
+                                      region%material%permeability_yy))
+               call add(list, largest > 1.0e-8_rk, of_region, largest, whose)
+            end associate
+            corners = body_part(region, scene%domain)
+            n = size(corners, 2, kind=ik)
+            width = 2.0_rk*polygon_area(corners) &
+                    /sum([(norm2(corners(:, mod(k, n) + 1_ik) - corners(:, k)), k=1, n)])
+            call add(list, width < scene%discretization%size_boundary, of_width, width, whose)
+         end associate
+      end do
+   end subroutine doubt_regions
 
    !> What only a scene with a fluid has: the body is a rectangle then.
    pure subroutine doubt_flow(scene, list)

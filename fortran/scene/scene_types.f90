@@ -7,8 +7,8 @@ module scene_types
    public :: adaptive_t, boundary_part_t, boundary_side_t, discretization_t, domain_t, fluid_t
    public :: fracture_t, growth_t, in_situ_t
    public :: initial_t
-   public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, restraint_t, scene_t
-   public :: time_t
+   public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, region_t, restraint_t
+   public :: scene_t, time_t
    public :: name_length
 
    integer, parameter :: name_length = 64
@@ -36,6 +36,21 @@ module scene_types
       logical :: plane_stress = .false.
       character(len=name_length) :: storage = "thesis"  !< (alpha - phi)/K_dr; or "textbook"
    end type material_t
+
+   !> A part of the body with rock of its own.
+   type :: region_t
+      character(len=name_length) :: name = ""
+      character(len=name_length) :: shape = "polygon"  !< or "half_plane", "band", "parabola"
+      !> corners of a polygon, two points of the line that has the half-plane on its left, or the
+      !! first curve of a band [m]
+      real(rk), allocatable :: x(:), y(:)
+      real(rk), allocatable :: x_other(:), y_other(:)  !< second curve of a band [m]
+      !> one or two parabolas x = x_vertex + curvature (y - y_vertex)^2: right of it, between them
+      real(rk), allocatable :: x_vertex(:), y_vertex(:)  !< [m]
+      real(rk), allocatable :: curvature(:)  !< [1/m]
+      !> That of the scene but for what the region gives itself.
+      type(material_t) :: material
+   end type region_t
 
    !> Pore and fracture fluid.
    type :: fluid_t
@@ -188,6 +203,8 @@ module scene_types
       character(len=256) :: title = ""
       type(domain_t) :: domain
       type(material_t) :: material
+      !> in order: where they overlap the later one counts; unallocated: uniform rock
+      type(region_t), allocatable :: regions(:)
       type(fluid_t) :: fluid
       type(fracture_t), allocatable :: fractures(:)
       type(boundary_side_t) :: sides(4)  !< of a rectangle: left, right, bottom, top

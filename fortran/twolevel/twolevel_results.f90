@@ -140,6 +140,9 @@ contains
          matrix%node_displacement = nodal(:2, :)
          matrix%pressure = state%unknowns(3, :n)
          matrix%stress = stresses_of(simulation)
+         if (allocated(simulation%scene%regions)) then
+            matrix%permeability = simulation%model%rock%permeability
+         end if
          fracture%aperture = state%aperture
          fracture%jump_n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
          fracture%jump_t = 0.5_rk*sum(state%jump(2, :, :), dim=1)

@@ -75,6 +75,8 @@ contains
 
       associate (scene => self%scene, summary => self%summary)
          call summary%use_feature("poroelastic rock")
+         call summary%note(allocated(scene%regions), "regions of permeability", &
+                           "regions: uniform rock")
          call summary%note(self%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", &
                            "no fractures")
          call summary%note(any(scene%fractures%dilation > 0.0_rk), "shear dilation", &

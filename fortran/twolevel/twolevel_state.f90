@@ -21,6 +21,7 @@ module twolevel_state
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_certainty, only: certainty_t
+   use twolevel_outlines, only: follow_outlines
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
@@ -157,6 +158,7 @@ contains
                          size_fracture=scene%discretization%size_fracture, &
                          size_boundary=scene%discretization%size_boundary)
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
+      if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
    end function coarse_spec
 
    !> Law and residual aperture of the scene's fracture cells.

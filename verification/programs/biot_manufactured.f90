@@ -157,7 +157,7 @@ contains
                         + pressure*pi*[cos(x)*sin(y), sin(x)*cos(y)]
          density(1:2) = time*density(1:2)
          density(3) = length*pi*share*sin(x + y) + rock%storage*pressure*s &
-                      + time*rock%permeability(1)/viscosity*2.0_rk*pi**2*pressure*s
+                      + time*rock%permeability(1, 1)/viscosity*2.0_rk*pi**2*pressure*s
       end associate
    end function density
 

@@ -48,6 +48,9 @@ typedef struct {
     const double* fixed;      /* [n_fixed][2] */
     const double* end_radius; /* [n_fractures][2] rosette radius at start and end; 0: the usual one;
                                  NULL: all have the usual one */
+    int32_t n_guides; /* lines that cells follow where there is room; the mesh is not cut there */
+    const int32_t* guide_count; /* [n_guides] points of each, 2 or more */
+    const double* guide_xy;     /* [sum of the counts][2] */
 } cm_spec;
 
 typedef struct {

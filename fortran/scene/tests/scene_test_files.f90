@@ -90,6 +90,7 @@ contains
       if (a%material%storage /= b%material%storage) return
       if (.not. same(a%fluid%compressibility, b%fluid%compressibility)) return
       if (.not. same(a%fluid%viscosity, b%fluid%viscosity)) return
+      if (.not. same_regions(a, b)) return
       if (size(a%fractures) /= size(b%fractures)) return
       if (size(a%injections) /= size(b%injections)) return
       if (size(a%probes) /= size(b%probes)) return
@@ -116,6 +117,39 @@ contains
       if (.not. same(a%output%interval, b%output%interval)) return
       same_scene = .true.
    end function same_scene
+
+   pure logical function same_regions(a, b)
+      type(scene_t), intent(in) :: a, b
+      integer :: i
+
+      same_regions = .false.
+      if (allocated(a%regions) .neqv. allocated(b%regions)) return
+      do i = 1, merge(size(a%regions), 0, allocated(a%regions))
+         associate (p => a%regions(i), q => b%regions(i))
+            if (p%name /= q%name .or. p%shape /= q%shape) return
+          if (.not. (same(numbers(p%x), numbers(q%x)) .and. same(numbers(p%y), numbers(q%y)) .and. &
+                       same(numbers(p%x_other), numbers(q%x_other)) .and. &
+                       same(numbers(p%y_other), numbers(q%y_other)) .and. &
+                       same(numbers(p%x_vertex), numbers(q%x_vertex)) .and. &
+                       same(numbers(p%y_vertex), numbers(q%y_vertex)) .and. &
+                       same(numbers(p%curvature), numbers(q%curvature)))) return
+            if (.not. same([p%material%permeability_xx, p%material%permeability_yy, &
+                            p%material%permeability_xy, p%material%young], &
+                           [q%material%permeability_xx, q%material%permeability_yy, &
+                            q%material%permeability_xy, q%material%young])) return
+         end associate
+      end do
+      same_regions = .true.
+   end function same_regions
+
+   !> A list that may be none.
+   pure function numbers(list)
+      real(rk), allocatable, intent(in) :: list(:)
+      real(rk), allocatable :: numbers(:)
+
+      allocate (numbers(0))
+      if (allocated(list)) numbers = list
+   end function numbers
 
    !> Programme, restraints and point loads.
    pure logical function same_loading(a, b)

@@ -4,7 +4,7 @@ program test_scene_plausible
    use base_kinds, only: rk
    use base_texts, only: text_t
    use scene_plausible, only: doubts, doubts_of_scene
-   use scene_types, only: boundary_part_t, fracture_t, injection_t, scene_t
+   use scene_types, only: boundary_part_t, fracture_t, injection_t, region_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  ! per degree
@@ -23,10 +23,29 @@ program test_scene_plausible
    call test_material()
    call test_fractures()
    call test_flow()
+   call test_regions()
    call checks%is_true(provoked == size(doubts), "every doubt is provoked")
    call checks%finish()
 
 contains
+
+   !> A band through the body of 2 m, thinner than cells far from fractures, or very permeable.
+   subroutine test_regions()
+      type(scene_t) :: s
+
+      s = sound()
+      s%discretization%size_boundary = 0.1_rk
+      s%regions = [region_t(name="band", x=[0.0_rk, 2.0_rk, 2.0_rk, 0.0_rk], &
+                            y=[0.5_rk, 0.5_rk, 0.62_rk, 0.62_rk])]
+      s%regions(1)%material%permeability_xx = 1.0e-15_rk
+      s%regions(1)%material%permeability_yy = 1.0e-15_rk
+      call expect(s, "", "a band of 0.12 m")
+      s%regions(1)%material%permeability_yy = 1.0e-7_rk
+      call expect(s, "&region 'band': permeability is 1.0e-7 m2: ", "permeability of a region")
+      s%regions(1)%material%permeability_yy = 1.0e-15_rk
+      s%regions(1)%y(3:4) = 0.6_rk
+      call expect(s, "&region 'band': width is 0.09524 m: ", "width of a region")
+   end subroutine test_regions
 
    !> Injection into a fracture of a pressed body.
    function sound() result(s)

@@ -18,6 +18,7 @@ program test_scene_write
    call round_trip(source_path("inputs/paper_c/onset.nml"))
    call round_trip(source_path("inputs/paper_c/wing_crack.nml"))
    call round_trip(source_path("inputs/paper_c/three_fractures.nml"))
+   call round_trip(source_path("inputs/paper_d/permeability_case1.nml"))
    call round_trip(source_path("inputs/benchmarks/onset_2300.nml"))
    call check_odd_numbers()
    call check_bodies()
@@ -165,8 +166,8 @@ contains
       logical :: seen(size(parameters)), is_foreign
       character(len=16) :: group
 
-      call read_scene(source_path("inputs/paper_c/onset.nml"), scene, error)
-      call checks%no_error(error, "onset")
+      call read_scene(source_path("inputs/paper_d/permeability_case1.nml"), scene, error)
+      call checks%no_error(error, "a scene with every group")
       call put_bytes(path, scene_text(scene))
       seen = .false.
       group = ""

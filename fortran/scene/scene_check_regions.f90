@@ -1,0 +1,264 @@
+!> Checks regions: what their shape needs, outlines that are simple, parts of the body within them.
+module scene_check_regions
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text
+   use base_plane, only: cross, crosses, polygon_area
+   use base_tolerances, only: round_off, same_place
+   use scene_check_permeability, only: check_tensor
+   use scene_parameters, only: groups
+   use scene_region_outline, only: body_part, region_outline
+   use scene_sheet, only: refuse, sheet_t
+   use scene_types, only: material_t, region_t, scene_t
+   use scene_values, only: value_t
+   use scene_words, only: rounded_text
+   implicit none(type, external)
+   private
+
+   public :: check_given_regions, check_regions
+
+   integer, parameter :: most_points = 1000  !< of a curve: every pair of edges is compared
+
+contains
+
+   !> All shapes but the parabola have points.
+   pure subroutine check_given_regions(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=1), parameter :: names(2) = ["x", "y"]
+      type(value_t) :: shape
+      integer :: axis, i
+
+      do i = 1, sheet%length
+         if (groups(sheet%records(i)%group)%name /= "region") cycle
+         shape = sheet%records(i)%value("shape")
+         do axis = 1, 2
+            associate (is_given => sheet%records(i)%is_given(names(axis)))
+               if (is_given .and. shape%text == "parabola") then
+                  call refuse(error, sheet, i, names(axis), "is given, but the shape "// &
+                              "'parabola' has x_vertex, y_vertex and curvature instead")
+               else if (.not. (is_given .or. shape%text == "parabola")) then
+                  call refuse(error, sheet, i, names(axis), "[m], which the shape '"// &
+                              shape%text//"' needs, is missing")
+               end if
+            end associate
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine check_given_regions
+
+   !> The numbers of each region go together, and with the body.
+   pure subroutine check_regions(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      do i = 1, size(scene%regions)
+         record = sheet%find("region", i)
+         call check_points(sheet, record, scene%regions(i), error)
+         if (.not. allocated(error)) call check_outline(sheet, record, scene, i, error)
+         if (.not. allocated(error)) call check_tensor(sheet, record, scene%regions(i)%material, &
+                                                       error)
+         if (.not. allocated(error)) call check_contrast(sheet, scene, i, error)
+         if (allocated(error)) return
+      end do
+   end subroutine check_regions
+
+   !> The rocks of a cell that an outline cuts are mixed: beyond the limit rounding would decide.
+   pure subroutine check_contrast(sheet, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< region
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: most = 1.0e12_rk
+      real(rk) :: extremes(2), others(2)
+      character(len=:), allocatable :: name
+      integer :: k
+
+      extremes = principal(scene%regions(i)%material)
+      do k = 0, i - 1
+         if (k == 0) then
+            others = principal(scene%material)
+         else
+            others = principal(scene%regions(k)%material)
+         end if
+         if (max(extremes(2)/others(1), others(2)/extremes(1)) <= most*(1.0_rk + round_off)) cycle
+         name = "permeability"
+         if (.not. sheet%records(sheet%find("region", i))%is_given(name)) name = "permeability_xx"
+         call refuse(error, sheet, sheet%find("region", i), name, "of region '"// &
+                    trim(scene%regions(i)%name)//"' and the permeability of the rock around it "// &
+                     "or of another region differ by more than a factor of 1e12 but must not")
+         return
+      end do
+   end subroutine check_contrast
+
+   !> The least and the largest permeability over all directions.
+   pure function principal(material) result(extremes)
+      type(material_t), intent(in) :: material
+      real(rk) :: extremes(2)  !< [m2]
+      real(rk) :: largest
+
+      associate (m => material)
+         largest = 0.5_rk*(m%permeability_xx + m%permeability_yy) &
+                   + hypot(0.5_rk*(m%permeability_xx - m%permeability_yy), m%permeability_xy)
+         extremes = [(m%permeability_xx*m%permeability_yy - m%permeability_xy**2)/largest, largest]
+      end associate
+   end function principal
+
+   !> As many points as the shape needs, each with all its coordinates.
+   pure subroutine check_points(sheet, record, region, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(region_t), intent(in) :: region
+      type(error_t), allocatable, intent(out) :: error
+
+      select case (region%shape)
+      case ("parabola")
+         call check_list(sheet, record, region, "x_vertex", region%x_vertex, 1, 2, error)
+         if (.not. allocated(error)) call check_equal(sheet, record, region, "y_vertex", &
+                                                region%y_vertex, "x_vertex", region%x_vertex, error)
+         if (.not. allocated(error)) call check_equal(sheet, record, region, "curvature", &
+                                               region%curvature, "x_vertex", region%x_vertex, error)
+         return
+      case ("half_plane")
+         call check_list(sheet, record, region, "x", region%x, 2, 2, error)
+      case ("band")
+         call check_list(sheet, record, region, "x", region%x, 2, most_points, error)
+         if (.not. allocated(error)) call check_list(sheet, record, region, "x_other", &
+                                                     region%x_other, 2, most_points, error)
+         if (.not. allocated(error)) call check_equal(sheet, record, region, "y_other", &
+                                                   region%y_other, "x_other", region%x_other, error)
+      case default
+         call check_list(sheet, record, region, "x", region%x, 3, 2*most_points, error)
+      end select
+      if (.not. allocated(error)) call check_equal(sheet, record, region, "y", region%y, "x", &
+                                                   region%x, error)
+   end subroutine check_points
+
+   pure subroutine check_list(sheet, record, region, name, values, least, most, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record, least, most
+      type(region_t), intent(in) :: region
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: values(:)  !< [m]
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: wanted
+
+      if (size(values) >= least .and. size(values) <= most) return
+      wanted = integer_text(int(least, ik))
+      if (most > least) wanted = wanted//" to "//integer_text(int(most, ik))
+      call refuse(error, sheet, record, name, "of region '"//trim(region%name)//"' has "// &
+                  count_text(size(values))//" but the shape '"//trim(region%shape)// &
+                  "' must have "//wanted)
+   end subroutine check_list
+
+   pure subroutine check_equal(sheet, record, region, name, values, like, others, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(region_t), intent(in) :: region
+      character(len=*), intent(in) :: name, like
+      real(rk), intent(in) :: values(:), others(:)  !< [any unit]
+      type(error_t), allocatable, intent(out) :: error
+
+      if (size(values) == size(others)) return
+      call refuse(error, sheet, record, name, "of region '"//trim(region%name)//"' has "// &
+                  count_text(size(values))//" but must have as many as "//like//", "// &
+                  integer_text(size(others, kind=ik)))
+   end subroutine check_equal
+
+   pure function count_text(n) result(text)
+      integer, intent(in) :: n
+      character(len=:), allocatable :: text
+
+      text = integer_text(int(n, ik))//trim(merge(" value ", " values", n == 1))
+   end function count_text
+
+   !> The outline has an area, does not cross itself, and holds a part of the body.
+   pure subroutine check_outline(sheet, record, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< region
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: corners(:, :)
+      character(len=:), allocatable :: name, whose
+      real(rk) :: area
+      integer(ik) :: edges(2)
+
+      associate (region => scene%regions(i), body => scene%domain)
+         name = trim(merge("x_vertex", "x       ", region%shape == "parabola"))
+         whose = "of region '"//trim(region%name)//"' "
+         if (region%shape == "half_plane") then
+            if (.not. norm2([region%x(2) - region%x(1), region%y(2) - region%y(1)]) > &
+                0.0_rk) then
+               call refuse(error, sheet, record, name, whose//"and y give one point twice but "// &
+                           "must give two, a line")
+               return
+            end if
+         end if
+         corners = region_outline(region, body)
+         if (region%shape /= "half_plane") then
+            edges = first_crossing(corners)
+            if (edges(1) > 0) then
+              call refuse(error, sheet, record, name, "and the rest "//whose//"give an outline "// &
+                          "that crosses or touches itself near "//place_text(corners(:, edges(1))) &
+                           //" but its edges must meet at their ends only")
+               return
+            end if
+         end if
+         area = polygon_area(body_part(region, body))
+         if (.not. area > same_place*(body%x_max - body%x_min)*(body%y_max - body%y_min)) then
+            call refuse(error, sheet, record, name, "and the rest "//whose//"give a region "// &
+                        "without any part of the body but must give one that holds some of it")
+         end if
+      end associate
+   end subroutine check_outline
+
+   !> The first pair of edges, edge k from corner k to the next, that meet where they must not; 0:
+   !! there is none.
+   pure function first_crossing(corners) result(edges)
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) [m]
+      integer(ik) :: edges(2)
+      integer(ik) :: a, b, n, next_a, next_b
+
+      n = size(corners, 2, kind=ik)
+      edges = 0
+      do a = 1, n
+         next_a = mod(a, n) + 1_ik
+         do b = a + 1, n
+            next_b = mod(b, n) + 1_ik
+            if (b == next_a .or. next_b == a) then
+               if (.not. folds_back(corners, merge(a, b, b == next_a))) cycle
+            else if (.not. crosses(corners(:, [a, next_a]), corners(:, [b, next_b]))) then
+               cycle
+            end if
+            edges = [a, b]
+            return
+         end do
+      end do
+   end function first_crossing
+
+   !> The edge after an edge goes back on it.
+   pure logical function folds_back(corners, edge)
+      real(rk), intent(in) :: corners(:, :)  !< [m]
+      integer(ik), intent(in) :: edge
+      real(rk) :: along(2), after(2)
+      integer(ik) :: n, next
+
+      n = size(corners, 2, kind=ik)
+      next = mod(edge, n) + 1_ik
+      along = corners(:, next) - corners(:, edge)
+      after = corners(:, mod(next, n) + 1_ik) - corners(:, next)
+      folds_back = abs(cross(along, after)) <= same_place*norm2(along)*norm2(after) .and. &
+                   dot_product(along, after) < 0.0_rk
+   end function folds_back
+
+   pure function place_text(xy) result(text)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      character(len=:), allocatable :: text
+
+      text = "("//rounded_text(xy(1))//", "//rounded_text(xy(2))//")"
+   end function place_text
+
+end module scene_check_regions
