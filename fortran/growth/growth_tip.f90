@@ -17,6 +17,7 @@ module growth_tip
       logical :: arrested = .false.  !< it will not grow again
       integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
+      integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
       ! Before the last increment of any tip.
       logical, private :: was_arrested = .false., was_free = .true.

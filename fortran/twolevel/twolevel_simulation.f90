@@ -252,6 +252,8 @@ contains
       if (is_equilibrium(self)) call note_competition(self)
       call self%stepper%step_done(trial, self%dt)
       call self%trend%accept(self%before, self%state, self%dt)
+      ! The rates of a step in which cracks have joined mean nothing for the next.
+      if (trial%has_joined) call self%follow_trend(at_rest=.false.)
       if (.not. is_unstable) return
       call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")

@@ -30,6 +30,7 @@ module twolevel_stepping
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
       logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      logical :: has_joined = .false.  !< a tip has joined something in it
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]

@@ -67,7 +67,7 @@ contains
       integer(ik) :: first, i, last, old
 
       call various_cells(before)
-      call transfer_cells(map, mesh, before, new_aperture, .false., after)
+      call transfer_cells(mesh_before, mesh, before, new_aperture, .false., after)
       associate (here => mesh%fracture%cell_fracture, there => mesh_before%fracture%cell_fracture)
          first = findloc(there, 1_ik, dim=1)
          last = findloc(there, 1_ik, dim=1, back=.true.)
@@ -129,7 +129,7 @@ contains
       integer(ik) :: c, i, old, origin
 
       call various_cells(cells_before)
-      call transfer_cells(map, mesh, cells_before, new_aperture, is_prefilled, cells)
+      call transfer_cells(mesh_before, mesh, cells_before, new_aperture, is_prefilled, cells)
       call various_state(before)
       call transfer_state(map, mesh_before, mesh, cells, is_prefilled, before, after, prefilled)
       call checks%is_close(after%time, before%time, 0.0_rk, "time")
@@ -191,7 +191,7 @@ contains
       integer(ik) :: c
 
       call various_cells(cells_before)
-      call transfer_cells(map, mesh, cells_before, new_aperture, .false., cells)
+      call transfer_cells(mesh_before, mesh, cells_before, new_aperture, .false., cells)
       call various_state(before)
       before%content = [(3.0e-4_rk*cell_area(mesh_before, c), c=1, mesh_before%n_cells)]
       before%unknowns(3, :) = 5.0e6_rk
