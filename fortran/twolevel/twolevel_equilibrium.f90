@@ -26,6 +26,7 @@ module twolevel_equilibrium
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_wells, only: last_switch
    implicit none(type, external)
    private
 
@@ -54,6 +55,10 @@ module twolevel_equilibrium
    !> Tips could part where a lead of one increment changes K_eq/K_IC by more than this: twice what
    !! does not tell them from each other [-].
    real(rk), parameter :: could_part = 2.0_rk*same_drive
+
+   !> A tip comes to a joint no earlier before the end of a step than this share of the time since the
+   !! wells were switched last [-].
+   real(rk), parameter :: punctual = 5.0e-3_rk
 
 contains
 
@@ -129,7 +134,13 @@ contains
             if (.not. trial%has_joined) trial%time_error = self%step_error(dt)
             if (any(joins)) then
                ! The error in time is that up to the joint: what follows is a jump.
-               if (.not. is_last .and. self%errs(trial%time_error)) exit
+               if (.not. is_last) then
+                  trial%goes_too_far = any(joins .and. has_begun)
+                  trial%arrival = minval(arrivals(self), mask=joins)
+                  trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
+                                  *(self%before%time - last_switch(self%scene, self%before%time))
+                  if (trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)) exit
+               end if
                call join_targets(self, joins)
                trial%has_joined = .true.
                self%state = self%before
@@ -282,6 +293,19 @@ contains
          end do
       end associate
    end subroutine move_together
+
+   !> Shares of the step after which tips at the ends of their pieces have probably come there, and
+   !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
+   pure function arrivals(self) result(share)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: share(size(self%tip))
+      real(rk), dimension(size(self%tip)) :: beyond, room
+
+      room = self%segment%length - self%segment%accepted
+      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
+      share = room/max(room + beyond, tiny(1.0_rk))
+      share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+   end function arrivals
 
    !> Of K_eq over K_IC [-].
    pure function excesses(self) result(excess)

@@ -10,7 +10,8 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-public :: between_cells, feed_joints, mean_pressure, next_switch, rate, share_wells, transfer_shares
+   public :: between_cells, feed_joints, last_switch, mean_pressure, next_switch, rate
+   public :: share_wells, transfer_shares
 
 contains
 
@@ -142,6 +143,22 @@ contains
                 /(count(is_well) + count(is_fed))
       end if
    end function mean_pressure
+
+   !> The last time at which a well started or ended, or the scene did [s].
+   pure function last_switch(scene, now) result(time)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: now  !< [s]
+      real(rk) :: time
+      integer(ik) :: w
+
+      time = 0.0_rk
+      do w = 1, size(scene%injections, kind=ik)
+         associate (well => scene%injections(w))
+            if (well%start <= now) time = max(time, well%start)
+            if (well%end <= now) time = max(time, well%end)
+         end associate
+      end do
+   end function last_switch
 
    !> The next time at which a well starts or ends, or the scene does [s].
    pure function next_switch(scene, now) result(time)
