@@ -128,32 +128,27 @@ contains
       type(fracture_mesh_t), intent(in) :: fracture_before, fracture
       type(state_t), intent(in) :: before
       type(state_t), intent(inout) :: after
-      real(rk) :: held(size(before%aperture)), opening(size(before%aperture))
-      real(rk) :: part(2), s, weight(2)
+      real(rk) :: aperture, held, mass, part(2), s, volume, weight(2)
       integer(ik) :: end, k, old
 
-      after%aperture(cell) = 0.0_rk
-      after%pressure(cell) = 0.0_rk
-      opening = 0.5_rk*sum(before%jump(1, :, :), dim=1)
-      held = before%aperture - before%void
+      volume = 0.0_rk
+      held = 0.0_rk
+      mass = 0.0_rk
       do k = overlaps%first(cell), overlaps%first(cell + 1) - 1
          old = overlaps%old(k)
          associate (ends => fracture_before%cell_s(:, old), here => fracture%cell_s(:, cell))
             part = [max(ends(1), here(1)), min(ends(2), here(2))]
             weight = shares(0.5_rk*sum(part), ends)
          end associate
-         after%aperture(cell) = after%aperture(cell) + overlaps%length(k) &
-                                *(before%aperture(old) - opening(old) &
-                                  + dot_product(weight, before%jump(1, :, old)))
-         after%pressure(cell) = after%pressure(cell) &
-                                + overlaps%length(k)*held(old)*before%pressure(old)
+         aperture = before%aperture(old) + dot_product(weight - 0.5_rk, before%jump(1, :, old))
+         volume = volume + overlaps%length(k)*aperture
+         held = held + overlaps%length(k)*(aperture - before%void(old))
+         mass = mass + overlaps%length(k)*(aperture - before%void(old))*before%pressure(old)
       end do
       associate (s => fracture%cell_s(:, cell))
-         after%aperture(cell) = after%aperture(cell)/(s(2) - s(1))
+         after%aperture(cell) = volume/(s(2) - s(1))
       end associate
-      after%pressure(cell) = after%pressure(cell)/(overlaps%mean(cell, held) &
-                                                   *sum(overlaps%length(overlaps%first(cell): &
-                                                                overlaps%first(cell + 1) - 1)))
+      if (abs(held) > 0.0_rk) after%pressure(cell) = mass/held
       after%void(cell) = overlaps%mean(cell, before%void)
       after%leakoff(cell) = overlaps%mean(cell, before%leakoff)
       do end = 1, 2
