@@ -4,6 +4,7 @@
 !! long as its tip has not come to it, nothing flows there.
 module twolevel_places
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use growth_network, only: end_gain, move_end
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t
@@ -21,13 +22,12 @@ contains
       real(rk) :: advances(size(self%tip))
       integer(ik) :: i
 
-      advances = 0.0_rk
       do i = 1, size(self%tip, kind=ik)
-         ! Of a tip that has joined something before, rounding would be left.
-         if (.not. self%tip(i)%is_free .and. .not. self%segment(i)%reached > self%segment(i)%accepted) cycle
          advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
                        - self%segment(i)%gain
       end do
+      ! Of tips that have not moved rounding is left, where the other end of their fracture has grown.
+      where (abs(advances) <= same_place*self%rules%increment) advances = 0.0_rk
    end function advances
 
    !> Put the tips of both levels where their segments say.
