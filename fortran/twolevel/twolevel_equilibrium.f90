@@ -56,8 +56,8 @@ module twolevel_equilibrium
    !! does not tell them from each other [-].
    real(rk), parameter :: could_part = 2.0_rk*same_drive
 
-   !> A tip comes to a joint no earlier before the end of a step than this share of the time since the
-   !! wells were switched last [-].
+   !> A tip comes to a joint no earlier before the end of a step than this share of the time since
+   !! the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
 contains

@@ -26,7 +26,7 @@ contains
          advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
                        - self%segment(i)%gain
       end do
-      ! Of tips that have not moved rounding is left, where the other end of their fracture has grown.
+      ! Rounding is left of tips that have not moved, where the other end of their fracture has.
       where (abs(advances) <= same_place*self%rules%increment) advances = 0.0_rk
    end function advances
 

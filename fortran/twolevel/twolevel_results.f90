@@ -247,8 +247,9 @@ contains
       associate (others => fracture%cell_fracture(cells))
          if (size(cells) == 0) fracture%point_kind(point) = point_interior
          if (size(cells) == 2) then
-            if (all(others == others(1)) .and. abs(cells(2) - cells(1)) == 1) &
+            if (others(1) == others(2) .and. abs(cells(2) - cells(1)) == 1) then
                fracture%point_kind(point) = point_interior
+            end if
          end if
       end associate
       associate (n => fracture%n_tips)

@@ -106,8 +106,8 @@ contains
       call is_at(front%tip(1)%direction, -[cos(0.3_rk), sin(0.3_rk)], "direction of tip 1")
    end subroutine test_growth_law
 
-   !> Tips that head for what lies ahead find their direction before it: half way to fracture 2 or to
-   !! the side, but an increment on where nothing is so near.
+   !> Tips that head for what lies ahead find their direction before it: half way to fracture 2, but
+   !! an increment on where nothing is so near.
    subroutine test_half_way()
       type(sample_t) :: front
       type(timers_t) :: timers

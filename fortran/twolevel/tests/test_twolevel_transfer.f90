@@ -221,7 +221,7 @@ contains
             if (fracture%cell_fracture(i) /= 2) cycle
             length = fracture%cell_s(2, i) - fracture%cell_s(1, i)
             volume(:, 1) = volume(:, 1) + length*[before%aperture(i), before%void(i), &
-                                          (before%aperture(i) - before%void(i))*before%pressure(i)]
+                                           (before%aperture(i) - before%void(i))*before%pressure(i)]
          end do
       end associate
       worst = 0.0_rk
@@ -234,7 +234,7 @@ contains
          end associate
          c = c + 1
          volume(:, 2) = volume(:, 2) + length*[after%aperture(i), after%void(i), &
-                                            (after%aperture(i) - after%void(i))*after%pressure(i)]
+                                              (after%aperture(i) - after%void(i))*after%pressure(i)]
          worst = max(worst, maxval(abs(after%jump(1, :, i) - 1.0e-4_rk*(1.0_rk + s))), &
                      maxval(abs(after%jump(2, :, i) + 2.0e-4_rk*s)), &
                      maxval(abs(after%slip_before(:, i) - 3.0e-4_rk*s)), &
