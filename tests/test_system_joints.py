@@ -49,6 +49,27 @@ def test_a_joint_lets_the_pressure_fall(tmp_path: Path) -> None:
     assert sorted(tip["tip"] for tip in network["tips"]) == [1, 3, 4]
 
 
+def test_the_law_of_advances_joins_too(tmp_path: Path) -> None:
+    """At the end of a step, and the pressure falls in the short ones that follow."""
+    out = run(
+        tmp_path,
+        changed(
+            ("increment = 0.05", "increment = 0.05, law = 'paris', threshold = 0.5"),
+            ("end = 80.0", "end = 75.0, step = 2.0"),
+        ),
+    )
+    (joint,) = joints(out)
+    assert joint["detail"] == "joins fracture bar"
+    history = rows(out / "history.csv")
+    at = [row["time_s"] for row in history].index(joint["time_s"])
+    assert [row["n_tips"] for row in history[at : at + 2]] == ["4", "3"]
+    pressure = numbers(out / "history.csv", "well_pressure_pa")
+    assert pressure[at + 1] < pressure[at] - 5.0e4
+    mass_error = record(out)["mass_error_relative"]
+    assert isinstance(mass_error, float)
+    assert mass_error < 1.0e-9
+
+
 def test_nothing_is_joined_from_afar(tmp_path: Path) -> None:
     """A crack goes on past the end of a fracture that it does not touch, 2 mm beside it."""
     out = run(tmp_path, changed(("y = -0.31, 0.29", "y = 0.002, 0.6")))

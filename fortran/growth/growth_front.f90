@@ -7,7 +7,7 @@ module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use base_tolerances, only: same_value
+   use base_tolerances, only: same_place, same_value
    use growth_increment, only: plan_increment, tips_at_onset
    use growth_law, only: new_tip
    use growth_network, only: extend, move_end
@@ -28,7 +28,8 @@ module growth_front
       real(rk) :: together = 0.0_rk
       real(rk) :: reach = 0.0_rk  !< distance within which a tip has come to something [m]
       logical :: joins = .false.  !< what it comes to; else it stops before that
-      !> The path ends on what lies straight ahead, however near; the tip joins that by itself.
+      !> The path ends on what lies straight ahead, however near. With `joins` the tip does so at
+      !! once, in its increment; else it is left to the caller how it comes there.
       logical :: heads = .false.
       real(rk) :: near = 0.0_rk  !< ends and kinks that near to its way lie on it [m]
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
@@ -139,7 +140,9 @@ contains
             call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
-            if (self%rules%heads) then
+            if (self%rules%heads .and. self%rules%joins) then
+               call join_ahead(self, i, (tip%xy), to)
+            else if (self%rules%heads) then
                call stop_half_way(self, tip%fracture, tip%xy, advance(i), to)
             else
                call meet_target(self%rules, self%network, tip, (tip%xy), to)
@@ -169,8 +172,13 @@ contains
             call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             to = tip%xy
-            if (self%rules%joins) call meet_target(self%rules, self%network, tip, (tip%origin), to)
-            if (self%rules%heads) call stop_half_way(self, tip%fracture, tip%origin, advance(i), to)
+            if (self%rules%heads .and. self%rules%joins) then
+               call join_ahead(self, i, (tip%origin), to)
+            else if (self%rules%heads) then
+               call stop_half_way(self, tip%fracture, tip%origin, advance(i), to)
+            else if (self%rules%joins) then
+               call meet_target(self%rules, self%network, tip, (tip%origin), to)
+            end if
             tip%xy = to
             tip%advance = norm2(tip%xy - tip%origin)
             call move_end(self%network, tip%fracture, tip%end, tip%xy)
@@ -211,6 +219,30 @@ contains
       if (target /= target_none) room = min(room, half_way*norm2(at - from))
       if (abs(room - norm2(to - from)) > same_value*advance) to = from + room*direction
    end subroutine stop_half_way
+
+   !> A tip that would come to what lies ahead of it within half an increment from where it goes
+   !! joins it at once: it, or both if that is another one, is no tip any more.
+   subroutine join_ahead(self, i, from, to)
+      class(front_t), intent(inout) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(inout) :: to(2)  !< [m]
+      real(rk) :: at(2)
+      integer(ik) :: target
+      integer :: k
+
+      call self%look_ahead(self%network, self%tip(i)%fracture, from, (to - from)/norm2(to - from), &
+                           target, at)
+      if (target == target_none) return
+      if (norm2(at - from) > norm2(to - from) + (foresight - 1.0_rk)*self%rules%increment) return
+      to = at
+      self%tip(i)%target = target
+      self%tip(i)%joined = .true.
+      call self%tip(i)%cease()
+      do k = 1, size(self%tip)
+         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) call self%tip(k)%cease()
+      end do
+   end subroutine join_ahead
 
    !> A tip that crosses another fracture or the boundary, or comes near it, joins it there, or
    !! stops where it is.

@@ -13,10 +13,8 @@ module twolevel_pieces
    use base_plane, only: point_distance
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use growth_law, only: growth_drive_t
    use growth_network, only: end_place, extend, move_end
    use growth_targets, only: target_boundary, target_none
-   use tips_types, only: intensity_t
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
@@ -212,25 +210,11 @@ contains
                else if (norm2(tip%xy - xy) > same_place*self%rules%increment) then
                   cycle
                end if
-               call end_tip(self, j)
+               call tip%cease()
+               self%segment(j)%is_open = .false.
             end associate
          end do
       end do
    end subroutine join_targets
-
-   !> There is no tip any more.
-   subroutine end_tip(self, i)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik), intent(in) :: i
-
-      self%segment(i)%is_open = .false.
-      self%windows%built(i) = .false.
-      associate (tip => self%tip(i))
-         tip%is_free = .false.
-         tip%arrested = .true.
-         tip%intensity = intensity_t()
-         tip%drive = growth_drive_t()
-      end associate
-   end subroutine end_tip
 
 end module twolevel_pieces

@@ -131,16 +131,16 @@ contains
                             self%scene%material%young, length)
    end subroutine follow_trend
 
-   !> How tips grow: in equilibrium they join what lies ahead of them; else they stop before they
-   !! come nearer to anything than a coarse cell.
+   !> How tips grow: they join what lies ahead of them, by the law of advances at once, as they come
+   !! near to it.
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
 
       rules = growth_rules_t(toughness=scene%material%toughness, &
                              increment=scene%growth%increment, exponent=scene%growth%exponent, &
-                             together=together, reach=scene%discretization%size_fracture, &
-                             joins=.false., heads=scene%growth%law == "equilibrium", &
+                             together=together, &
+                             joins=scene%growth%law /= "equilibrium", heads=.true., &
                              near=max(near_way*scene%growth%increment, &
                                       near_in_mesh*scene%discretization%size_fracture), &
                              outline=corners(scene%domain))
