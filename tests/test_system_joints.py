@@ -47,6 +47,9 @@ def test_a_joint_lets_the_pressure_fall(tmp_path: Path) -> None:
     network = json.loads((out / "network.json").read_text())
     assert [(j["kind"], j["fractures"]) for j in network["joints"]] == [("T", [1, 2])]
     assert sorted(tip["tip"] for tip in network["tips"]) == [1, 3, 4]
+    run_json = (out / "run.json").read_text()
+    assert "intersections: flow from fracture" in run_json
+    assert "fractures do not meet" not in run_json
 
 
 def test_the_law_of_advances_joins_too(tmp_path: Path) -> None:

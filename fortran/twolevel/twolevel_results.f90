@@ -134,6 +134,8 @@ contains
       class(two_levels_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
       real(rk), allocatable :: nodal(:, :)
+      integer(ik), allocatable :: shown(:)
+      integer(ik) :: k
 
       snapshot%time = simulation%state%time
       snapshot%mesh = simulation%mesh
@@ -155,8 +157,13 @@ contains
          fracture%void = state%void
          fracture%state = cell_states(simulation)
          fracture%flow = fracture_flow(simulation)
-         snapshot%intersection%point = simulation%model%joints%point
-         snapshot%intersection%pressure = state%joint_pressure
+         associate (joints => simulation%model%joints)
+            ! Those to come are not shown.
+            shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
+                                                 k=1, joints%n)])
+            snapshot%intersection%point = joints%point(shown)
+            snapshot%intersection%pressure = state%joint_pressure(shown)
+         end associate
       end associate
    end function snapshot_of_levels
 
