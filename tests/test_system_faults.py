@@ -122,11 +122,6 @@ def test_a_faulty_polygon_is_refused(fault: str, tmp_path: Path) -> None:
 # A second fracture of the scene, and what the refusal of the two must hold; f1 is on line 8.
 LAW = "friction = 0.5, aperture = 1.0e-3 /"
 NETWORK_FAULTS = {
-    "cross": (
-        "x = 0.9, 1.1, y = 1.1, 0.9",
-        "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at (1, 1), but "
-        "fractures with a fluid must not touch where tips can grow; set enabled = .false.",
-    ),
     "V at 1.6 degrees": (
         "x = 1.0353553390593274, 0.9, y = 1.0353553390593274, 0.896",
         "8: &fracture: fracture 'f1' and fracture 'f2' (line 14) meet at too small an angle at "

@@ -14,7 +14,7 @@ std::pair<int, int> ordered(int a, int b) {
 
 class Divider {
 public:
-    explicit Divider(PlaneMesh& mesh) : mesh_(mesh) {
+    Divider(PlaneMesh& mesh, int first_cell) : mesh_(mesh), first_cell_(first_cell) {
         for (const FractureCell& cell : mesh.fracture_cells)
             fractures_.insert(ordered(cell.node[0], cell.node[1]));
     }
@@ -23,9 +23,9 @@ public:
         for (bool found = true; found;) {
             found = false;
             const EdgeTable edges(mesh_.cells, static_cast<int>(mesh_.xy.size()));
-            for (int c = 0; c < static_cast<int>(mesh_.cells.size()) && !found; ++c) {
+            for (int c = first_cell_; c < static_cast<int>(mesh_.cells.size()) && !found; ++c) {
                 for (int k = 0; k < 3 && !found; ++k) {
-                    found = fills_sector(edges, c, k);
+                    found = fills_sector(edges, c, k) && may_change(edges.across(c, (k + 1) % 3));
                     if (found)
                         divide(edges, c, (k + 1) % 3);
                 }
@@ -46,6 +46,8 @@ private:
         return (wall || other_wall) && (wall || edges.across(c, after) < 0) &&
                (other_wall || edges.across(c, before) < 0);
     }
+
+    bool may_change(int c) const { return c < 0 || c >= first_cell_; }
 
     // Halve edge k of a cell.
     void divide(const EdgeTable& edges, int c, int k) {
@@ -85,13 +87,14 @@ private:
     }
 
     PlaneMesh& mesh_;
+    const int first_cell_;
     std::set<std::pair<int, int>> fractures_; // edges, by their nodes
 };
 
 } // namespace
 
-void divide_lone_sectors(PlaneMesh& mesh) {
-    Divider(mesh).run();
+void divide_lone_sectors(PlaneMesh& mesh, int first_cell) {
+    Divider(mesh, first_cell).run();
 }
 
 } // namespace cpp_mesh

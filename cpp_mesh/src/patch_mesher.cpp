@@ -3,6 +3,7 @@
 #include "boundary.hpp"
 #include "check_mesh.hpp"
 #include "gmsh_session.hpp"
+#include "lone_sectors.hpp"
 #include "patch_rim.hpp"
 #include "region_edges.hpp"
 #include "skeleton.hpp"
@@ -94,6 +95,7 @@ Mesh mesh_patch(const PatchStyle& style, PatchTask& task, Patch& patch) {
     for (std::size_t c = 0; c < old_plane.cells.size(); ++c)
         if (!patch.is_made_anew[c])
             plane.cells.push_back(old_plane.cells[c]);
+    const int n_kept = static_cast<int>(plane.cells.size());
     plane.cells.insert(plane.cells.end(), cells.begin(), cells.end());
     plane.fracture_cells = std::move(skeleton.cells);
     for (std::size_t k = 0; k < old_plane.rosettes.size(); ++k)
@@ -109,6 +111,8 @@ Mesh mesh_patch(const PatchStyle& style, PatchTask& task, Patch& patch) {
     plane.xy = std::move(task.xy);
     smooth(plane, movable);
     drop_unused_nodes(plane);
+    if (style.divides_lone_sectors)
+        divide_lone_sectors(plane, n_kept);
 
     check_fracture_length(plane.fracture_cells, plane.xy, task.made.network, domain,
                           task.tolerances);

@@ -15,6 +15,7 @@ struct PatchStyle {
     bool smooths_rim = false;
     // Edges that leave no room for cells of good shape are refused; else there are bad cells.
     bool refuses_narrow_places = false;
+    bool divides_lone_sectors = false; // of the cells that are new
 };
 
 // The new mesh, checked: old cells that stay, in their order, then new ones. Throws MeshError. The

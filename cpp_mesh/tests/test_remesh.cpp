@@ -40,8 +40,15 @@ void check_map(Checks& checks, const ApiMesh& before, const ApiMesh& after,
         uncovered += !(std::abs(covered[c] - before.area(c)) <= 1e-11 * before.area(c));
     checks.is_equal(uncovered, 0, name + ": each old cell is covered once");
 
-    // Old fracture cells, whole or in parts, keep fracture, place and arc length.
+    // Old fracture cells, whole or in parts, keep fracture, place and arc length. A new one has
+    // grown, or takes the place of parts of two.
     std::vector<double> kept(before.counts.n_fracture_cells, 0.0);
+    for (int i = 0; i < after.counts.n_fracture_cells; ++i)
+        for (int k = 0; k < before.counts.n_fracture_cells && after.fcell_old[i] < 0; ++k)
+            if (after.fcell_fracture[i] == before.fcell_fracture[k])
+                kept[k] +=
+                    std::max(0.0, std::min(after.fcell_s[2 * i + 1], before.fcell_s[2 * k + 1]) -
+                                      std::max(after.fcell_s[2 * i], before.fcell_s[2 * k]));
     int changed = 0;
     for (int i = 0; i < after.counts.n_fracture_cells; ++i) {
         const int old_cell = after.fcell_old[i];
@@ -165,6 +172,48 @@ void joins_fracture(Checks& checks) {
         grow_end(network, 1, {0.57, 0.72});
         checks.is_true(later.remesh(after, network, {{0.56, 0.7}}, 0.08, 0.02), later.error);
         check_map(checks, after, later, name + ", later");
+    }
+}
+
+// A joint anywhere in a cell: cells near a short part of it are short too.
+void joins_near_node(Checks& checks) {
+    const TestNetwork network({{{0.3, 0.5}, {0.5, 0.5}}, {{0.56, 0.3}, {0.56, 0.7}}});
+    ApiMesh before, after;
+    checks.is_true(before.create(rectangle_spec(1.0, 1.0, 0.02, 0.1), network), before.error);
+    for (const double share : {0.5, 0.2, 0.1, 0.03, 0.01}) {
+        TestNetwork grown = network;
+        const std::string name = "T near a node, " + std::to_string(share);
+        grow_end(grown, 0, {0.56, 0.5 + 0.02 * share});
+        checks.is_true(after.remesh(before, grown, {{0.5, 0.5}}, 0.08, 0.02), after.error);
+        check_map(checks, before, after, name);
+        checks.is_true(after.smallest_angle() > 15.0,
+                       name + ": smallest angle " + std::to_string(after.smallest_angle()));
+    }
+}
+
+// An oblique joint: no cell alone fills the sector between two fractures.
+void joins_at_small_angles(Checks& checks) {
+    for (const double degrees : {60.0, 45.0, 30.0, 20.0}) {
+        const double slope = std::tan(degrees * pi / 180.0);
+        TestNetwork network({{{0.5, 0.5}, {0.56 - 0.02 / slope, 0.48}}, {{0.3, 0.5}, {0.9, 0.5}}});
+        network.fractures[0][0] = {0.56 - 0.2 / slope, 0.3};
+        ApiMesh before, after;
+        checks.is_true(before.create(rectangle_spec(1.0, 1.0, 0.02, 0.1), network), before.error);
+        grow_end(network, 0, {0.56, 0.5});
+        checks.is_true(after.remesh(before, network, {{0.56, 0.5}}, 0.08, 0.02), after.error);
+        const std::string name = "T at " + std::to_string(degrees);
+        check_map(checks, before, after, name);
+        int lone = 0;
+        for (int c = 0; c < after.counts.n_cells; ++c)
+            for (int k = 0; k < 3; ++k) {
+                const auto is_wall = [&](int face) {
+                    return after.face_fracture_cell[after.cell_faces[3 * c + face]] >= 0;
+                };
+                const Point p = after.node(after.cell_nodes[3 * c + k]);
+                lone += is_wall(k) && is_wall((k + 2) % 3) &&
+                        std::hypot(p[0] - 0.56, p[1] - 0.5) < 1e-12;
+            }
+        checks.is_equal(lone, 0, name + ": lone cells");
     }
 }
 
@@ -310,6 +359,8 @@ int main() {
     single_increment(checks);
     chain(checks);
     joins_fracture(checks);
+    joins_near_node(checks);
+    joins_at_small_angles(checks);
     crosses_fracture(checks);
     stops_short(checks);
     joins_tip(checks);

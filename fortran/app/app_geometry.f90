@@ -2,8 +2,8 @@
 !! library judges; here its verdict becomes a sentence about the scene file.
 module app_geometry
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
-   use base_number, only: brief_text, integer_text
+   use base_kinds, only: ik
+   use base_number, only: integer_text
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_spec
    use mechanics_outline, only: scene_corner, scene_edge
@@ -22,7 +22,7 @@ module app_geometry
 
 contains
 
-   !> Refuse a scene whose body or fractures cannot be meshed, or cannot be simulated as they meet.
+   !> Refuse a scene whose body or fractures cannot be meshed.
    subroutine check_geometry(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet  !< where the scene comes from
       type(scene_t), intent(in) :: scene
@@ -39,43 +39,8 @@ contains
          spec = body_spec(scene, network)
       end if
       call check_mesh_input(spec, network, joints, fault)
-      if (allocated(fault)) then
-         call blame(sheet, scene, fault, error)
-      else
-         call refuse_growing_joints(sheet, scene, joints, error)
-      end if
+      if (allocated(fault)) call blame(sheet, scene, fault, error)
    end subroutine check_geometry
-
-   !> A coarse mesh that follows tips knows nothing yet of a fluid that goes from one fracture into
-   !! another.
-   subroutine refuse_growing_joints(sheet, scene, joints, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(joint_t), intent(in) :: joints(:)
-      type(error_t), allocatable, intent(out) :: error
-      type(fault_t) :: fault
-
-      if (size(joints) == 0 .or. .not. scene%has_fluid()) return
-      if (.not. scene%growth%enabled) return
-      associate (joint => joints(1))
-         allocate (fault%culprits(2))
-         fault%culprits%kind = culprit_fracture
-         fault%culprits%number = joint%fractures
-         fault%reason = "{1} and {2} meet"
-         if (joint%fractures(1) == joint%fractures(2)) fault%reason = "{1} meets itself"
-         fault%reason = fault%reason//" at "//place_text(joint%xy)// &
-                        ", but fractures with a fluid must not touch where tips can grow; "// &
-                        "set enabled = .false. in &growth"
-      end associate
-      call blame(sheet, scene, fault, error)
-   end subroutine refuse_growing_joints
-
-   pure function place_text(xy) result(text)
-      real(rk), intent(in) :: xy(2)  !< [m]
-      character(len=:), allocatable :: text
-
-      text = "("//brief_text(xy(1), 9)//", "//brief_text(xy(2), 9)//")"
-   end function place_text
 
    !> Put a fault into words, at the line of the first culprit.
    subroutine blame(sheet, scene, fault, error)

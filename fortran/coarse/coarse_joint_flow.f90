@@ -7,6 +7,8 @@
 !! crosses conducts as it does alone. The flows into a joint and what a well feeds there add up to
 !! nothing, for a joint has no volume (coarse_joints):
 !!   q = a^3/(12 mu) (p_F - p_J)/(l/2),   sum q + Q = 0   or, at an outlet,   p_J = p of the side
+!! A branch is shut, q = 0, as long as its crack has not come to the joint. Where all are, the joint
+!! has the pressure of the first.
 module coarse_joint_flow
    use base_kinds, only: ik, rk
    use coarse_fracture_flow, only: conducting_aperture
@@ -25,10 +27,18 @@ contains
       integer(ik), intent(in) :: j
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      integer(ik) :: row
+      type(cell_fluid_t) :: fluid
+      integer(ik) :: at, cell, row
 
       row = eq%layout%at_joint(j)
-      if (eq%joints%is_outlet(j)) then
+      if (all(eq%joints%is_shut(eq%joints%branches%of(j)))) then
+         cell = eq%joints%cell(eq%joints%branches%at(j, 1_ik))
+         at = eq%layout%at_pressure(cell)
+         fluid = eq%fluid_at(x, cell)
+         eq%residual(row) = x(row) - fluid%pressure
+         eq%jacobian(row, row) = 1.0_rk
+         eq%jacobian(at, row) = -fluid%pressure_slope
+      else if (eq%joints%is_outlet(j)) then
          eq%residual(row) = x(row) - eq%joints%side_pressure(j)
          eq%jacobian(row, row) = 1.0_rk
       else
@@ -47,6 +57,11 @@ contains
       integer(ik) :: at, cell, cells(2), joint, jumps(2), k, row
 
       row = eq%layout%at_branch(b)
+      if (eq%joints%is_shut(b)) then
+         eq%residual(row) = x(row)
+         eq%jacobian(row, row) = 1.0_rk
+         return
+      end if
       cell = eq%joints%cell(b)
       at = eq%layout%at_pressure(cell)
       joint = eq%layout%at_joint(eq%joints%joint(b))

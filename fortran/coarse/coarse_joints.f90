@@ -33,7 +33,10 @@ module coarse_joints
       !> (branches) the cell beyond the joint in which the fracture, or in a V the way, goes on; 0:
       !! none
       integer(ik), allocatable :: beyond(:)
+      !> (branches) the crack has not come to the joint yet: nothing flows
+      logical, allocatable :: is_shut(:)
    contains
+      procedure :: shut_only
       procedure :: branch_count
       procedure :: mean_pressure
       procedure :: outflow
@@ -80,12 +83,26 @@ contains
                end do
             end associate
          end do
+         allocate (joints%is_shut(n_branches), source=.false.)
          allocate (joints%beyond(n_branches))
          do b = 1, n_branches
             joints%beyond(b) = cell_beyond(fracture, joints, b)
          end do
       end associate
    end subroutine find_joints
+
+   !> Shut the branches that some cells, which cracks have not come to the ends of, reach joints
+   !! with, and no others.
+   pure subroutine shut_only(self, cell, end)
+      class(joints_t), intent(inout) :: self
+      integer(ik), intent(in) :: cell(:)  !< fracture cells
+      integer(ik), intent(in) :: end(:)  !< of each: 1 its start, 2 its end
+      integer(ik) :: b
+
+      do b = 1, self%branch_count()
+         self%is_shut(b) = any(cell == self%cell(b) .and. end == self%end(b))
+      end do
+   end subroutine shut_only
 
    !> Where the way goes on beyond the joint of a branch; 0 if it does not. Cells are stored along
    !! each fracture.

@@ -22,7 +22,7 @@ module coarse_model
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: place_tips, tip_springs
+   use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
@@ -41,10 +41,10 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       type(joints_t) :: joints  !< where they exchange it otherwise
-      real(rk), allocatable :: ahead(:)  !< (tips) how far the mesh goes on beyond each, closed [m]
       !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
       !! regions differ [-]
       real(rk), allocatable :: rock_resistance(:)
+      type(crack_ends_t) :: ends  !< of the cracks
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -87,8 +87,7 @@ contains
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
       end if
-      if (allocated(self%ahead)) deallocate (self%ahead)
-      allocate (self%ahead(mesh%fracture%n_tips), source=0.0_rk)
+      self%ends = free_ends(mesh%fracture)
       call self%condensed%solver%release()
       self%condensed%analysed = .false.
       self%condensed%dt = -1.0_rk
@@ -184,9 +183,8 @@ contains
          if (allocated(error)) return
       end if
       if (n > 0) then
-         call self%condensed%support(tip_springs(mesh%fracture, self%rock, self%condensed, &
-                                                 self%ahead))
-         call place_tips(mesh%fracture, self%condensed%length, self%ahead, self%cells)
+         call self%condensed%support(tip_springs(self%ends, self%rock, self%condensed))
+         call place_tips(self%ends, self%condensed%length, self%cells)
          if (allocated(self%rock_resistance)) then
             self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
          end if

@@ -28,7 +28,15 @@ module coarse_tips
    implicit none(type, external)
    private
 
-   public :: place_tips, tip_springs
+   public :: crack_ends_t, free_ends, place_tips, tip_springs
+
+   !> Ends of cracks: those of the mesh, or before them in cells that are closed. A crack can also
+   !! come to its end short of a joint that the mesh has already.
+   type :: crack_ends_t
+      integer(ik), allocatable :: cell(:)  !< fracture cell that the fracture ends with
+      integer(ik), allocatable :: inwards(:)  !< 1 or -1: from a cell to the next one behind it
+      real(rk), allocatable :: ahead(:)  !< how far the mesh goes on beyond each, closed [m]
+   end type crack_ends_t
 
    real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
 
@@ -38,22 +46,35 @@ module coarse_tips
 
 contains
 
-   !> Stiffness added to that of the condensed body, by unknown of q.
-   pure function tip_springs(fracture, rock, condensed, ahead) result(spring)
+   !> The free tips of a mesh.
+   pure function free_ends(fracture) result(ends)
       type(fracture_mesh_t), intent(in) :: fracture
+      type(crack_ends_t) :: ends
+      integer(ik) :: tip
+
+      allocate (ends%cell(fracture%n_tips))
+      allocate (ends%ahead(fracture%n_tips), source=0.0_rk)
+      do tip = 1, fracture%n_tips
+         ends%cell(tip) = fracture%point_cells%at(fracture%tip_point(tip), 1_ik)
+      end do
+      ends%inwards = merge(1_ik, -1_ik, fracture%tip_end == 1)
+   end function free_ends
+
+   !> Stiffness added to that of the condensed body, by unknown of q.
+   pure function tip_springs(ends, rock, condensed) result(spring)
+      type(crack_ends_t), intent(in) :: ends
       type(rock_t), intent(in) :: rock
       type(condensed_t), intent(in) :: condensed
-      real(rk), intent(in) :: ahead(:)  !< (tips) how far the mesh goes on beyond each [m]
       real(rk) :: spring(condensed%layout%count())  !< [Pa]
       real(rk) :: at_end(2), left, share
       integer(ik) :: cell, step, tip
 
       spring = 0.0_rk
-      do tip = 1, fracture%n_tips
-         cell = tip_cell(fracture, tip)
-         step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
+      do tip = 1, size(ends%cell, kind=ik)
+         cell = ends%cell(tip)
+         step = ends%inwards(tip)
          at_end = in_tip_cell(rock)
-         left = ahead(tip)
+         left = ends%ahead(tip)
          do while (left >= (1.0_rk - least)*condensed%length(cell))  ! the tip is farther back
             call add(cell, (1.0_rk/least - 1.0_rk)*within(rock))
             left = max(0.0_rk, left - condensed%length(cell))
@@ -84,10 +105,9 @@ contains
 
    !> In which cells the tips lie, what share of each cell's length is behind them, and what keeps
    !! its fluid from the rock.
-   pure subroutine place_tips(fracture, length, ahead, cells)
-      type(fracture_mesh_t), intent(in) :: fracture
+   pure subroutine place_tips(ends, length, cells)
+      type(crack_ends_t), intent(in) :: ends
       real(rk), intent(in) :: length(:)  !< (cells) [m]
-      real(rk), intent(in) :: ahead(:)  !< (tips) how far the mesh goes on beyond each [m]
       type(fracture_cells_t), intent(inout) :: cells
       real(rk) :: left
       integer(ik) :: cell, step, tip
@@ -95,10 +115,10 @@ contains
       cells%share = spread(1.0_rk, 1, size(length))
       cells%has_tip = spread(.false., 1, size(length))
       cells%leak_resistance = spread(0.0_rk, 1, size(length))
-      do tip = 1, fracture%n_tips
-         cell = tip_cell(fracture, tip)
-         step = merge(1_ik, -1_ik, fracture%tip_end(tip) == 1)
-         left = ahead(tip)
+      do tip = 1, size(ends%cell, kind=ik)
+         cell = ends%cell(tip)
+         step = ends%inwards(tip)
+         left = ends%ahead(tip)
          do while (left >= (1.0_rk - least)*length(cell))
             cells%share(cell) = least
             cells%leak_resistance(cell) = (1.0_rk/least - 1.0_rk)*leak_within
@@ -113,16 +133,6 @@ contains
          end associate
       end do
    end subroutine place_tips
-
-   !> The fracture cell that ends at a tip; cells are stored along each fracture.
-   pure integer(ik) function tip_cell(fracture, tip)
-      type(fracture_mesh_t), intent(in) :: fracture
-      integer(ik), intent(in) :: tip
-      integer(ik) :: cells(1)
-
-      cells = fracture%point_cells%of(fracture%tip_point(tip))
-      tip_cell = cells(1)
-   end function tip_cell
 
    !> Where a tip is at the end of its cell: stiffness at either end of the cell [Pa].
    pure function in_tip_cell(rock) result(spring)

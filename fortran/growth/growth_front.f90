@@ -7,11 +7,11 @@ module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use base_tolerances, only: same_value
+   use base_tolerances, only: same_place, same_value
    use growth_increment, only: plan_increment, tips_at_onset
    use growth_law, only: new_tip
    use growth_network, only: extend, move_end
-   use growth_targets, only: find_target, target_none
+   use growth_targets, only: find_ahead, find_target, target_none
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, network_t
    implicit none(type, external)
@@ -28,6 +28,10 @@ module growth_front
       real(rk) :: together = 0.0_rk
       real(rk) :: reach = 0.0_rk  !< distance within which a tip has come to something [m]
       logical :: joins = .false.  !< what it comes to; else it stops before that
+      !> The path ends on what lies straight ahead, however near. With `joins` the tip does so at
+      !! once, in its increment; else it is left to the caller how it comes there.
+      logical :: heads = .false.
+      real(rk) :: near = 0.0_rk  !< ends and kinks that near to its way lie on it [m]
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
    end type growth_rules_t
 
@@ -41,7 +45,15 @@ module growth_front
       procedure :: find_tips
       procedure :: grow_tips
       procedure :: grow_by
+      procedure :: look_ahead
    end type front_t
+
+   !> How far a tip looks ahead, in increments: the last piece of a path is up to so long, and no
+   !! shorter than the rest of that.
+   real(rk), parameter :: foresight = 1.5_rk
+
+   !> Share of the way to what lies ahead where the direction of the last piece is found.
+   real(rk), parameter :: half_way = 0.5_rk
 
    abstract interface
       !> Intensities, drives and rosette radii of all tips of the present network.
@@ -103,7 +115,7 @@ contains
       call self%evaluate(timers, error)
       do k = 1, corrections
          if (allocated(error)) return
-         call turn_tips(self, any_turned)
+         call turn_tips(self, advance, any_turned)
          if (.not. any_turned) exit
          call self%evaluate(timers, error)
       end do
@@ -128,7 +140,13 @@ contains
             call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
-            call meet_target(self%rules, self%network, tip, (tip%xy), to)
+            if (self%rules%heads .and. self%rules%joins) then
+               call join_ahead(self, i, (tip%xy), to)
+            else if (self%rules%heads) then
+               call stop_half_way(self, tip%fracture, tip%xy, advance(i), to)
+            else
+               call meet_target(self%rules, self%network, tip, (tip%xy), to)
+            end if
             if (tip%arrested .and. .not. tip%joined) cycle
             if (.not. norm2(to - tip%xy) > same_value*advance(i)) cycle  ! something has come to it
             call extend(self%network, tip%fracture, tip%end, to)
@@ -139,8 +157,9 @@ contains
    end subroutine advance_tips
 
    !> Turn the last advance of each tip whose direction is not yet right.
-   subroutine turn_tips(self, any_turned)
+   subroutine turn_tips(self, advance, any_turned)
       class(front_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
       logical, intent(out) :: any_turned
       logical :: has_turned
       real(rk) :: to(2)
@@ -153,7 +172,13 @@ contains
             call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             to = tip%xy
-            if (self%rules%joins) call meet_target(self%rules, self%network, tip, (tip%origin), to)
+            if (self%rules%heads .and. self%rules%joins) then
+               call join_ahead(self, i, (tip%origin), to)
+            else if (self%rules%heads) then
+               call stop_half_way(self, tip%fracture, tip%origin, advance(i), to)
+            else if (self%rules%joins) then
+               call meet_target(self%rules, self%network, tip, (tip%origin), to)
+            end if
             tip%xy = to
             tip%advance = norm2(tip%xy - tip%origin)
             call move_end(self%network, tip%fracture, tip%end, tip%xy)
@@ -161,6 +186,63 @@ contains
          end associate
       end do
    end subroutine turn_tips
+
+   !> What a tip that goes straight on comes to.
+   pure subroutine look_ahead(self, network, fracture, from, direction, target, at)
+      class(front_t), intent(in) :: self
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(in) :: direction(2)  !< unit vector
+      integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
+      real(rk), intent(out) :: at(2)  !< [m]
+
+      associate (rules => self%rules)
+         call find_ahead(network, rules%outline, fracture, from, &
+                         foresight*rules%increment*direction, rules%near, target, at)
+      end associate
+   end subroutine look_ahead
+
+   !> A tip that has something ahead of it is tried half way to that only.
+   pure subroutine stop_half_way(self, fracture, from, advance, to)
+      class(front_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
+      real(rk), intent(inout) :: to(2)  !< in that direction [m]
+      real(rk) :: at(2), direction(2), room
+      integer(ik) :: target
+
+      direction = (to - from)/norm2(to - from)
+      call self%look_ahead(self%network, fracture, from, direction, target, at)
+      room = advance
+      if (target /= target_none) room = min(room, half_way*norm2(at - from))
+      if (abs(room - norm2(to - from)) > same_value*advance) to = from + room*direction
+   end subroutine stop_half_way
+
+   !> A tip that would come to what lies ahead of it within half an increment from where it goes
+   !! joins it at once: it, or both if that is another one, is no tip any more.
+   subroutine join_ahead(self, i, from, to)
+      class(front_t), intent(inout) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(inout) :: to(2)  !< [m]
+      real(rk) :: at(2)
+      integer(ik) :: target
+      integer :: k
+
+      call self%look_ahead(self%network, self%tip(i)%fracture, from, (to - from)/norm2(to - from), &
+                           target, at)
+      if (target == target_none) return
+      if (norm2(at - from) > norm2(to - from) + (foresight - 1.0_rk)*self%rules%increment) return
+      to = at
+      self%tip(i)%target = target
+      self%tip(i)%joined = .true.
+      call self%tip(i)%cease()
+      do k = 1, size(self%tip)
+         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) call self%tip(k)%cease()
+      end do
+   end subroutine join_ahead
 
    !> A tip that crosses another fracture or the boundary, or comes near it, joins it there, or
    !! stops where it is.

@@ -22,6 +22,8 @@ module growth_segment
       real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
    contains
       procedure :: open_segment
+      procedure :: leave_rest
+      procedure :: finish
       procedure :: place
       procedure :: is_complete
       procedure :: restart
@@ -55,6 +57,25 @@ contains
       self%accepted = 0.0_rk
       self%tries = 0
    end subroutine open_segment
+
+   !> The tip is to go along a share of the piece only.
+   elemental subroutine leave_rest(self, rest)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: rest  !< share that it does not go along by itself [-]
+
+      self%length = (1.0_rk - rest)*self%length
+      self%reached = least*self%length
+   end subroutine leave_rest
+
+   !> The tip is where the piece ends, and will not go on from there.
+   pure subroutine finish(self, end)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: end(2)  !< [m]
+
+      self%length = norm2(end - self%start)
+      self%reached = self%length
+      self%is_open = .false.
+   end subroutine finish
 
    !> Where the tip is [m].
    pure function place(self) result(xy)

@@ -1,13 +1,13 @@
 !> Where a growing tip meets another fracture or the outer boundary.
 module growth_targets
    use base_kinds, only: ik, rk
-   use base_plane, only: crosses, meeting, nearest_place
+   use base_plane, only: crosses, meeting, nearest_place, nearest_share, point_distance
    use base_tolerances, only: same_place
    use mesh_types, only: network_t
    implicit none(type, external)
    private
 
-   public :: find_target, target_boundary, target_none
+   public :: find_ahead, find_target, target_boundary, target_none
 
    integer(ik), parameter :: target_none = 0
    integer(ik), parameter :: target_boundary = -1
@@ -50,6 +50,73 @@ contains
                   target, at)
       end do
    end subroutine find_target
+
+   !> What a tip that goes straight on comes to first, within a reach. Nothing beside its way is
+   !! captured, but ends and kinks that it passes nearer than a mesh can hold.
+   pure subroutine find_ahead(network, corners, fracture, from, way, near, target, at)
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
+      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: from(2)  !< where the tip is [m]
+      real(rk), intent(in) :: way(2)  !< from there as far as it looks [m]
+      real(rk), intent(in) :: near  !< ends and kinks nearer than that lie on the way [m]
+      integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
+      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk) :: best
+      integer(ik) :: f, k, n, v
+
+      target = target_none
+      at = from + way
+      best = huge(1.0_rk)
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (ends => network%xy(:, v:v + 1))
+               if (f == fracture .and. point_distance(from, ends) <= same_place*norm2(way)) cycle
+               call look_at(from, way, ends, near, f, best, target, at)
+            end associate
+         end do
+      end do
+      n = size(corners, 2, kind=ik)
+      do k = 1, n
+         call look_at(from, way, corners(:, [k, mod(k, n) + 1]), near, target_boundary, best, &
+                      target, at)
+      end do
+   end subroutine find_ahead
+
+   !> Keep a segment if the way comes to it before others. A way that meets it at too small an angle
+   !! goes to its nearest place instead.
+   pure subroutine look_at(from, way, ends, near, candidate, best, target, at)
+      real(rk), intent(in) :: from(2), way(2), ends(2, 2), near  !< [m]
+      integer(ik), intent(in) :: candidate
+      real(rk), intent(inout) :: best  !< share of the way to the target so far [-]
+      integer(ik), intent(inout) :: target
+      real(rk), intent(inout) :: at(2)  !< [m]
+      real(rk) :: line(2, 2), place(2), share(2)
+      integer :: k
+
+      line = reshape([from, from + way], [2, 2])
+      share = meeting(line, ends)
+      if (all(share >= 0.0_rk .and. share <= 1.0_rk) .and. share(1) < best) then
+         place = ends(:, 1) + share(2)*(ends(:, 2) - ends(:, 1))
+         associate (nearest => nearest_place(from, ends))
+            if (norm2(nearest - from) < shallow*norm2(place - from)) place = nearest
+         end associate
+         do k = 1, 2
+            if (norm2(place - ends(:, k)) < near) place = ends(:, k)
+         end do
+         best = share(1)
+         target = candidate
+         at = place
+      end if
+      do k = 1, 2
+         if (.not. point_distance(ends(:, k), line) < near) cycle
+         share(1) = nearest_share(ends(:, k), line)
+         if (.not. (share(1) > 0.0_rk .and. share(1) < best)) cycle
+         best = share(1)
+         target = candidate
+         at = ends(:, k)
+      end do
+   end subroutine look_at
 
    !> A segment of the growing fracture from which a new one starts or which it leaves behind.
    pure logical function is_behind(from, to, ends)

@@ -17,6 +17,7 @@ module growth_tip
       logical :: arrested = .false.  !< it will not grow again
       integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
+      integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
       ! Before the last increment of any tip.
       logical, private :: was_arrested = .false., was_free = .true.
@@ -27,6 +28,7 @@ module growth_tip
       type(growth_drive_t) :: drive_before
    contains
       procedure :: begin_increment
+      procedure :: cease
       procedure :: has_just_stopped
       procedure :: has_state
    end type tip_t
@@ -43,6 +45,16 @@ contains
       self%was_arrested = self%arrested
       self%was_free = self%is_free
    end subroutine begin_increment
+
+   !> There is no tip any more, and no intensities are.
+   elemental subroutine cease(self)
+      class(tip_t), intent(inout) :: self
+
+      self%arrested = .true.
+      self%is_free = .false.
+      self%intensity = intensity_t()
+      self%drive = growth_drive_t()
+   end subroutine cease
 
    !> In the last increment it has come to something that it does not join.
    elemental logical function has_just_stopped(self)

@@ -42,6 +42,7 @@ module results_summary
       procedure :: count_dofs
       procedure :: use_feature
       procedure :: leave_out_feature
+      procedure :: use_after_all
       procedure :: note => note_feature
       procedure :: warn
       procedure :: add_newton
@@ -96,6 +97,23 @@ contains
 
       call add_once(self%left_out, feature)
    end subroutine leave_out_feature
+
+   !> Note a feature that the run uses from now on, and has left out so far.
+   subroutine use_after_all(self, feature, left_out)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+      character(len=*), intent(in) :: left_out  !< in words, as it was noted to be left out
+      type(text_t), allocatable :: kept(:)
+      integer :: i
+
+      call self%use_feature(feature)
+      if (.not. allocated(self%left_out)) return
+      allocate (kept(0))
+      do i = 1, size(self%left_out)
+         if (self%left_out(i)%text /= left_out) kept = [kept, self%left_out(i)]
+      end do
+      call move_alloc(kept, self%left_out)
+   end subroutine use_after_all
 
    !> Note a feature that the run uses or else leaves out.
    subroutine note_feature(self, is_used, used, left_out)

@@ -11,20 +11,22 @@ module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use base_tolerances, only: same_place
    use coarse_state, only: step_report_t
    use growth_kinds, only: numbered
-   use growth_network, only: end_place, extend, total_length
+   use growth_network, only: total_length
    use growth_segment, only: segment_t
+   use growth_targets, only: target_none
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
+   use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_wells, only: last_switch
    implicit none(type, external)
    private
 
@@ -43,6 +45,10 @@ module twolevel_equilibrium
    !! [-].
    real(rk), parameter :: much = 4.0_rk
 
+   !> A tip comes to a joint no earlier before the end of a step than this share of the time since
+   !! the wells were switched last [-].
+   real(rk), parameter :: punctual = 5.0e-3_rk
+
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
@@ -60,7 +66,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
-      logical, dimension(size(self%tip)) :: has_begun, in_play, moves, wants
+      logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
       integer(ik) :: kind(size(self%tip))
       logical :: has_measured, is_coupled
       type(lesson_t) :: lesson
@@ -114,8 +120,25 @@ contains
          if (is_coupled) is_coupled = several_kinds(kind, in_play)
          call judge_tips(self, kind, is_coupled, moves, wants)
          if (.not. (any(moves) .or. has_measured)) then
+            joins = wants .and. can_join(self)
+            wants = wants .and. self%tip%heads_for == target_none
+            if (.not. trial%has_joined) trial%time_error = self%step_error(dt)
+            if (any(joins)) then
+               ! The error in time is that up to the joint: what follows is a jump.
+               if (.not. is_last) then
+                  trial%goes_too_far = any(joins .and. has_begun)
+                  trial%arrival = minval(arrivals(self), mask=joins)
+                  trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
+                                  *(self%before%time - last_switch(self%scene, self%before%time))
+                  if (trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)) exit
+               end if
+               call join_targets(self, joins)
+               trial%has_joined = .true.
+               self%state = self%before
+               lesson = lesson_t()
+               cycle
+            end if
             if (.not. any(wants)) then
-               trial%time_error = self%step_error(dt)
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
                if (.not. is_last .and. self%errs(trial%time_error)) exit
                call estimate_coarse_errors(self, timers, error)
@@ -132,7 +155,7 @@ contains
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
             if (trial%goes_too_far) exit
             has_begun = has_begun .or. wants
-            call begin_segments(self, wants, timers, error)
+            call begin_pieces(self, wants, timers, error)
             if (allocated(error)) exit
             lesson = lesson_t()  ! of other pieces
          end if
@@ -264,6 +287,19 @@ contains
       end associate
    end subroutine move_together
 
+   !> Shares of the step after which tips at the ends of their pieces have probably come there, and
+   !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
+   pure function arrivals(self) result(share)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: share(size(self%tip))
+      real(rk), dimension(size(self%tip)) :: beyond, room
+
+      room = self%segment%length - self%segment%accepted
+      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
+      share = room/max(room + beyond, tiny(1.0_rk))
+      share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+   end function arrivals
+
    !> Of K_eq over K_IC [-].
    pure function excesses(self) result(excess)
       class(two_levels_t), intent(in) :: self
@@ -280,54 +316,5 @@ contains
       in_play = self%segment%is_open .and. (excesses(self) > -tolerance .or. &
                                             self%segment%reached > self%segment%lowest())
    end function tips_in_play
-
-   !> New segments for tips, which stand at the ends of their paths: their directions are found in
-   !! the tried state; then the coarse level, back in the state before the step, gets their cells.
-   subroutine begin_segments(self, wants, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      logical, intent(in) :: wants(:)  !< (tips)
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: centres(:, :)
-      real(rk) :: to(2)
-      logical :: any_grew, is_new(size(self%tip))
-      integer(ik) :: i
-
-      self%segment%is_open = self%segment%is_open .and. .not. wants
-      is_new = wants
-      do i = 1, size(self%tip, kind=ik)
-         if (.not. wants(i)) cycle
-         associate (tip => self%tip(i), segment => self%segment(i))
-            to = end_place(self%coarse_network, tip%fracture, tip%end)
-            is_new(i) = .not. norm2(to - tip%xy) > same_place*self%rules%increment
-            if (is_new(i)) cycle
-            ! An earlier try of this step has begun it, and its path has learned from that.
-            tip = self%begun(i)
-            call extend(self%network, tip%fracture, tip%end, to)
-            call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
-         end associate
-      end do
-      if (.not. any(is_new)) then
-         self%state = self%before
-         return
-      end if
-      call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new), any_grew, timers, error)
-      if (allocated(error)) return
-      allocate (centres(2, 0))
-      do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i))
-            if (.not. (is_new(i) .and. tip%advance > 0.0_rk)) cycle
-            call self%segment(i)%open_segment(tip%origin, tip%direction, norm2(tip%xy - tip%origin))
-            self%begun(i) = tip
-            call extend(self%coarse_network, tip%fracture, tip%end, tip%xy)
-            centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])
-         end associate
-      end do
-      self%state = self%before
-      if (size(centres, 2) == 0) return
-      call self%remesh_coarse(centres, timers, error)
-      self%before = self%state
-      self%has_new_mesh = .true.
-   end subroutine begin_segments
 
 end module twolevel_equilibrium

@@ -14,8 +14,8 @@ module twolevel_handover
 contains
 
    !> Give the coarse network what has grown on the fine level, once some tip's growth reaches the
-   !! threshold. Tips with at least half of it go along. The fine network gets the same straight
-   !! segments.
+   !! threshold, or a tip has joined something. Tips with at least half of it go along. The fine
+   !! network gets the same straight segments.
    pure subroutine hand_over(threshold, network, tips, coarse, centres, is_straightened)
       real(rk), intent(in) :: threshold  !< eps_p dH [m]
       type(network_t), intent(inout) :: network  !< the fine one
@@ -25,6 +25,7 @@ contains
       real(rk), allocatable, intent(out) :: centres(:, :)
       logical, intent(out) :: is_straightened  !< the fine network has changed too
       real(rk) :: pending(size(tips))
+      logical :: has_joined(size(tips))
       integer(ik) :: i, n
 
       is_straightened = .false.
@@ -32,10 +33,11 @@ contains
          pending(i) = end_gain(network, coarse, tips(i)%fracture, tips(i)%end)
       end do
       allocate (centres(2, 0))
-      if (.not. any(pending >= threshold*(1.0_rk - same_value))) return
+      has_joined = tips%joined .and. pending > same_value*threshold
+      if (.not. any(pending >= threshold*(1.0_rk - same_value) .or. has_joined)) return
       do i = 1, size(tips, kind=ik)
          associate (tip => tips(i))
-            if (pending(i) < 0.5_rk*threshold) cycle
+            if (pending(i) < 0.5_rk*threshold .and. .not. has_joined(i)) cycle
             n = end_vertices(network, coarse, tip%fracture, tip%end)
             call extend(coarse, tip%fracture, tip%end, tip%xy)
             centres = reshape([centres, tip%xy], [2, size(centres, 2) + 1])

@@ -1,12 +1,18 @@
 !> Where tips are along the last pieces of their paths, on both levels.
+!!
+!! The last cell of a fracture ends with its last piece, at a joint if that ends on something. As
+!! long as its tip has not come to it, nothing flows there.
 module twolevel_places
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use growth_network, only: end_gain, move_end
+   use growth_tip, only: tip_t
+   use mesh_types, only: fracture_mesh_t
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
-   public :: advances, place_tips, tip_cell_lengths
+   public :: advances, end_cell, place_tips, tip_cell_lengths
 
 contains
 
@@ -20,11 +26,14 @@ contains
          advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
                        - self%segment(i)%gain
       end do
+      ! Rounding is left of tips that have not moved, where the other end of their fracture has.
+      where (abs(advances) <= same_place*self%rules%increment) advances = 0.0_rk
    end function advances
 
    !> Put the tips of both levels where their segments say.
    subroutine place_tips(self)
       class(two_levels_t), intent(inout) :: self
+      integer(ik), allocatable :: free(:)
       integer(ik) :: i, k
 
       associate (fracture => self%mesh%fracture)
@@ -36,33 +45,37 @@ contains
                call move_end(self%network, tip%fracture, tip%end, tip%xy)
             end associate
          end do
-         do k = 1, fracture%n_tips
-            i = findloc(self%tip%fracture == fracture%tip_fracture(k) .and. &
-                        self%tip%end == fracture%tip_end(k), .true., dim=1)
-            if (i == 0) cycle
-            self%model%ahead(k) = norm2(fracture%point_xy(:, fracture%tip_point(k)) &
-                                        - self%tip(i)%xy)
-         end do
+         free = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%is_free)
+         associate (ends => self%model%ends)
+            ends%cell = [(end_cell(fracture, self%tip(free(k))), k=1, size(free))]
+            ends%inwards = merge(1_ik, -1_ik, self%tip(free)%end == 1)
+            ends%ahead = [(norm2(fracture%point_xy(:, fracture%cell_points( &
+                                                   self%tip(free(k))%end, ends%cell(k))) &
+                                 - self%tip(free(k))%xy), k=1, size(free))]
+            call self%model%joints%shut_only(ends%cell, self%tip(free)%end)
+         end associate
       end associate
    end subroutine place_tips
 
-   !> Length of the coarse cell at each tip [m].
+   !> The fracture cell that a fracture ends with at a tip; cells are stored along each fracture.
+   pure integer(ik) function end_cell(fracture, tip)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(tip_t), intent(in) :: tip
+
+      end_cell = findloc(fracture%cell_fracture, tip%fracture, dim=1, back=tip%end == 2)
+   end function end_cell
+
+   !> Length of the coarse cell at each tip [m]; 0 where there is none any more.
    pure function tip_cell_lengths(self) result(length)
       class(two_levels_t), intent(in) :: self
       real(rk) :: length(size(self%tip))
-      integer(ik) :: i, k
+      integer(ik) :: i
 
       length = 0.0_rk
-      associate (fracture => self%mesh%fracture)
-         do k = 1, fracture%n_tips
-            i = findloc(self%tip%fracture == fracture%tip_fracture(k) .and. &
-                        self%tip%end == fracture%tip_end(k), .true., dim=1)
-            if (i == 0) cycle
-            associate (cells => fracture%point_cells%of(fracture%tip_point(k)))
-               length(i) = self%model%condensed%length(cells(1))
-            end associate
-         end do
-      end associate
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%is_free) cycle
+         length(i) = self%model%condensed%length(end_cell(self%mesh%fracture, self%tip(i)))
+      end do
    end function tip_cell_lengths
 
 end module twolevel_places

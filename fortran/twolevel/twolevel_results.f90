@@ -2,15 +2,18 @@
 module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stresses, nodal_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
+   use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
    use results_rows, only: history_row_t, probe_row_t
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
+   use twolevel_places, only: end_cell
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
@@ -43,6 +46,7 @@ contains
       class(two_levels_t), intent(in) :: simulation
       real(rk), intent(in) :: mass_error  !< of all steps so far [m2]
       type(history_row_t) :: row
+      type(fracture_mesh_t) :: fracture
       real(rk) :: fluid  ! that the mass error is compared with [m2]
       integer(ik), allocatable :: states(:)
 
@@ -53,10 +57,12 @@ contains
          row%prefilled = simulation%prefilled
          row%outflow = simulation%outflow
          row%fracture_length = total_length(simulation%network)
-         row%n_tips = size(simulation%tip)
+         row%n_tips = count(simulation%tip%is_free)
          if (simulation%mesh%fracture%n_cells > 0) then
             row%well_pressure = simulation%well_pressure()
-            row%n_intersections = count(is_intersection(simulation%mesh%fracture))
+            fracture = simulation%mesh%fracture
+            call end_at_tips(simulation, fracture)
+            row%n_intersections = count(is_intersection(fracture))
             row%fracture_volume = sum((state%aperture - state%void &
                                        - simulation%model%cells%roughness) &
                                       *simulation%model%condensed%length)
@@ -128,6 +134,8 @@ contains
       class(two_levels_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
       real(rk), allocatable :: nodal(:, :)
+      integer(ik), allocatable :: shown(:)
+      integer(ik) :: k
 
       snapshot%time = simulation%state%time
       snapshot%mesh = simulation%mesh
@@ -152,8 +160,13 @@ contains
          fracture%void = state%void
          fracture%state = cell_states(simulation)
          fracture%flow = fracture_flow(simulation)
-         snapshot%intersection%point = simulation%model%joints%point
-         snapshot%intersection%pressure = state%joint_pressure
+         associate (joints => simulation%model%joints)
+            ! Those to come are not shown.
+            shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
+                                                 k=1, joints%n)])
+            snapshot%intersection%point = joints%point(shown)
+            snapshot%intersection%pressure = state%joint_pressure(shown)
+         end associate
       end associate
    end function snapshot_of_levels
 
@@ -187,15 +200,18 @@ contains
    end function is_intersection
 
    !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
-   !! those of the coarse mesh go on beyond them, closed.
+   !! those of the coarse mesh go on beyond them, closed, and may end at a joint to come.
    pure subroutine end_at_tips(simulation, fracture)
       class(two_levels_t), intent(in) :: simulation
       type(fracture_mesh_t), intent(inout) :: fracture
       real(rk) :: first, last
-      integer(ik) :: cell, end
+      integer(ik) :: cell, end, i
 
       if (.not. (simulation%scene%growth%enabled .and. &
                  simulation%scene%growth%law == "equilibrium")) return
+      do i = 1, size(simulation%tip, kind=ik)
+         if (simulation%tip(i)%is_free) call detach_tip(simulation%tip(i), fracture)
+      end do
       do cell = 1, fracture%n_cells
          associate (f => fracture%cell_fracture(cell), network => simulation%network)
             first = network%s_start(f)
@@ -211,6 +227,52 @@ contains
          end associate
       end do
    end subroutine end_at_tips
+
+   !> A fracture whose last cell ends at a joint, but whose tip has not come to it, gets a tip point
+   !! of its own there, and the joint one branch less.
+   pure subroutine detach_tip(tip, fracture)
+      type(tip_t), intent(in) :: tip
+      type(fracture_mesh_t), intent(inout) :: fracture
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: cell, k, point
+      type(lists_t) :: point_cells
+
+      cell = end_cell(fracture, tip)
+      point = fracture%cell_points(tip%end, cell)
+      if (fracture%point_kind(point) == point_tip) return
+      cells = fracture%point_cells%of(point)
+      cells = pack(cells, cells /= cell)
+      associate (n => fracture%n_points, old => fracture%point_cells)
+         point_cells%first = [old%first, old%first(n + 1)]
+         point_cells%first(point + 1:n + 1) = point_cells%first(point + 1:n + 1) - 1
+         point_cells%item = [old%item(:old%first(point) - 1), cells, &
+                             old%item(old%first(point + 1):), cell]
+         fracture%point_cells = point_cells
+         fracture%point_xy = reshape([fracture%point_xy, tip%xy], [2_ik, n + 1])
+         fracture%point_kind = [fracture%point_kind, point_tip]
+         n = n + 1
+      end associate
+      fracture%cell_points(tip%end, cell) = fracture%n_points
+      ! What is left may be no joint any more.
+      associate (others => fracture%cell_fracture(cells))
+         if (size(cells) == 0) fracture%point_kind(point) = point_interior
+         if (size(cells) == 2) then
+            if (others(1) == others(2) .and. abs(cells(2) - cells(1)) == 1) then
+               fracture%point_kind(point) = point_interior
+            end if
+         end if
+      end associate
+      associate (n => fracture%n_tips)
+         fracture%tip_point = [fracture%tip_point, fracture%n_points]
+         fracture%tip_node = [fracture%tip_node, 0_ik]
+         fracture%tip_fracture = [fracture%tip_fracture, tip%fracture]
+         fracture%tip_end = [fracture%tip_end, tip%end]
+         fracture%tip_direction = reshape([(fracture%tip_direction(:, k), k=1, n), tip%direction], &
+                                          [2_ik, n + 1])
+         fracture%tip_radius = [fracture%tip_radius, 0.0_rk]
+         n = n + 1
+      end associate
+   end subroutine detach_tip
 
    !> Unknowns by block, for run.json.
    subroutine count_unknowns(simulation, summary)

@@ -27,6 +27,11 @@ module twolevel_simulation
 
    public :: twolevel_simulation_t
 
+   ! What the log calls it that fractures meet, or do not.
+   character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
+                                  "or out of the body"
+   character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
+
    !> Both levels, the last step, and how the next one is chosen.
    type, extends(two_levels_t) :: twolevel_simulation_t
       logical :: has_begun = .false.  !< the first state has been asked for
@@ -88,8 +93,7 @@ contains
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
          call summary%note(any(scene%sides%pressure_given), "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
-         call summary%note(self%model%joints%n > 0, "intersections: flow from fracture to "// &
-                           "fracture or out of the body", "intersections: fractures do not meet")
+         call summary%note(self%model%joints%n > 0, meeting, not_meeting)
       end associate
    end subroutine note_features
 
@@ -252,6 +256,8 @@ contains
       end if
       call self%stepper%step_done(trial, self%dt)
       call self%trend%accept(self%before, self%state, self%dt)
+      ! The rates of a step in which cracks have joined mean nothing for the next.
+      if (trial%has_joined) call self%follow_trend(at_rest=.false.)
       if (.not. is_unstable) return
       call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
@@ -276,6 +282,7 @@ contains
                                        minval(self%state%pressure))
          summary%cells = self%mesh%n_cells
          summary%fracture_cells = self%mesh%fracture%n_cells
+         if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)
          call summary%add_newton(report%iterations)
          call count_unknowns(self, summary)
          call self%note_contact(self%mesh%fracture, cell_states(self), always, always)

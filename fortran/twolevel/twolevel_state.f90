@@ -22,6 +22,7 @@ module twolevel_state
    use twolevel_handover, only: hand_over
    use twolevel_certainty, only: certainty_t
    use twolevel_outlines, only: follow_outlines
+   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
@@ -39,6 +40,10 @@ module twolevel_state
    !> Share of the toughness that tips may lack to grow together with the first: the two methods for
    !! the intensities differ by about as much.
    real(rk), parameter :: together = 0.01_rk
+
+   !> Ends and kinks lie on the way of a tip that passes them nearer than that, in increments and in
+   !! cells: no mesh of good shape fits between.
+   real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
    !> Both levels; `network` is that of the fine one, which is ahead of the coarse one.
    type, abstract, extends(simulation_t) :: two_levels_t
@@ -128,16 +133,19 @@ contains
                             self%scene%material%young, length)
    end subroutine follow_trend
 
-   !> How tips grow: they stop before they come nearer to anything than a coarse cell, for the
-   !! coarse mesh cannot make joints of them yet.
+   !> How tips grow: they join what lies ahead of them, by the law of advances at once, as they come
+   !! near to it.
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
 
       rules = growth_rules_t(toughness=scene%material%toughness, &
                              increment=scene%growth%increment, exponent=scene%growth%exponent, &
-                             together=together, reach=scene%discretization%size_fracture, &
-                             joins=.false., outline=corners(scene%domain))
+                             together=together, &
+                             joins=scene%growth%law /= "equilibrium", heads=.true., &
+                             near=max(near_way*scene%growth%increment, &
+                                      near_in_mesh*scene%discretization%size_fracture), &
+                             outline=corners(scene%domain))
    end function rules_of_scene
 
    !> Of the rectangle, counter-clockwise [m].
@@ -365,16 +373,20 @@ contains
       type(mesh_map_t), intent(in) :: map
       type(state_t) :: state
       type(fracture_cells_t) :: cells
+      type(overlaps_t) :: overlaps
       real(rk) :: prefilled
       integer(ik) :: i
       logical :: is_prefilled
 
       is_prefilled = self%scene%growth%new_volume == "prefilled"
-      call transfer_cells(map, mesh, self%model%cells, self%scene%growth%new_aperture, &
+      call transfer_cells(self%mesh, mesh, self%model%cells, self%scene%growth%new_aperture, &
                           is_prefilled, cells)
       call transfer_state(map, self%mesh, mesh, cells, is_prefilled, self%state, state, prefilled)
-      self%share = transfer_shares(map, self%share)
-      self%grown = pack([(i, i=1, mesh%fracture%n_cells)], map%fracture_cell_old == 0)
+      self%share = transfer_shares(self%scene%injections, self%mesh%fracture, mesh%fracture, &
+                                   self%share)
+      overlaps = fracture_overlaps(self%mesh%fracture, mesh%fracture)
+      self%grown = pack([(i, i=1, mesh%fracture%n_cells)], &
+                        overlaps%is_new([(i, i=1, mesh%fracture%n_cells)]))
       self%mesh = mesh
       self%model%cells = cells
       self%state = state

@@ -30,14 +30,20 @@ module twolevel_stepping
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
       logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      logical :: has_joined = .false.  !< a tip has joined something in it
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
+      logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
+      real(rk) :: arrival = 1.0_rk  !< share of the step after which it does [-]
       real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
       real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
       character(len=:), allocatable :: reason  !< why the equations were not solved
    contains
       procedure :: why_cut
    end type trial_t
+
+   !> Share of a step that it is cut to at least lest a tip come to a joint too early in it.
+   real(rk), parameter :: soonest = 0.05_rk
 
    !> What decides about the next step.
    type :: stepper_t
@@ -89,6 +95,7 @@ contains
       type(trial_t), intent(in) :: trial
 
       takes = trial%converged .and. .not. trial%goes_too_far .and. .not. trial%onset < 1.0_rk
+      takes = takes .and. .not. trial%is_late
       if (self%tolerance > 0.0_rk) takes = takes .and. trial%time_error <= self%tolerance
    end function takes
 
@@ -101,6 +108,8 @@ contains
 
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
+      else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
+         dt = max(soonest, trial%arrival)*dt
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else
@@ -184,6 +193,8 @@ contains
          words = "growth finds no equilibrium within a segment"
       else if (self%onset < 1.0_rk) then
          words = "a tip begins to grow in it"
+      else if (self%is_late) then
+         words = "a tip comes to a joint in it"
       else
          words = "its error in time is too large"
       end if

@@ -1,16 +1,18 @@
 !> From the coarse mesh before growth to the one after it.
 !!
 !! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or
-!! lost; old fracture cells keep their state as it is. A new fracture cell is closed, without slip,
-!! at the pressure of the cell that it grew from. Its residual aperture is the roughness of its
-!! faces, which conducts fluid but holds none that is worth counting ("conserved"), or it is open
-!! and comes along filled ("prefilled").
+!! lost; old fracture cells keep their state as it is. Where a joint has divided cells or moved a
+!! node between two, jumps are those of the old cells there, linear along each, and the fluid is
+!! that of the parts. A new fracture cell is closed, without slip, at the pressure of the cell that
+!! it grew from. Its residual aperture is the roughness of its faces, which conducts fluid but holds
+!! none that is worth counting ("conserved"), or it is open and comes along filled ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
    use coarse_geometry, only: cell_area
    use coarse_layout, only: block_count, end_block
    use coarse_state, only: fracture_cells_t, state_t
-   use mesh_types, only: mesh_map_t, mesh_t
+   use mesh_types, only: fracture_mesh_t, mesh_map_t, mesh_t
+   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)
    private
 
@@ -19,30 +21,34 @@ module twolevel_transfer
 contains
 
    !> Properties of the fracture cells of the new mesh.
-   subroutine transfer_cells(map, mesh, before, new_aperture, is_prefilled, after)
-      type(mesh_map_t), intent(in) :: map
-      type(mesh_t), intent(in) :: mesh  !< the new one
+   pure subroutine transfer_cells(mesh_before, mesh, before, new_aperture, is_prefilled, after)
+      type(mesh_t), intent(in) :: mesh_before, mesh
       type(fracture_cells_t), intent(in) :: before
       real(rk), intent(in) :: new_aperture  !< residual aperture of new cells [m]
       logical, intent(in) :: is_prefilled  !< it holds fluid from the start
       type(fracture_cells_t), intent(out) :: after
+      type(overlaps_t) :: overlaps
       integer(ik) :: i, old
 
+      overlaps = fracture_overlaps(mesh_before%fracture, mesh%fracture)
       allocate (after%law(mesh%fracture%n_cells), after%residual_aperture(mesh%fracture%n_cells))
       allocate (after%injection(mesh%fracture%n_cells), after%roughness(mesh%fracture%n_cells), &
                 source=0.0_rk)
       do i = 1, mesh%fracture%n_cells
-         old = map%fracture_cell_old(i)
-         if (old > 0) then
-            after%law(i) = before%law(old)
-            after%residual_aperture(i) = before%residual_aperture(old)
-            after%roughness(i) = before%roughness(old)
-            after%injection(i) = before%injection(old)
-         else
-            after%law(i) = before%law(nearest_old(map, mesh, i))
+         if (overlaps%is_new(i)) then
+            after%law(i) = before%law(nearest_old(mesh_before%fracture, mesh%fracture, i))
             after%residual_aperture(i) = new_aperture
             if (.not. is_prefilled) after%roughness(i) = new_aperture
+            cycle
          end if
+         old = overlaps%main(i)
+         after%law(i) = before%law(old)
+         after%injection(i) = before%injection(old)
+         after%residual_aperture(i) = before%residual_aperture(old)
+         after%roughness(i) = before%roughness(old)
+         if (overlaps%is_whole(i, mesh_before%fracture, mesh%fracture)) cycle
+         after%residual_aperture(i) = overlaps%mean(i, before%residual_aperture)
+         after%roughness(i) = overlaps%mean(i, before%roughness)
       end do
    end subroutine transfer_cells
 
@@ -56,9 +62,11 @@ contains
       type(state_t), intent(out) :: after
       real(rk), intent(out) :: prefilled  !< [m2]
       integer(ik), parameter :: both(2) = [1_ik, 2_ik]  ! ends of a fracture cell
+      type(overlaps_t) :: overlaps
       integer(ik) :: c, i, k, n, old
       real(rk) :: area
 
+      overlaps = fracture_overlaps(mesh_before%fracture, mesh%fracture)
       n = mesh%fracture%n_cells
       after%time = before%time
       allocate (after%unknowns(3, block_count(mesh)), after%content(mesh%n_cells), source=0.0_rk)
@@ -86,49 +94,99 @@ contains
       allocate (after%void(n), source=0.0_rk)
       prefilled = 0.0_rk
       do i = 1, n
-         old = map%fracture_cell_old(i)
-         if (old > 0) then
-            after%jump(:, :, i) = before%jump(:, :, old)
-            after%slip_before(:, i) = before%slip_before(:, old)
-            after%traction(:, :, i) = before%traction(:, :, old)
-            after%contact(:, i) = before%contact(:, old)
-            after%pressure(i) = before%pressure(old)
-            after%aperture(i) = before%aperture(old)
-            after%void(i) = before%void(old)
-            after%leakoff(i) = before%leakoff(old)
-            after%unknowns(:, end_block(mesh, i, both)) = &
-               before%unknowns(:, end_block(mesh_before, old, both))
-         else
-            after%pressure(i) = before%pressure(nearest_old(map, mesh, i))
+         if (overlaps%is_new(i)) then
+            after%pressure(i) = before%pressure(nearest_old(mesh_before%fracture, &
+                                                            mesh%fracture, i))
             after%unknowns(3, end_block(mesh, i, both)) = after%pressure(i)
             after%aperture(i) = cells%residual_aperture(i)
             if (is_prefilled) prefilled = prefilled + after%aperture(i) &
                                           *(mesh%fracture%cell_s(2, i) - mesh%fracture%cell_s(1, i))
+            cycle
+         end if
+         old = overlaps%main(i)
+         after%jump(:, :, i) = before%jump(:, :, old)
+         after%slip_before(:, i) = before%slip_before(:, old)
+         after%traction(:, :, i) = before%traction(:, :, old)
+         after%contact(:, i) = before%contact(:, old)
+         after%pressure(i) = before%pressure(old)
+         after%aperture(i) = before%aperture(old)
+         after%void(i) = before%void(old)
+         after%leakoff(i) = before%leakoff(old)
+         after%unknowns(:, end_block(mesh, i, both)) = &
+            before%unknowns(:, end_block(mesh_before, old, both))
+         if (.not. overlaps%is_whole(i, mesh_before%fracture, mesh%fracture)) then
+            call transfer_parts(overlaps, i, mesh_before%fracture, mesh%fracture, before, after)
          end if
       end do
    end subroutine transfer_state
 
-   !> The old cell that is nearest to a new one along its fracture.
-   pure function nearest_old(map, mesh, cell) result(old)
-      type(mesh_map_t), intent(in) :: map
-      type(mesh_t), intent(in) :: mesh
+   !> A cell that consists of parts of others. Their fluid goes along with them: the volume, and as
+   !! the pressure is the mean by volume, the mass.
+   pure subroutine transfer_parts(overlaps, cell, fracture_before, fracture, before, after)
+      type(overlaps_t), intent(in) :: overlaps
       integer(ik), intent(in) :: cell
-      integer(ik) :: old
+      type(fracture_mesh_t), intent(in) :: fracture_before, fracture
+      type(state_t), intent(in) :: before
+      type(state_t), intent(inout) :: after
+      real(rk) :: aperture, held, mass, part(2), s, volume, weight(2)
+      integer(ik) :: end, k, old
 
-      real(rk) :: distance, shortest
-      integer(ik) :: i
-
-      shortest = huge(1.0_rk)
-      old = 0
-      do i = 1, mesh%fracture%n_cells
-         if (map%fracture_cell_old(i) == 0) cycle
-         if (mesh%fracture%cell_fracture(i) /= mesh%fracture%cell_fracture(cell)) cycle
-         distance = abs(sum(mesh%fracture%cell_s(:, i)) - sum(mesh%fracture%cell_s(:, cell)))
-         if (distance < shortest) then
-            shortest = distance
-            old = map%fracture_cell_old(i)
-         end if
+      volume = 0.0_rk
+      held = 0.0_rk
+      mass = 0.0_rk
+      do k = overlaps%first(cell), overlaps%first(cell + 1) - 1
+         old = overlaps%old(k)
+         associate (ends => fracture_before%cell_s(:, old), here => fracture%cell_s(:, cell))
+            part = [max(ends(1), here(1)), min(ends(2), here(2))]
+            weight = shares(0.5_rk*sum(part), ends)
+         end associate
+         aperture = before%aperture(old) + dot_product(weight - 0.5_rk, before%jump(1, :, old))
+         volume = volume + overlaps%length(k)*aperture
+         held = held + overlaps%length(k)*(aperture - before%void(old))
+         mass = mass + overlaps%length(k)*(aperture - before%void(old))*before%pressure(old)
       end do
+      associate (s => fracture%cell_s(:, cell))
+         after%aperture(cell) = volume/(s(2) - s(1))
+      end associate
+      if (abs(held) > 0.0_rk) after%pressure(cell) = mass/held
+      after%void(cell) = overlaps%mean(cell, before%void)
+      after%leakoff(cell) = overlaps%mean(cell, before%leakoff)
+      do end = 1, 2
+         s = dot_product(fracture%cell_s(:, cell), merge([2.0_rk, 1.0_rk], [1.0_rk, 2.0_rk], &
+                                                         end == 1))/3.0_rk
+         do k = overlaps%first(cell), overlaps%first(cell + 1) - 1
+            old = overlaps%old(k)
+            associate (ends => fracture_before%cell_s(:, old))
+               if (s > ends(2) .and. k < overlaps%first(cell + 1) - 1) cycle
+               weight = shares(s, ends)
+            end associate
+            after%jump(:, end, cell) = matmul(before%jump(:, :, old), weight)
+            after%slip_before(end, cell) = dot_product(before%slip_before(:, old), weight)
+            after%contact(end, cell) = before%contact(maxloc(weight, dim=1), old)
+            exit
+         end do
+      end do
+   end subroutine transfer_parts
+
+   !> How much the jumps at the start and the end of a cell count at a place, which are known at the
+   !! third points and linear between [-].
+   pure function shares(s, ends) result(weight)
+      real(rk), intent(in) :: s  !< [m]
+      real(rk), intent(in) :: ends(2)  !< of the cell [m]
+      real(rk) :: weight(2)
+      real(rk) :: t
+
+      t = 3.0_rk*(s - ends(1))/(ends(2) - ends(1)) - 1.0_rk
+      weight = [1.0_rk - t, t]
+   end function shares
+
+   !> The old cell that is nearest to a new one along its fracture.
+   pure integer(ik) function nearest_old(before, after, cell)
+      type(fracture_mesh_t), intent(in) :: before, after
+      integer(ik), intent(in) :: cell
+
+      nearest_old = minloc(abs(sum(before%cell_s, dim=1) - sum(after%cell_s(:, cell))), dim=1, &
+                           mask=before%cell_fracture == after%cell_fracture(cell))
    end function nearest_old
 
 end module twolevel_transfer

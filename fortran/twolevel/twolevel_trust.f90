@@ -48,7 +48,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      if (size(self%tip) == 0) return
+      if (.not. any(self%tip%is_free)) return
       call timers%start(phase_tips)
       call estimate(self, error)
       call timers%stop(phase_tips)
@@ -67,6 +67,7 @@ contains
       if (allocated(error)) return
       straight = 0.0_rk
       do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%is_free) cycle
          associate (window => self%windows%window(i), linear => self%coarse_values%nodal(:2, :))
             call window%intensity_with(better, error, &
                                        edge=window%curved_edge(self%mesh, displacement, gradient))
@@ -198,6 +199,7 @@ contains
       nearest = 0
       shortest = huge(1.0_rk)
       do w = 1, size(self%windows%window, kind=ik)
+         if (.not. self%tip(w)%is_free) cycle
          associate (window => self%windows%window(w))
             if (any(minval(points, dim=2) < window%lower) .or. &
                 any(maxval(points, dim=2) > window%upper)) cycle
@@ -246,6 +248,7 @@ contains
       q = 0.0_rk
       associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
          do w = 1, size(self%windows%window, kind=ik)
+            if (.not. self%tip(w)%is_free) cycle
             associate (window => self%windows%window(w))
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])

@@ -3,12 +3,15 @@ module twolevel_wells
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place, same_time, same_value
    use coarse_joints, only: joints_t
-   use mesh_types, only: fracture_mesh_t, mesh_map_t
+   use base_plane, only: nearest_place
+   use mesh_types, only: fracture_mesh_t
    use scene_types, only: injection_t, scene_t
+   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)
    private
 
-public :: between_cells, feed_joints, mean_pressure, next_switch, rate, share_wells, transfer_shares
+   public :: between_cells, feed_joints, last_switch, mean_pressure, next_switch, rate
+   public :: share_wells, transfer_shares
 
 contains
 
@@ -78,16 +81,39 @@ contains
       between = wells%at_point .and. count(share > 0.0_rk, dim=1) == 2
    end function between_cells
 
-   !> The shares on a new mesh: the wells go on feeding the cells that they fed.
-   pure function transfer_shares(map, before) result(after)
-      type(mesh_map_t), intent(in) :: map
+   !> The shares on a new mesh: the wells go on feeding the cells that they fed. Where those have
+   !! been divided, each part gets its share, or that part all of it where the well stands.
+   pure function transfer_shares(wells, fracture_before, fracture, before) result(after)
+      type(injection_t), intent(in) :: wells(:)
+      type(fracture_mesh_t), intent(in) :: fracture_before, fracture
       real(rk), intent(in) :: before(:, :)  !< (old fracture cells, wells) [-]
-      real(rk) :: after(size(map%fracture_cell_old), size(before, 2))
-      integer(ik) :: i
+      real(rk) :: after(fracture%n_cells, size(before, 2))
+      real(rk) :: distance(fracture%n_cells)
+      type(overlaps_t) :: overlaps
+      integer(ik) :: i, k, w
 
+      overlaps = fracture_overlaps(fracture_before, fracture)
       after = 0.0_rk
-      do i = 1, size(after, 1, kind=ik)
-         if (map%fracture_cell_old(i) > 0) after(i, :) = before(map%fracture_cell_old(i), :)
+      do i = 1, fracture%n_cells
+         do k = overlaps%first(i), overlaps%first(i + 1) - 1
+            associate (s => fracture_before%cell_s(:, overlaps%old(k)))
+               after(i, :) = after(i, :) + before(overlaps%old(k), :) &
+                             *overlaps%length(k)/(s(2) - s(1))
+            end associate
+         end do
+      end do
+      do w = 1, size(wells, kind=ik)
+         if (.not. wells(w)%at_point .or. count(after(:, w) > 0.0_rk) < 2) cycle
+         do i = 1, fracture%n_cells
+            distance(i) = huge(1.0_rk)
+            if (.not. after(i, w) > 0.0_rk) cycle
+            associate (xy => fracture%point_xy(:, fracture%cell_points(:, i)), &
+                       s => fracture%cell_s(:, i), place => [wells(w)%x, wells(w)%y])
+               distance(i) = norm2(nearest_place(place, xy) - place)/(s(2) - s(1))
+            end associate
+         end do
+         after(:, w) = merge(1.0_rk, 0.0_rk, distance <= minval(distance) + same_place)
+         after(:, w) = after(:, w)/sum(after(:, w))
       end do
    end function transfer_shares
 
@@ -117,6 +143,22 @@ contains
                 /(count(is_well) + count(is_fed))
       end if
    end function mean_pressure
+
+   !> The last time at which a well started or ended, or the scene did [s].
+   pure function last_switch(scene, now) result(time)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: now  !< [s]
+      real(rk) :: time
+      integer(ik) :: w
+
+      time = 0.0_rk
+      do w = 1, size(scene%injections, kind=ik)
+         associate (well => scene%injections(w))
+            if (well%start <= now) time = max(time, well%start)
+            if (well%end <= now) time = max(time, well%end)
+         end associate
+      end do
+   end function last_switch
 
    !> The next time at which a well starts or ends, or the scene does [s].
    pure function next_switch(scene, now) result(time)

@@ -60,6 +60,10 @@ contains
       call see_tips(self, tips)
       do i = 1, size(tips, kind=ik)
          associate (tip => tips(i), window => self%window(i))
+            if (.not. tip%is_free) then
+               self%built(i) = .false.
+               cycle
+            end if
             if (.not. self%built(i)) then
                call window%build(scene, network, tip%fracture, tip%end, error)
                if (allocated(error)) return

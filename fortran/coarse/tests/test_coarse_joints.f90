@@ -24,7 +24,8 @@ program test_coarse_joints
    type(checks_t) :: checks
 
    call test_places()
-   call test_slopes()
+   call test_slopes(.false.)
+   call test_slopes(.true.)
    call test_linear_state()
    call test_sectors()
    call test_star()
@@ -134,7 +135,8 @@ contains
    end subroutine test_places
 
    !> All derivatives of the equations of joints and branches, and by their unknowns.
-   subroutine test_slopes()
+   subroutine test_slopes(with_shut)
+      logical, intent(in) :: with_shut  !< the first branch of all joints, and all of the last one
       type(mesh_t) :: mesh
       type(coarse_model_t), target :: model
       type(state_t), target :: state
@@ -145,6 +147,7 @@ contains
       real(rk), allocatable :: moved(:), x(:)
       real(rk), allocatable, target :: g(:)
       real(rk) :: step, worst
+      integer(ik), allocatable :: shut(:)
       integer(ik) :: i, k, row
 
       scene = tight_body()
@@ -153,6 +156,14 @@ contains
       scene%fluid%viscosity = 2.0e4_rk
       call start(all_kinds(), 0.3_rk, scene, contact_law_t(), 1.0e-3_rk, mesh, model, state)
       model%joints%injection = 1.0e-7_rk
+      if (with_shut) then
+         associate (branches => model%joints%branches, n => model%joints%n)
+            shut = [(branches%at(i, 1_ik), i=1, n), branches%of(n)]
+            call model%joints%shut_only(model%joints%cell(shut), model%joints%end(shut))
+            call checks%is_true(count(model%joints%is_shut) == n - 1 + branches%length(n), &
+                                "shut branches")
+         end associate
+      end if
       model%cells%share = 0.8_rk
       call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
@@ -188,7 +199,8 @@ contains
          associate (branches => model%joints%branches%of(k))
             call checks%is_close(eq%residual(eq%layout%at_joint(k)) &
                                  - below%residual(eq%layout%at_joint(k)), &
-                                 -sum(x(eq%layout%at_branch(branches))), 1.0e-6_rk, &
+                                 -sum(x(eq%layout%at_branch(branches)), &
+                                      mask=.not. model%joints%is_shut(branches)), 1.0e-6_rk, &
                                  "into the joint")
          end associate
       end do

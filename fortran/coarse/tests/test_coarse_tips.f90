@@ -72,7 +72,7 @@ contains
       component = merge(1_ik, 2_ik, opens)
       modulus = scene%material%young/(1.0_rk - poisson**2)
       do k = 1, size(ahead)
-         model%ahead = ahead(k)*cell
+         model%ends%ahead = ahead(k)*cell
          call new_state(mesh, model%cells, scene%initial, model, state)
          call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
          call checks%no_error(error, "a crack")
@@ -119,7 +119,7 @@ contains
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
       do k = 1, size(ahead)
-         model%ahead = ahead(k)*cell
+         model%ends%ahead = ahead(k)*cell
          call new_state(mesh, model%cells, scene%initial, model, state)
          call model%advance(mesh, 1.0e9_rk, state, timers, report, error)
          call checks%no_error(error, "a crack")

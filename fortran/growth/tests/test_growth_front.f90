@@ -28,6 +28,7 @@ program test_growth_front
    call test_arrest()
    call test_join()
    call test_path()
+   call test_half_way()
    call checks%finish()
 
 contains
@@ -104,6 +105,35 @@ contains
       call checks%is_close(front%network%s_start(1), -increment, 1.0e-15_rk, "arc length")
       call is_at(front%tip(1)%direction, -[cos(0.3_rk), sin(0.3_rk)], "direction of tip 1")
    end subroutine test_growth_law
+
+   !> Tips that head for what lies ahead find their direction before it: half way to fracture 2, but
+   !! an increment on where nothing is so near.
+   subroutine test_half_way()
+      type(sample_t) :: front
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: gap = 0.04_rk
+      logical :: any_grew
+      integer :: k
+
+      do k = 1, 2
+         call start(front, .false.)
+         front%rules%heads = .true.
+         front%tip%has_wing = .true.
+         ! 1.3 increments below fracture 2, whose tip 1 looks upwards.
+         front%network%xy(2, :2) = lines(2, 1, 2) - merge(gap, 2.0_rk*gap, k == 1)
+         front%tip(1)%xy = front%network%xy(:, 1)
+         front%tip(2)%xy = front%network%xy(:, 2)
+         front%tip%drive = growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk)
+         front%tip(1)%direction = [0.0_rk, 1.0_rk]
+         call timers%begin()
+         call front%grow_by([increment, 0.0_rk], any_grew, timers, error)
+         call checks%no_error(error, "growth")
+         call checks%is_close(front%tip(1)%advance, merge(0.5_rk*gap, increment, k == 1), &
+                              1.0e-12_rk, "half way, or an increment")
+         call checks%is_true(.not. front%tip(1)%arrested, "it is on its way")
+      end do
+   end subroutine test_half_way
 
    subroutine is_at(xy, expected, name)
       real(rk), intent(in) :: xy(2), expected(2)

@@ -10,9 +10,30 @@ program test_growth_segment
 
    call test_equilibrium()
    call test_bounds()
+   call test_rest()
    call checks%finish()
 
 contains
+
+   !> A tip that leaves a rest of its piece is at its end before, and finishes it at once.
+   subroutine test_rest()
+      type(segment_t) :: segment
+      logical :: has_moved
+      integer :: try
+
+      call segment%open_segment([1.0_rk, 0.0_rk], [0.0_rk, 1.0_rk], 0.2_rk)
+      call segment%leave_rest(0.1_rk)
+      do try = 1, 50
+         call segment%improve(5.0_rk, tolerance, has_moved)
+         if (.not. has_moved) exit
+      end do
+      call checks%is_true(segment%is_complete(), "all but the rest")
+      call checks%is_close(norm2(segment%place() - [1.0_rk, 0.18_rk]), 0.0_rk, 1.0e-15_rk, &
+                           "before the rest")
+      call segment%finish([1.0_rk, 0.2_rk])
+      call checks%is_close(segment%reached, 0.2_rk, 1.0e-15_rk, "the rest as well")
+      call checks%is_true(.not. segment%is_open, "nothing is left of it")
+   end subroutine test_rest
 
    !> The excess falls along the piece, (s/s0)^(-1/2) - 1: the tip ends at s0, and remembers it.
    subroutine test_equilibrium()

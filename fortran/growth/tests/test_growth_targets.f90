@@ -2,7 +2,7 @@
 program test_growth_targets
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_targets, only: find_target, target_boundary, target_none
+   use growth_targets, only: find_ahead, find_target, target_boundary, target_none
    use mesh_types, only: network_t
    implicit none(type, external)
    real(rk), parameter :: reach = 0.1_rk, round_off = 1.0e-14_rk
@@ -45,9 +45,49 @@ program test_growth_targets
    call meets([0.97_rk, 0.53_rk], [0.93_rk, 0.55_rk], target_none, [0.93_rk, 0.55_rk], &
               "near the segment before the last, which it leaves")
 
+   call look_ahead()
    call checks%finish()
 
 contains
+
+   !> Straight ahead only: fracture 2 is the polyline (2, -1), (2, 1), (3, 1), fracture 3 goes from
+   !! (-2, 0) on to the left.
+   subroutine look_ahead()
+      network%first = [1_ik, 3_ik, 6_ik, 8_ik]
+      network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 2.0_rk, 1.0_rk, &
+                            3.0_rk, 1.0_rk, -2.0_rk, 0.0_rk, -3.0_rk, 0.5_rk], [2, 7])
+      network%s_start = [0.0_rk, 0.0_rk, 0.0_rk]
+      call sees([1.0_rk, 0.0_rk], [0.9_rk, 0.0_rk], target_none, [1.9_rk, 0.0_rk], "too far")
+      call sees([1.0_rk, 0.0_rk], [1.1_rk, 0.22_rk], 2_ik, [2.0_rk, 0.2_rk], "within reach")
+      call sees([1.95_rk, 0.0_rk], [0.0_rk, 0.9_rk], target_none, [1.95_rk, 0.9_rk], &
+                "beside it, however near")
+      call sees([1.0_rk, 0.0_rk], [1.5_rk, 1.47_rk], 2_ik, [2.0_rk, 1.0_rk], "almost at a vertex")
+      call sees([1.0_rk, 0.0_rk], [1.2_rk, -1.206_rk], 2_ik, [2.0_rk, -1.0_rk], "just past an end")
+      call sees([1.0_rk, 0.0_rk], [1.2_rk, -1.3_rk], target_none, [2.2_rk, -1.3_rk], "past an end")
+      call sees([0.0_rk, 0.0_rk], [-2.5_rk, 0.0_rk], 3_ik, [-2.0_rk, 0.0_rk], "tip to tip")
+      call sees([1.0_rk, 0.0_rk], [0.0_rk, -5.0_rk], target_boundary, [1.0_rk, -4.0_rk], "a side")
+      call sees([1.99_rk, 0.0_rk], [0.02_rk, 1.0_rk], 2_ik, [2.0_rk, 0.0_rk], &
+                "at one degree: to the nearest place")
+      ! A hook comes back to its first segment, but not to those next to its tip.
+      network%first = [1_ik, 5_ik]
+      network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.5_rk], [2, 4])
+      network%s_start = [0.0_rk]
+      call sees([0.5_rk, 0.5_rk], [0.0_rk, -1.0_rk], 1_ik, [0.5_rk, 0.0_rk], "itself")
+      call sees([0.5_rk, 0.5_rk], [-0.4_rk, 0.0_rk], target_none, [0.1_rk, 0.5_rk], "away from it")
+   end subroutine look_ahead
+
+   subroutine sees(from, way, expected, place, name)
+      real(rk), intent(in) :: from(2), way(2), place(2)
+      integer(ik), intent(in) :: expected
+      character(len=*), intent(in) :: name
+      real(rk), parameter :: near = 0.03_rk
+      integer(ik) :: found
+      real(rk) :: at(2)
+
+      call find_ahead(network, corners, 1_ik, from, way, near, found, at)
+      call checks%is_true(found == expected, "ahead, "//name//": what")
+      call checks%is_close(norm2(at - place), 0.0_rk, round_off, "ahead, "//name//": where")
+   end subroutine sees
 
    subroutine meets(from, to, expected, place, name)
       real(rk), intent(in) :: from(2), to(2), place(2)

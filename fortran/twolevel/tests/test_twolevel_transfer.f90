@@ -26,6 +26,8 @@ program test_twolevel_transfer
    call test_state(.false.)
    call test_state(.true.)
    call test_uniform_content()
+   call test_joint(0.5_rk)
+   call test_joint(0.2_rk)
    call checks%finish()
 
 contains
@@ -67,7 +69,7 @@ contains
       integer(ik) :: first, i, last, old
 
       call various_cells(before)
-      call transfer_cells(map, mesh, before, new_aperture, .false., after)
+      call transfer_cells(mesh_before, mesh, before, new_aperture, .false., after)
       associate (here => mesh%fracture%cell_fracture, there => mesh_before%fracture%cell_fracture)
          first = findloc(there, 1_ik, dim=1)
          last = findloc(there, 1_ik, dim=1, back=.true.)
@@ -129,7 +131,7 @@ contains
       integer(ik) :: c, i, old, origin
 
       call various_cells(cells_before)
-      call transfer_cells(map, mesh, cells_before, new_aperture, is_prefilled, cells)
+      call transfer_cells(mesh_before, mesh, cells_before, new_aperture, is_prefilled, cells)
       call various_state(before)
       call transfer_state(map, mesh_before, mesh, cells, is_prefilled, before, after, prefilled)
       call checks%is_close(after%time, before%time, 0.0_rk, "time")
@@ -175,6 +177,80 @@ contains
       call checks%is_true((prefilled > 0.0_rk) .eqv. is_prefilled, "prefilled only if wanted")
    end subroutine test_state
 
+   !> A fracture grows into another one, at a share of a cell: in the middle it is divided, near its
+   !! start the node there moves. The fluid of the fracture is all there, and jumps that are linear
+   !! along it stay so.
+   subroutine test_joint(share)
+      real(rk), intent(in) :: share
+      real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 1.0_rk, 0.95_rk, 1.0_rk, 1.0_rk, &
+                                                       0.5_rk, 1.0_rk, 1.5_rk], [2, 2, 2])
+      type(network_t) :: network
+      type(error_t), allocatable :: error
+      type(mesher_t) :: mesher_joined
+      type(mesh_t) :: joined
+      type(mesh_map_t) :: map_joined
+      type(fracture_cells_t) :: cells, cells_before
+      type(state_t) :: after, before
+      real(rk) :: length, prefilled, s(2), volume(3, 2), worst
+      integer(ik) :: c, i
+
+      network = straight_network(lines)
+      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesher_before, mesh_before)
+      call extend(network, 1_ik, 2_ik, [1.0_rk, 1.0_rk + 0.1_rk*share])
+      call remesh(mesher_before, network, reshape([1.0_rk, 1.0_rk], [2, 1]), 0.3_rk, 0.1_rk, &
+                  mesher_joined, joined, map_joined, error)
+      call checks%no_error(error, "mesh with a joint")
+      cells_before = uniform_cells(mesh_before, contact_law_t(), 1.0e-3_rk)
+      cells_before%roughness = spread(0.0_rk, 1, mesh_before%fracture%n_cells)
+      call transfer_cells(mesh_before, joined, cells_before, new_aperture, .false., cells)
+      call various_state(before)
+      associate (fracture => mesh_before%fracture)
+         do i = 1, fracture%n_cells
+            s = matmul(reshape([2.0_rk, 1.0_rk, 1.0_rk, 2.0_rk], [2, 2]), fracture%cell_s(:, i)) &
+                /3.0_rk
+            before%jump(1, :, i) = 1.0e-4_rk*(1.0_rk + s)
+            before%jump(2, :, i) = -2.0e-4_rk*s
+            before%slip_before(:, i) = 3.0e-4_rk*s
+            before%aperture(i) = 1.0e-3_rk + 0.5_rk*sum(before%jump(1, :, i))
+         end do
+      end associate
+      call transfer_state(map_joined, mesh_before, joined, cells, .false., before, after, prefilled)
+      volume = 0.0_rk
+      associate (fracture => mesh_before%fracture)
+         do i = 1, fracture%n_cells
+            if (fracture%cell_fracture(i) /= 2) cycle
+            length = fracture%cell_s(2, i) - fracture%cell_s(1, i)
+            volume(:, 1) = volume(:, 1) + length*[before%aperture(i), before%void(i), &
+                                           (before%aperture(i) - before%void(i))*before%pressure(i)]
+         end do
+      end associate
+      worst = 0.0_rk
+      c = 0
+      do i = 1, joined%fracture%n_cells
+         if (joined%fracture%cell_fracture(i) /= 2) cycle
+         associate (ends => joined%fracture%cell_s(:, i))
+            length = ends(2) - ends(1)
+            s = matmul(reshape([2.0_rk, 1.0_rk, 1.0_rk, 2.0_rk], [2, 2]), ends)/3.0_rk
+         end associate
+         c = c + 1
+         volume(:, 2) = volume(:, 2) + length*[after%aperture(i), after%void(i), &
+                                              (after%aperture(i) - after%void(i))*after%pressure(i)]
+         worst = max(worst, maxval(abs(after%jump(1, :, i) - 1.0e-4_rk*(1.0_rk + s))), &
+                     maxval(abs(after%jump(2, :, i) + 2.0e-4_rk*s)), &
+                     maxval(abs(after%slip_before(:, i) - 3.0e-4_rk*s)), &
+                     abs(after%aperture(i) - 1.0e-3_rk - 0.5_rk*sum(after%jump(1, :, i))))
+         call checks%is_close(cells%residual_aperture(i), 1.0e-3_rk, 1.0e-18_rk, "aperture at rest")
+         call checks%is_close(cells%roughness(i), 0.0_rk, 0.0_rk, "the old faces")
+      end do
+      call checks%is_close(worst, 0.0_rk, 1.0e-18_rk, "linear jumps")
+      do i = 1, 3
+         call checks%is_close(volume(i, 2), volume(i, 1), 1.0e-14_rk*volume(i, 1), &
+                              "the fracture's fluid is conserved")
+      end do
+      call checks%is_true(c > mesh_before%fracture%n_cells - count( &
+                          mesh_before%fracture%cell_fracture == 1), "cells have been divided")
+   end subroutine test_joint
+
    !> No difference at all.
    pure function equal(a, b)
       real(rk), intent(in) :: a(:), b(:)
@@ -191,7 +267,7 @@ contains
       integer(ik) :: c
 
       call various_cells(cells_before)
-      call transfer_cells(map, mesh, cells_before, new_aperture, .false., cells)
+      call transfer_cells(mesh_before, mesh, cells_before, new_aperture, .false., cells)
       call various_state(before)
       before%content = [(3.0e-4_rk*cell_area(mesh_before, c), c=1, mesh_before%n_cells)]
       before%unknowns(3, :) = 5.0e6_rk

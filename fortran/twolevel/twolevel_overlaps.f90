@@ -1,0 +1,94 @@
+!> Which fracture cells of a coarse mesh take the place of which of the one before. A joint divides
+!! a cell, or moves a node between two of them; all others stay as they are.
+module twolevel_overlaps
+   use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
+   use mesh_types, only: fracture_mesh_t
+   implicit none(type, external)
+   private
+
+   public :: fracture_overlaps, overlaps_t
+
+   !> The cells before that each new one takes the place of, in their order along the fracture.
+   type :: overlaps_t
+      integer(ik), allocatable :: first(:)  !< (new cells + 1) into those below
+      integer(ik), allocatable :: old(:)
+      real(rk), allocatable :: length(:)  !< that both share [m]
+   contains
+      procedure :: is_new
+      procedure :: is_whole
+      procedure :: main
+      procedure :: mean
+   end type overlaps_t
+
+contains
+
+   !> Compare the arc lengths of the cells.
+   pure function fracture_overlaps(before, after) result(overlaps)
+      type(fracture_mesh_t), intent(in) :: before, after
+      type(overlaps_t) :: overlaps
+      real(rk) :: length, shared(before%n_cells)
+      integer(ik), allocatable :: found(:)
+      integer(ik) :: i, j
+
+      allocate (overlaps%first(after%n_cells + 1), source=1_ik)
+      allocate (overlaps%old(0), overlaps%length(0))
+      do i = 1, after%n_cells
+         associate (s => after%cell_s(:, i))
+            length = s(2) - s(1)
+            shared = min(s(2), before%cell_s(2, :)) - max(s(1), before%cell_s(1, :))
+            found = pack([(j, j=1, before%n_cells)], &
+                         before%cell_fracture == after%cell_fracture(i) .and. &
+                         shared > same_place*length)
+         end associate
+         overlaps%old = [overlaps%old, found]
+         overlaps%length = [overlaps%length, shared(found)]
+         overlaps%first(i + 1) = size(overlaps%old, kind=ik) + 1
+      end do
+   end function fracture_overlaps
+
+   !> A cell takes no other's place: it has grown.
+   elemental logical function is_new(self, cell)
+      class(overlaps_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      is_new = self%first(cell + 1) == self%first(cell)
+   end function is_new
+
+   !> A cell is one of the cells before, neither divided nor moved.
+   pure logical function is_whole(self, cell, before, after)
+      class(overlaps_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      type(fracture_mesh_t), intent(in) :: before, after
+
+      is_whole = self%first(cell + 1) == self%first(cell) + 1
+      if (.not. is_whole) return
+      associate (s => after%cell_s(:, cell), old => before%cell_s(:, self%old(self%first(cell))))
+         is_whole = all(abs(s - old) <= same_place*(s(2) - s(1)))
+      end associate
+   end function is_whole
+
+   !> The cell that a cell has most of; none for a new one.
+   pure integer(ik) function main(self, cell)
+      class(overlaps_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      main = 0
+      associate (first => self%first(cell), last => self%first(cell + 1) - 1)
+         if (last >= first) main = self%old(first - 1 + maxloc(self%length(first:last), dim=1))
+      end associate
+   end function main
+
+   !> Mean of what the cells before have, over what they share with a cell that is not new.
+   pure real(rk) function mean(self, cell, values)
+      class(overlaps_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: values(:)  !< (cells before)
+
+      associate (first => self%first(cell), last => self%first(cell + 1) - 1)
+         mean = sum(values(self%old(first:last))*self%length(first:last)) &
+                /sum(self%length(first:last))
+      end associate
+   end function mean
+
+end module twolevel_overlaps

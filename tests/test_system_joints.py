@@ -1,0 +1,132 @@
+"""Cracks that grow with a fluid until they come to fractures, sides and each other."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from system_scene import TOP, numbers, record, rows, run
+
+pytestmark = pytest.mark.usefixtures("program")
+
+TEE = (TOP / "verification/growth_joints/t.nml").read_text()
+BAR = TEE[TEE.index("&fracture\n  name = 'bar'") : TEE.index("&side name = 'left'")]
+
+
+def changed(*changes: tuple[str, str]) -> str:
+    """Give the scene with pieces replaced, each of which must stand in it."""
+    text = TEE.replace("time end = 84.0", "time end = 80.0")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def joints(out: Path) -> list[dict[str, str]]:
+    """Give the events in which something has been joined."""
+    return [row for row in rows(out / "events.csv") if row["kind"] == "joint"]
+
+
+def test_a_joint_lets_the_pressure_fall(tmp_path: Path) -> None:
+    """In the step of the joint; the tip that has joined is none any more, and no fluid is lost."""
+    out = run(tmp_path, changed())
+    (joint,) = joints(out)
+    assert (joint["fracture"], joint["detail"]) == ("1", "joins fracture bar")
+    history = rows(out / "history.csv")
+    at = [row["time_s"] for row in history].index(joint["time_s"])
+    pressure = numbers(out / "history.csv", "well_pressure_pa")
+    assert pressure[at] < pressure[at - 1] - 3.0e4
+    assert [row["n_tips"] for row in history[at - 1 : at + 1]] == ["4", "3"]
+    assert [row["n_intersections"] for row in history[at - 1 : at + 1]] == ["0", "1"]
+    late = {row["tip"] for row in rows(out / "tips.csv") if float(row["time_s"]) > 79.0}
+    assert late == {"1", "3", "4"}
+    mass_error = record(out)["mass_error_relative"]
+    assert isinstance(mass_error, float)
+    assert mass_error < 1.0e-9
+    network = json.loads((out / "network.json").read_text())
+    assert [(j["kind"], j["fractures"]) for j in network["joints"]] == [("T", [1, 2])]
+    assert sorted(tip["tip"] for tip in network["tips"]) == [1, 3, 4]
+    run_json = (out / "run.json").read_text()
+    assert "intersections: flow from fracture" in run_json
+    assert "fractures do not meet" not in run_json
+
+
+def test_the_law_of_advances_joins_too(tmp_path: Path) -> None:
+    """At the end of a step, and the pressure falls in the short ones that follow."""
+    out = run(
+        tmp_path,
+        changed(
+            ("increment = 0.05", "increment = 0.05, law = 'paris', threshold = 0.5"),
+            ("end = 80.0", "end = 75.0, step = 2.0"),
+        ),
+    )
+    (joint,) = joints(out)
+    assert joint["detail"] == "joins fracture bar"
+    history = rows(out / "history.csv")
+    at = [row["time_s"] for row in history].index(joint["time_s"])
+    assert [row["n_tips"] for row in history[at : at + 2]] == ["4", "3"]
+    pressure = numbers(out / "history.csv", "well_pressure_pa")
+    assert pressure[at + 1] < pressure[at] - 5.0e4
+    mass_error = record(out)["mass_error_relative"]
+    assert isinstance(mass_error, float)
+    assert mass_error < 1.0e-9
+
+
+def test_nothing_is_joined_from_afar(tmp_path: Path) -> None:
+    """A crack goes on past the end of a fracture that it does not touch, 2 mm beside it."""
+    out = run(tmp_path, changed(("y = -0.31, 0.29", "y = 0.002, 0.6")))
+    assert joints(out) == []
+    assert max(float(row["x_m"]) for row in rows(out / "tips.csv") if row["tip"] == "2") > 0.8
+
+
+def test_two_joints_in_one_step(tmp_path: Path) -> None:
+    """A crack between two fractures, whose tips are alike, joins both at once."""
+    other = BAR.replace("'bar'", "'other'").replace("x = 0.8, 0.8", "x = -0.8, -0.8")
+    out = run(tmp_path, changed((BAR, BAR + other)))
+    left, right = joints(out)
+    assert left["time_s"] == right["time_s"]
+    assert {left["detail"], right["detail"]} == {"joins fracture bar", "joins fracture other"}
+
+
+def test_cracks_meet(tmp_path: Path) -> None:
+    """Two wells, two cracks one after the other: they become one."""
+    other = (
+        BAR.replace("'bar'", "'other'")
+        .replace("aperture = 1.0e-3", "aperture = 1.0e-6")
+        .replace("x = 0.8, 0.8", "x = 0.8, 2.1")
+        .replace("y = -0.31, 0.29", "y = 0.0, 0.0")
+        .replace("friction = 9.0", "friction = 0.5")
+    )
+    well = "&injection fracture = 'stem', rate = 1.0e-6 /\n"
+    out = run(tmp_path, changed((BAR, other), (well, well + well.replace("stem", "other"))))
+    assert len(joints(out)) >= 1
+    network = json.loads((out / "network.json").read_text())
+    assert [(j["kind"], j["fractures"]) for j in network["joints"]] == [("V", [1, 2])]
+    assert sorted(tip["tip"] for tip in network["tips"]) == [1, 4]
+
+
+@pytest.mark.parametrize("pressure", ["", ", pressure = 0.0"])
+def test_a_side_is_joined(tmp_path: Path, pressure: str) -> None:
+    """A sealed side ends the fracture; at one with a pressure the fluid leaves the body."""
+    out = run(
+        tmp_path,
+        changed(
+            (BAR, ""),
+            ("x_max = 12.0", "x_max = 0.8"),
+            ("end = 80.0", "end = 56.0"),
+            ("x_traction = -4.0e6", "x_traction = -4.0e6" + pressure),
+        ),
+    )
+    (joint,) = joints(out)
+    assert joint["detail"] == "joins the outer boundary"
+    assert float(joint["x_m"]) == pytest.approx(0.8, abs=1e-12)
+    assert (numbers(out / "history.csv", "outflow_m2")[-1] > 0.0) == bool(pressure)
+
+
+def test_a_crossing_grows(tmp_path: Path) -> None:
+    """Fractures that meet at the start may grow: the one that crosses the stem stays as it is."""
+    upright = BAR.replace("'bar'", "'upright'").replace("x = 0.8, 0.8", "x = 0.0, 0.0")
+    out = run(tmp_path, changed((BAR, BAR + upright), ("end = 80.0", "end = 95.0")))
+    network = json.loads((out / "network.json").read_text())
+    assert sorted(j["kind"] for j in network["joints"]) == ["T", "X"]
