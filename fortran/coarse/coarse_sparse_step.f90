@@ -1,0 +1,499 @@
+!> The linear step of the fractures' equations where the body is not condensed onto them: cells and
+!! fractures together as one sparse system,
+!!   ( A    C'Q           ) (b)   (  0)
+!!   ( W C  W D Q + local ) (x) = ( -r),   Q: q per x, W: weights of the forces (coarse_slopes)
+!! that is not symmetric. A is constant as long as the time step is, and what changes from one
+!! iteration to the next are the fractures' rows alone, often few of them. So the system is
+!! factorized once, and its factors M serve the following iterations and steps as a preconditioner:
+!! p = M^-1 (0, r) fulfils the equations of the cells exactly, and conjugate residuals over such p
+!! (Eisenstat, Elman and Schultz 1983; equivalent to GMRES) make the fractures' residuals as small
+!! as is asked, in about as many solutions as there are contact points that have changed their
+!! state. Directions p that were found are kept along with the factors: what the rows of now make of
+!! them costs no solution. Where too many points have changed, or it takes too many directions, the
+!! factors are made anew from the rows of now.
+!!
+!! What is known of the error: the residual that is left (`rest` of step_quality_t), and the
+!! condition of the condensed matrix with its equations scaled, estimated from products and
+!! solutions as dgecon does from factors (Higham 1988). It costs as much as a dozen solutions, and
+!! is found for the first matrix of a time step and then at every tenth factorization: in between,
+!! and where old factors serve, it is that of a matrix some states away.
+module coarse_sparse_step
+   use algebra_lapack, only: dlacn2
+   use algebra_mumps, only: mumps_scotch, mumps_t, mumps_unsymmetric
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use coarse_condensed, only: condensed_t
+   use coarse_slopes, only: slopes_t
+   use contact_newton, only: step_quality_t
+   implicit none(type, external)
+   private
+
+   public :: sparse_step_t
+
+   integer(ik), parameter :: most_changes = 10  !< of contact, after which new factors cost less
+   integer(ik), parameter :: most_directions = 12  !< of one step with old factors; as above
+   integer(ik), parameter :: most_kept = 32  !< directions
+   integer(ik), parameter :: estimate_every = 10  !< factorizations
+   real(rk), parameter :: reduction = 1.0e-8_rk  !< of the residuals
+   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale: no more is left
+   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale: less is not asked for
+
+   type :: sparse_step_t
+      private
+      type(mumps_t) :: solver
+      logical :: is_ready = .false.
+      integer(ik) :: of = 0  !< the factorization of the rock that the factors hold
+      integer(ik), allocatable :: row(:), col(:)  !< what has been analysed
+      real(rk), allocatable :: col_scale(:)  !< (unknowns) unknown = scale * scaled unknown
+      real(rk), allocatable :: row_scale(:)  !< (equations of the fractures) largest coefficient
+      real(rk), allocatable :: row_factor(:)  !< (the same) what the factors' are multiplied by
+      real(rk), allocatable :: weight(:, :)  !< of the forces in the factors' rows
+      integer(ik) :: n_kept = 0
+      real(rk), allocatable :: direction(:, :)  !< (unknowns, kept) p of the fractures
+      real(rk), allocatable :: force(:, :)  !< (6 n, kept) the forces that belong to them
+      real(rk) :: condition = 0.0_rk
+      integer(ik) :: estimated_for = 0  !< factorization of the rock
+      integer(ik) :: estimated_at = 0  !< factorization
+      integer(ik), public :: factorizations = 0  !< so far
+      integer(ik), public :: solutions = 0  !< so far, but for those of the estimates
+   contains
+      procedure :: find_step
+      procedure :: release
+   end type sparse_step_t
+
+contains
+
+   !> Solve for the step.
+   subroutine find_step(self, condensed, slopes, x_of_q, q_per_x, residual, stress_scale, step, &
+                        quality)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)  !< the number of each unknown of q in x
+      real(rk), intent(in) :: q_per_x(:)  !< their units [m/Pa], [-]
+      real(rk), intent(in) :: residual(:)  !< (n) [Pa]
+      real(rk), intent(in) :: stress_scale  !< [Pa]
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      type(step_quality_t), intent(out) :: quality
+      real(rk), allocatable :: left(:)
+      real(rk) :: enough
+      logical :: is_done, is_new
+      type(error_t), allocatable :: error
+
+      is_new = needs_factors(self, condensed, slopes)
+      if (is_new) call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+      quality%is_singular = allocated(error)
+      if (quality%is_singular) return
+      enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
+      step = 0.0_rk
+      left = -residual
+      call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+      if (.not. is_done .and. .not. is_new .and. .not. allocated(error)) then
+         call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+         if (.not. allocated(error)) then
+           call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+         end if
+      end if
+      quality%is_singular = allocated(error)
+      if (quality%is_singular) return
+      quality%condition = self%condition
+      quality%rest = maxval(abs(left)/self%row_scale)/stress_scale
+   end subroutine find_step
+
+   !> There are none, those of another time step, or of other contact at too many points.
+   pure logical function needs_factors(self, condensed, slopes)
+      class(sparse_step_t), intent(in) :: self
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      real(rk), parameter :: share = 0.5_rk  ! of a weight: no change of contact is less
+
+      needs_factors = .not. self%is_ready .or. self%of /= condensed%factorizations
+      if (.not. needs_factors) needs_factors = size(self%weight, 2) /= slopes%n
+      if (.not. needs_factors) then
+         needs_factors = count(abs(slopes%weight - self%weight) &
+                               > share*max(abs(slopes%weight), abs(self%weight))) > most_changes
+      end if
+   end function needs_factors
+
+   !> Conjugate residuals: add to the step what makes less of what is left, first of the directions
+   !! that are known.
+   subroutine reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), intent(in) :: enough  !< largest residual [Pa]
+      real(rk), intent(inout) :: step(:)  !< [Pa]
+      real(rk), intent(inout) :: left(:)  !< minus the residuals after the step [Pa]
+      logical, intent(out) :: is_done
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: independent = 1.0e-6_rk  ! so much is left of a known direction
+      real(rk) :: answer(size(step), most_kept), before, share
+      integer(ik) :: k, known
+      logical :: is_used
+
+      known = self%n_kept
+      self%n_kept = 0
+      do k = 1, known
+         associate (place => self%n_kept + 1)
+            self%direction(:, place) = self%direction(:, k)
+            self%force(:, place) = self%force(:, k)
+            call use_direction(place, independent, is_used)
+            if (is_used) self%n_kept = place
+         end associate
+      end do
+      is_done = maxval(abs(left)) <= enough
+      do k = 1, most_directions
+         if (is_done .or. self%n_kept == most_kept) return
+         associate (place => self%n_kept + 1)
+            call precondition(self, condensed, x_of_q, q_per_x, left, self%direction(:, place), &
+                              self%force(:, place), error)
+            if (allocated(error)) return
+            call use_direction(place, 0.0_rk, is_used)
+            if (.not. is_used) return
+            self%n_kept = place
+         end associate
+         is_done = maxval(abs(left)) <= enough
+      end do
+
+   contains
+
+      !> Make the answer to a direction orthogonal to those before, and go along it. What is left is
+      !! formed anew from the answer, not from the factors.
+      subroutine use_direction(place, least_share, is_used)
+         integer(ik), intent(in) :: place
+         real(rk), intent(in) :: least_share
+         logical, intent(out) :: is_used
+         integer(ik) :: j, pass
+
+         associate (p => self%direction(:, place), f => self%force(:, place))
+            call apply_rows(slopes, p, f + condensed%spring*p(x_of_q)*q_per_x, answer(:, place))
+            answer(:, place) = answer(:, place)/self%row_scale
+            before = norm2(answer(:, place))
+            do pass = 1, 2
+               do j = 1, place - 1
+                  share = dot_product(answer(:, j), answer(:, place))
+                  answer(:, place) = answer(:, place) - share*answer(:, j)
+                  p = p - share*self%direction(:, j)
+                  f = f - share*self%force(:, j)
+               end do
+            end do
+            share = norm2(answer(:, place))
+            is_used = share > least_share*before .and. share > 0.0_rk
+            if (.not. is_used) return
+            answer(:, place) = answer(:, place)/share
+            p = p/share
+            f = f/share
+            share = dot_product(answer(:, place), left/self%row_scale)
+            step = step + share*p
+            left = left - share*answer(:, place)*self%row_scale
+         end associate
+      end subroutine use_direction
+
+   end subroutine reduce
+
+   !> The unknowns of the fractures that the factors give for a right-hand side of their rows, and
+   !! the forces that belong to them, without springs.
+   subroutine precondition(self, condensed, x_of_q, q_per_x, rhs, x, force, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(in) :: condensed
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), intent(in) :: rhs(:)  !< [Pa]
+      real(rk), intent(out) :: x(:)  !< [Pa]
+      real(rk), intent(out) :: force(:)  !< [N/m], [m2]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: all(:, :)
+      integer(ik) :: n
+
+      n = condensed%coupling%n_bulk
+      allocate (all(n + size(x), 1), source=0.0_rk)
+      all(n + 1:, 1) = rhs*self%row_factor
+      call self%solver%solve(all, error)
+      self%solutions = self%solutions + 1
+      all(:, 1) = all(:, 1)*self%col_scale
+      x = all(n + 1:, 1)
+      call condensed%coupling%forces(all(:n, 1), x(x_of_q)*q_per_x, force)
+   end subroutine precondition
+
+   !> What the fractures' rows make of unknowns and of the forces that belong to them.
+   pure subroutine apply_rows(slopes, x, force, answer)
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk), intent(in) :: force(:)  !< [N/m], [m2]
+      real(rk), intent(out) :: answer(:)  !< [Pa]
+      integer(ik) :: k, m, row
+
+      answer = 0.0_rk
+      do k = 1, slopes%n_local
+         answer(slopes%row(k)) = answer(slopes%row(k)) + slopes%value(k)*x(slopes%col(k))
+      end do
+      do row = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, row) > 0) answer(row) = answer(row) + slopes%weight(m, row) &
+                                                        *force(slopes%force(m, row))
+         end do
+      end do
+   end subroutine apply_rows
+
+   !> The same with the transpose.
+   pure subroutine apply_columns(slopes, y, x, force)
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: y(:)
+      real(rk), intent(out) :: x(:), force(:)  !< by local entries, by the forces
+      integer(ik) :: k, m, row
+
+      x = 0.0_rk
+      force = 0.0_rk
+      do k = 1, slopes%n_local
+         x(slopes%col(k)) = x(slopes%col(k)) + slopes%value(k)*y(slopes%row(k))
+      end do
+      do row = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, row) == 0) cycle
+            force(slopes%force(m, row)) = force(slopes%force(m, row)) + slopes%weight(m, row)*y(row)
+         end do
+      end do
+   end subroutine apply_columns
+
+   !> Factors of the system with the rows of now.
+   subroutine renew(self, condensed, slopes, x_of_q, q_per_x, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: col(:), row(:)
+      real(rk), allocatable :: values(:)
+      logical :: is_known
+
+      self%is_ready = .false.
+      call assemble(condensed, slopes, x_of_q, q_per_x, self%row_scale, self%row_factor, &
+                    self%col_scale, row, col, values)
+      is_known = allocated(self%row)
+      if (is_known) is_known = size(self%row) == size(row)
+      if (is_known) is_known = all(self%row == row) .and. all(self%col == col)
+      if (.not. is_known) then
+       call self%solver%analyse(size(self%col_scale, kind=ik), row, col, mumps_unsymmetric, error, &
+                                  error, ordering=mumps_scotch)
+         if (allocated(error)) return
+         call move_alloc(row, self%row)
+         call move_alloc(col, self%col)
+      end if
+      call self%solver%factorize(values, error)
+      if (allocated(error)) return
+      deallocate (values)
+      self%factorizations = self%factorizations + 1
+      self%of = condensed%factorizations
+      self%weight = slopes%weight
+      self%n_kept = 0
+      if (allocated(self%direction)) deallocate (self%direction, self%force)
+      allocate (self%direction(slopes%n, most_kept), self%force(size(x_of_q), most_kept))
+      self%is_ready = .true.
+      if (self%estimated_for == self%of .and. &
+          self%factorizations < self%estimated_at + estimate_every) return
+      call estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+      self%estimated_for = self%of
+      self%estimated_at = self%factorizations
+   end subroutine renew
+
+   !> The whole system as triplets, for scaled equations and unknowns.
+   subroutine assemble(condensed, slopes, x_of_q, q_per_x, row_scale, row_factor, col_scale, row, &
+                       col, values)
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), allocatable, intent(out) :: row_scale(:), row_factor(:), col_scale(:)
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+      real(rk), allocatable, intent(out) :: values(:)
+      integer(ik), allocatable :: rock_col(:), rock_row(:)
+      real(rk), allocatable :: rock(:)
+      integer(ik) :: at, k, m, n, n_bulk, n_entries, q
+
+      call condensed%solver%get_entries(rock_row, rock_col, rock)
+      n_bulk = condensed%coupling%n_bulk
+      n_entries = 2*size(rock) + size(condensed%coupling%col) + slopes%n_local
+      do k = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, k) > 0) n_entries = n_entries + entries_of(slopes%force(m, k)) + 1
+         end do
+      end do
+      allocate (row(n_entries), col(n_entries), values(n_entries))
+      allocate (row_scale(slopes%n), row_factor(slopes%n), source=0.0_rk)
+      ! Pressures and flows of the fluid in the units of the rock's pressures at the fractures.
+      allocate (col_scale(n_bulk + slopes%n), source=minval(condensed%scale(n_bulk + 3 :: 3)))
+      col_scale(:n_bulk) = condensed%scale(:n_bulk)
+      do q = 1, size(x_of_q)
+         col_scale(n_bulk + x_of_q(q)) = condensed%scale(n_bulk + q)/q_per_x(q)
+      end do
+      n = 0
+      do k = 1, size(rock)
+         call add(rock_row(k), rock_col(k), rock(k))
+         if (rock_row(k) /= rock_col(k)) call add(rock_col(k), rock_row(k), rock(k))
+      end do
+      ! C'Q, for unknowns as they are: values so far are those of scaled ones.
+      do q = 1, size(x_of_q)
+         do k = condensed%coupling%first(q), condensed%coupling%first(q + 1) - 1
+            at = condensed%coupling%col(k)
+            if (at > n_bulk) cycle
+            call add(at, n_bulk + x_of_q(q), condensed%coupling%value(k)*q_per_x(q) &
+                     *col_scale(at)*col_scale(n_bulk + x_of_q(q)))
+         end do
+      end do
+      at = n
+      do k = 1, slopes%n_local
+         call add_row(slopes%row(k), n_bulk + slopes%col(k), slopes%value(k))
+      end do
+      do k = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, k) > 0) call add_force(k, slopes%force(m, k), slopes%weight(m, k))
+         end do
+      end do
+      do k = at + 1, n
+         associate (i => row(k) - n_bulk)
+            row_factor(i) = max(row_factor(i), abs(values(k)))
+            if (col(k) <= n_bulk) cycle
+            row_scale(i) = max(row_scale(i), abs(values(k))/col_scale(col(k)))
+         end associate
+      end do
+      where (row_scale > 0.0_rk)
+         row_factor = 1.0_rk/row_factor
+      else where
+         row_scale = 1.0_rk
+         row_factor = 1.0_rk
+      end where
+      do k = at + 1, n
+         values(k) = values(k)*row_factor(row(k) - n_bulk)
+      end do
+      row = row(:n)
+      col = col(:n)
+      values = values(:n)
+
+   contains
+
+      pure integer(ik) function entries_of(force)
+         integer(ik), intent(in) :: force
+
+         entries_of = condensed%coupling%first(force + 1) - condensed%coupling%first(force)
+      end function entries_of
+
+      subroutine add(i, j, value)
+         integer(ik), intent(in) :: i, j
+         real(rk), intent(in) :: value
+
+         n = n + 1
+         row(n) = i
+         col(n) = j
+         values(n) = value
+      end subroutine add
+
+      !> To a row of the fractures.
+      subroutine add_row(i, j, value)
+         integer(ik), intent(in) :: i, j
+         real(rk), intent(in) :: value
+
+         call add(n_bulk + i, j, value*col_scale(j))
+      end subroutine add_row
+
+      !> A force, as the sum over the cells around.
+      subroutine add_force(i, force, weight)
+         integer(ik), intent(in) :: i, force
+         real(rk), intent(in) :: weight
+         integer(ik) :: entry, j
+
+         associate (coupling => condensed%coupling)
+            do entry = coupling%first(force), coupling%first(force + 1) - 1
+               j = coupling%col(entry)
+               if (j <= n_bulk) then
+                  call add_row(i, j, weight*coupling%value(entry))
+               else
+                  j = j - n_bulk
+                  call add_row(i, n_bulk + x_of_q(j), weight*coupling%value(entry)*q_per_x(j))
+               end if
+            end do
+         end associate
+         call add_row(i, n_bulk + x_of_q(force), weight*condensed%spring(force)*q_per_x(force))
+      end subroutine add_force
+
+   end subroutine assemble
+
+   !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
+   !! transpose: the norms of both that matrix and its inverse, estimated.
+   subroutine estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: norm(2), v(slopes%n), x(slopes%n)
+      integer(ik) :: kase, part, save(3), signs(slopes%n)
+
+      norm = 0.0_rk
+      do part = 1, 2
+         kase = 0
+         do
+            call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
+            if (kase == 0) exit
+            if (part == 1) then
+               call multiply(kase == 1)
+            else
+               call solve(kase == 1)
+            end if
+            if (allocated(error)) return
+         end do
+      end do
+      self%condition = norm(1)*norm(2)
+
+   contains
+
+      subroutine multiply(transposed)
+         logical, intent(in) :: transposed
+         real(rk) :: force(size(x_of_q)), moved(size(x_of_q)), y(size(x))
+
+         if (transposed) then
+            y = x/self%row_scale
+            call apply_columns(slopes, y, x, moved)
+            call condensed%find_forces(moved, force, error)
+            x(x_of_q) = x(x_of_q) + force*q_per_x
+         else
+            call condensed%find_forces(x(x_of_q)*q_per_x, force, error)
+            call apply_rows(slopes, x, force, y)
+            x = y/self%row_scale
+         end if
+      end subroutine multiply
+
+      subroutine solve(transposed)
+         logical, intent(in) :: transposed
+         real(rk), allocatable :: all(:, :)
+
+         allocate (all(size(self%col_scale), 1), source=0.0_rk)
+         associate (n => condensed%coupling%n_bulk)
+            if (transposed) then
+               all(n + 1:, 1) = x*self%col_scale(n + 1:)
+               call self%solver%solve(all, error, transposed=.true.)
+               x = all(n + 1:, 1)*self%row_factor*self%row_scale
+            else
+               all(n + 1:, 1) = x*self%row_factor*self%row_scale
+               call self%solver%solve(all, error)
+               x = all(n + 1:, 1)*self%col_scale(n + 1:)
+            end if
+         end associate
+      end subroutine solve
+
+   end subroutine estimate_condition
+
+   !> Give all memory back.
+   subroutine release(self)
+      class(sparse_step_t), intent(inout) :: self
+
+      call self%solver%release()
+      self%is_ready = .false.
+      if (allocated(self%row)) deallocate (self%row, self%col)
+      if (allocated(self%direction)) deallocate (self%direction, self%force)
+   end subroutine release
+
+end module coarse_sparse_step
