@@ -207,10 +207,13 @@ contains
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< [Pa]
       type(step_quality_t), intent(out) :: quality
+      integer(ik) :: end, i
 
       if (self%condensed%is_full) then
-         call find_full_step(self%condensed%stiffness, self%slopes, self%x_of_q, self%q_per_x, &
-                             self%residual, with_condition, step, quality)
+         associate (jumps => [((self%layout%at_jump(i, end), end=1, 2), i=1, self%condensed%n)])
+            call find_full_step(self%condensed%stiffness, self%slopes, jumps, self%x_of_q, &
+                                self%q_per_x, self%residual, with_condition, step, quality)
+         end associate
       else
          call self%factors%find_step(self%condensed, self%slopes, self%x_of_q, self%q_per_x, &
                                      self%residual, self%stress_scale, step, quality)

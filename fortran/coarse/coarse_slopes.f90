@@ -25,6 +25,7 @@ module coarse_slopes
       procedure :: clear
       procedure :: add
       procedure :: add_force
+      procedure :: by_row
    end type slopes_t
 
 contains
@@ -63,6 +64,30 @@ contains
       self%col(self%n_local) = col
       self%value(self%n_local) = value
    end subroutine add
+
+   !> The numbers of the local entries, equation by equation.
+   pure subroutine by_row(self, first, local)
+      class(slopes_t), intent(in) :: self
+      integer(ik), allocatable, intent(out) :: first(:)  !< (n + 1) where those of each begin
+      integer(ik), allocatable, intent(out) :: local(:)
+      integer(ik) :: k, row
+      integer(ik), allocatable :: next(:)
+
+      allocate (first(self%n + 1), source=0_ik)
+      do k = 1, self%n_local
+         first(self%row(k) + 1) = first(self%row(k) + 1) + 1
+      end do
+      first(1) = 1
+      do row = 1, self%n
+         first(row + 1) = first(row) + first(row + 1)
+      end do
+      next = first(:self%n)
+      allocate (local(self%n_local))
+      do k = 1, self%n_local
+         local(next(self%row(k))) = k
+         next(self%row(k)) = next(self%row(k)) + 1
+      end do
+   end subroutine by_row
 
    !> An equation holds a force or volume. Its place is kept with a weight of zero too: the pattern
    !! is to be the same in every state.

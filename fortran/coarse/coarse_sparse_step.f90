@@ -30,7 +30,7 @@ module coarse_sparse_step
 
    public :: sparse_step_t
 
-   integer(ik), parameter :: most_changes = 10  !< of contact, after which new factors cost less
+   integer(ik), parameter :: most_changes = 20  !< of contact, after which new factors cost less
    integer(ik), parameter :: most_directions = 12  !< of one step with old factors; as above
    integer(ik), parameter :: most_kept = 32  !< directions
    integer(ik), parameter :: estimate_every = 10  !< factorizations
@@ -91,7 +91,8 @@ contains
       if (.not. is_done .and. .not. is_new .and. .not. allocated(error)) then
          call renew(self, condensed, slopes, x_of_q, q_per_x, error)
          if (.not. allocated(error)) then
-           call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+            call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, &
+                        error)
          end if
       end if
       quality%is_singular = allocated(error)
@@ -276,7 +277,7 @@ contains
       if (is_known) is_known = size(self%row) == size(row)
       if (is_known) is_known = all(self%row == row) .and. all(self%col == col)
       if (.not. is_known) then
-       call self%solver%analyse(size(self%col_scale, kind=ik), row, col, mumps_unsymmetric, error, &
+         call self%solver%analyse(size(self%col_scale, kind=ik), row, col, mumps_unsymmetric, &
                                   error, ordering=mumps_scotch)
          if (allocated(error)) return
          call move_alloc(row, self%row)
