@@ -63,7 +63,7 @@ contains
       integer(ik), intent(in) :: kind  !< mumps_definite, _indefinite or _unsymmetric
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
-      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree (also if absent), _scotch
+      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _scotch
 
       call self%release()
       self%id%comm = 0

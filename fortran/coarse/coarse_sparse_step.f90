@@ -24,6 +24,7 @@ module coarse_sparse_step
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_slopes, only: slopes_t
+   use coarse_sparse_matrix, only: apply_columns, apply_rows, assemble_rock, assemble_rows
    use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
@@ -44,6 +45,8 @@ module coarse_sparse_step
       logical :: is_ready = .false.
       integer(ik) :: of = 0  !< the factorization of the rock that the factors hold
       integer(ik), allocatable :: row(:), col(:)  !< what has been analysed
+      real(rk), allocatable :: values(:)  !< of the same
+      integer(ik) :: n_rock = 0  !< so many of them are those of the cells' equations
       real(rk), allocatable :: col_scale(:)  !< (unknowns) unknown = scale * scaled unknown
       real(rk), allocatable :: row_scale(:)  !< (equations of the fractures) largest coefficient
       real(rk), allocatable :: row_factor(:)  !< (the same) what the factors' are multiplied by
@@ -218,46 +221,6 @@ contains
       call condensed%coupling%forces(all(:n, 1), x(x_of_q)*q_per_x, force)
    end subroutine precondition
 
-   !> What the fractures' rows make of unknowns and of the forces that belong to them.
-   pure subroutine apply_rows(slopes, x, force, answer)
-      type(slopes_t), intent(in) :: slopes
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      real(rk), intent(in) :: force(:)  !< [N/m], [m2]
-      real(rk), intent(out) :: answer(:)  !< [Pa]
-      integer(ik) :: k, m, row
-
-      answer = 0.0_rk
-      do k = 1, slopes%n_local
-         answer(slopes%row(k)) = answer(slopes%row(k)) + slopes%value(k)*x(slopes%col(k))
-      end do
-      do row = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, row) > 0) answer(row) = answer(row) + slopes%weight(m, row) &
-                                                        *force(slopes%force(m, row))
-         end do
-      end do
-   end subroutine apply_rows
-
-   !> The same with the transpose.
-   pure subroutine apply_columns(slopes, y, x, force)
-      type(slopes_t), intent(in) :: slopes
-      real(rk), intent(in) :: y(:)
-      real(rk), intent(out) :: x(:), force(:)  !< by local entries, by the forces
-      integer(ik) :: k, m, row
-
-      x = 0.0_rk
-      force = 0.0_rk
-      do k = 1, slopes%n_local
-         x(slopes%col(k)) = x(slopes%col(k)) + slopes%value(k)*y(slopes%row(k))
-      end do
-      do row = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, row) == 0) cycle
-            force(slopes%force(m, row)) = force(slopes%force(m, row)) + slopes%weight(m, row)*y(row)
-         end do
-      end do
-   end subroutine apply_columns
-
    !> Factors of the system with the rows of now.
    subroutine renew(self, condensed, slopes, x_of_q, q_per_x, error)
       class(sparse_step_t), intent(inout) :: self
@@ -270,22 +233,44 @@ contains
       real(rk), allocatable :: values(:)
       logical :: is_known
 
-      self%is_ready = .false.
-      call assemble(condensed, slopes, x_of_q, q_per_x, self%row_scale, self%row_factor, &
-                    self%col_scale, row, col, values)
       is_known = allocated(self%row)
-      if (is_known) is_known = size(self%row) == size(row)
-      if (is_known) is_known = all(self%row == row) .and. all(self%col == col)
-      if (.not. is_known) then
-         call self%solver%analyse(size(self%col_scale, kind=ik), row, col, mumps_unsymmetric, &
-                                  error, ordering=mumps_scotch)
-         if (allocated(error)) return
-         call move_alloc(row, self%row)
-         call move_alloc(col, self%col)
+      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
+      if (.not. is_known .or. self%of /= condensed%factorizations) then
+         call assemble_rock(condensed, slopes%n, x_of_q, q_per_x, self%col_scale, row, col, values)
+         if (is_known) is_known = size(row) == self%n_rock
+         if (is_known) is_known = all(self%row(:size(row)) == row) &
+                                  .and. all(self%col(:size(col)) == col)
+         if (is_known) then
+            self%values(:size(values)) = values
+         else
+            call move_alloc(row, self%row)
+            call move_alloc(col, self%col)
+            call move_alloc(values, self%values)
+            self%n_rock = size(self%row, kind=ik)
+         end if
       end if
-      call self%solver%factorize(values, error)
+      self%is_ready = .false.
+      call assemble_rows(condensed, slopes, x_of_q, q_per_x, self%col_scale, self%row_scale, &
+                         self%row_factor, row, col, values)
+      associate (n => self%n_rock)
+         if (is_known) is_known = size(self%row) == n + size(row)
+         if (is_known) is_known = all(self%row(n + 1:) == row) .and. all(self%col(n + 1:) == col)
+         if (is_known) then
+            self%values(n + 1:) = values
+         else
+            self%row = [self%row(:n), row]
+            self%col = [self%col(:n), col]
+            self%values = [self%values(:n), values]
+            call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
+                                     mumps_unsymmetric, error, ordering=mumps_scotch)
+            if (allocated(error)) then
+               deallocate (self%row, self%col, self%values)
+               return
+            end if
+         end if
+      end associate
+      call self%solver%factorize(self%values, error)
       if (allocated(error)) return
-      deallocate (values)
       self%factorizations = self%factorizations + 1
       self%of = condensed%factorizations
       self%weight = slopes%weight
@@ -299,127 +284,6 @@ contains
       self%estimated_for = self%of
       self%estimated_at = self%factorizations
    end subroutine renew
-
-   !> The whole system as triplets, for scaled equations and unknowns.
-   subroutine assemble(condensed, slopes, x_of_q, q_per_x, row_scale, row_factor, col_scale, row, &
-                       col, values)
-      type(condensed_t), intent(in) :: condensed
-      type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
-      real(rk), allocatable, intent(out) :: row_scale(:), row_factor(:), col_scale(:)
-      integer(ik), allocatable, intent(out) :: row(:), col(:)
-      real(rk), allocatable, intent(out) :: values(:)
-      integer(ik), allocatable :: rock_col(:), rock_row(:)
-      real(rk), allocatable :: rock(:)
-      integer(ik) :: at, k, m, n, n_bulk, n_entries, q
-
-      call condensed%solver%get_entries(rock_row, rock_col, rock)
-      n_bulk = condensed%coupling%n_bulk
-      n_entries = 2*size(rock) + size(condensed%coupling%col) + slopes%n_local
-      do k = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, k) > 0) n_entries = n_entries + entries_of(slopes%force(m, k)) + 1
-         end do
-      end do
-      allocate (row(n_entries), col(n_entries), values(n_entries))
-      allocate (row_scale(slopes%n), row_factor(slopes%n), source=0.0_rk)
-      ! Pressures and flows of the fluid in the units of the rock's pressures at the fractures.
-      allocate (col_scale(n_bulk + slopes%n), source=minval(condensed%scale(n_bulk + 3 :: 3)))
-      col_scale(:n_bulk) = condensed%scale(:n_bulk)
-      do q = 1, size(x_of_q)
-         col_scale(n_bulk + x_of_q(q)) = condensed%scale(n_bulk + q)/q_per_x(q)
-      end do
-      n = 0
-      do k = 1, size(rock)
-         call add(rock_row(k), rock_col(k), rock(k))
-         if (rock_row(k) /= rock_col(k)) call add(rock_col(k), rock_row(k), rock(k))
-      end do
-      ! C'Q, for unknowns as they are: values so far are those of scaled ones.
-      do q = 1, size(x_of_q)
-         do k = condensed%coupling%first(q), condensed%coupling%first(q + 1) - 1
-            at = condensed%coupling%col(k)
-            if (at > n_bulk) cycle
-            call add(at, n_bulk + x_of_q(q), condensed%coupling%value(k)*q_per_x(q) &
-                     *col_scale(at)*col_scale(n_bulk + x_of_q(q)))
-         end do
-      end do
-      at = n
-      do k = 1, slopes%n_local
-         call add_row(slopes%row(k), n_bulk + slopes%col(k), slopes%value(k))
-      end do
-      do k = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, k) > 0) call add_force(k, slopes%force(m, k), slopes%weight(m, k))
-         end do
-      end do
-      do k = at + 1, n
-         associate (i => row(k) - n_bulk)
-            row_factor(i) = max(row_factor(i), abs(values(k)))
-            if (col(k) <= n_bulk) cycle
-            row_scale(i) = max(row_scale(i), abs(values(k))/col_scale(col(k)))
-         end associate
-      end do
-      where (row_scale > 0.0_rk)
-         row_factor = 1.0_rk/row_factor
-      else where
-         row_scale = 1.0_rk
-         row_factor = 1.0_rk
-      end where
-      do k = at + 1, n
-         values(k) = values(k)*row_factor(row(k) - n_bulk)
-      end do
-      row = row(:n)
-      col = col(:n)
-      values = values(:n)
-
-   contains
-
-      pure integer(ik) function entries_of(force)
-         integer(ik), intent(in) :: force
-
-         entries_of = condensed%coupling%first(force + 1) - condensed%coupling%first(force)
-      end function entries_of
-
-      subroutine add(i, j, value)
-         integer(ik), intent(in) :: i, j
-         real(rk), intent(in) :: value
-
-         n = n + 1
-         row(n) = i
-         col(n) = j
-         values(n) = value
-      end subroutine add
-
-      !> To a row of the fractures.
-      subroutine add_row(i, j, value)
-         integer(ik), intent(in) :: i, j
-         real(rk), intent(in) :: value
-
-         call add(n_bulk + i, j, value*col_scale(j))
-      end subroutine add_row
-
-      !> A force, as the sum over the cells around.
-      subroutine add_force(i, force, weight)
-         integer(ik), intent(in) :: i, force
-         real(rk), intent(in) :: weight
-         integer(ik) :: entry, j
-
-         associate (coupling => condensed%coupling)
-            do entry = coupling%first(force), coupling%first(force + 1) - 1
-               j = coupling%col(entry)
-               if (j <= n_bulk) then
-                  call add_row(i, j, weight*coupling%value(entry))
-               else
-                  j = j - n_bulk
-                  call add_row(i, n_bulk + x_of_q(j), weight*coupling%value(entry)*q_per_x(j))
-               end if
-            end do
-         end associate
-         call add_row(i, n_bulk + x_of_q(force), weight*condensed%spring(force)*q_per_x(force))
-      end subroutine add_force
-
-   end subroutine assemble
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
    !! transpose: the norms of both that matrix and its inverse, estimated.
@@ -493,7 +357,7 @@ contains
 
       call self%solver%release()
       self%is_ready = .false.
-      if (allocated(self%row)) deallocate (self%row, self%col)
+      if (allocated(self%row)) deallocate (self%row, self%col, self%values)
       if (allocated(self%direction)) deallocate (self%direction, self%force)
    end subroutine release
 

@@ -245,9 +245,9 @@ contains
          call checks%no_error(error, "factorization without its fractures")
          n = full%layout%count()
          q = scattered(n)
-         q(3::3) = 1.0e9_rk*q(3::3)
+         q(3 :: 3) = 1.0e9_rk*q(3 :: 3)
          spring = 1.0e9_rk*abs(scattered(n))
-         spring(3::3) = 0.0_rk
+         spring(3 :: 3) = 0.0_rk
          call full%support(spring)
          call sparse%support(spring)
          expected = spread(0.0_rk, 1, n)
@@ -287,14 +287,14 @@ contains
       real(rk) :: scale
       integer(ik) :: a
 
+      scale = max(maxval(abs(expected(1 :: 3))), maxval(abs(expected(2 :: 3))))
       do a = 1, 2
-         scale = max(maxval(abs(expected(1::3))), maxval(abs(expected(2::3))))
-         call checks%is_close(maxval(abs(found(a::3) - expected(a::3))), 0.0_rk, 1.0e-9_rk*scale, &
-                              first)
+         call checks%is_close(maxval(abs(found(a :: 3) - expected(a :: 3))), 0.0_rk, &
+                              1.0e-9_rk*scale, first)
       end do
-      scale = maxval(abs(expected(3::3)))
-      call checks%is_close(maxval(abs(found(3::3) - expected(3::3))), 0.0_rk, 1.0e-9_rk*scale, &
-                           second)
+      scale = maxval(abs(expected(3 :: 3)))
+      call checks%is_close(maxval(abs(found(3 :: 3) - expected(3 :: 3))), 0.0_rk, &
+                           1.0e-9_rk*scale, second)
    end subroutine compare_kinds
 
 end program test_coarse_condensed
