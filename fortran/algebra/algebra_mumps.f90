@@ -13,7 +13,7 @@ module algebra_mumps
 
    public :: mumps_t
    public :: mumps_definite, mumps_indefinite, mumps_unsymmetric
-   public :: mumps_minimum_degree, mumps_scotch
+   public :: mumps_minimum_degree, mumps_pord
 
    include "dmumps_struc.h"
 
@@ -22,7 +22,7 @@ module algebra_mumps
    integer(ik), parameter :: mumps_indefinite = 2  !< general symmetric (SYM=2)
 
    integer(ik), parameter :: mumps_minimum_degree = 0  !< approximate minimum degree
-   integer(ik), parameter :: mumps_scotch = 3  !< nested dissection
+   integer(ik), parameter :: mumps_pord = 4  !< a mixture of both kinds of bisection; repeatable
 
    interface
       subroutine dmumps(id)
@@ -63,7 +63,7 @@ contains
       integer(ik), intent(in) :: kind  !< mumps_definite, _indefinite or _unsymmetric
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
-      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _scotch
+      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _pord
 
       call self%release()
       self%id%comm = 0

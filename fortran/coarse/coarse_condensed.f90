@@ -15,7 +15,7 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_indefinite, mumps_scotch, mumps_t
+   use algebra_mumps, only: mumps_indefinite, mumps_pord, mumps_t
    use coarse_coupling, only: coupling_t, find_coupling, find_coupling_values
    use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
    use coarse_matrix, only: matrix_t
@@ -83,7 +83,7 @@ contains
          if (self%is_full) then
             call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
          else
-            call self%solver%analyse(n, row, col, mumps_indefinite, error, ordering=mumps_scotch)
+            call self%solver%analyse(n, row, col, mumps_indefinite, error, ordering=mumps_pord)
             call find_coupling(matrix, self%coupling)
          end if
          if (allocated(error)) return

@@ -19,7 +19,7 @@
 !! and where old factors serve, it is that of a matrix some states away.
 module coarse_sparse_step
    use algebra_lapack, only: dlacn2
-   use algebra_mumps, only: mumps_scotch, mumps_t, mumps_unsymmetric
+   use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
@@ -262,7 +262,7 @@ contains
             self%col = [self%col(:n), col]
             self%values = [self%values(:n), values]
             call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
-                                     mumps_unsymmetric, error, ordering=mumps_scotch)
+                                     mumps_unsymmetric, error, ordering=mumps_pord)
             if (allocated(error)) then
                deallocate (self%row, self%col, self%values)
                return

