@@ -9,7 +9,7 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgecon, dgesv, dgetrf, dgetrs, dpotrf, dpotrs
+   public :: dgecon, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
 
    interface
       !> Estimate the reciprocal of the condition number from the factors of dgetrf.
@@ -57,6 +57,18 @@ module algebra_lapack
          real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dgetrs
+
+      !> Estimate the 1-norm of a matrix from its products: begin with kase = 0; as long as it comes
+      !! back as 1 or 2, replace x by the product of the matrix, or of its transpose, with x.
+      subroutine dlacn2(n, v, x, isgn, est, kase, isave)
+         import :: ik, rk
+         implicit none(type, external)
+         integer(ik), intent(in) :: n
+         real(rk), intent(inout) :: v(n), x(n)
+         integer(ik), intent(inout) :: isgn(n)
+         real(rk), intent(inout) :: est
+         integer(ik), intent(inout) :: kase, isave(3)
+      end subroutine dlacn2
 
       !> Replace a triangle of the symmetric positive definite A by its Cholesky factor.
       subroutine dpotrf(uplo, n, a, lda, info)

@@ -1,22 +1,28 @@
-!> Sparse symmetric systems by MUMPS: analysed once per pattern, factorized once per set of values,
+!> Sparse systems by MUMPS: analysed once per pattern, factorized once per set of values,
 !! solved many times; on request condensed onto a few unknowns (Schur complement).
 !!
 !! Settings follow measurements on systems of this kind: approximate minimum degree (a better
 !! ordering costs more than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS
 !! reports an exactly singular matrix only with null-pivot detection, which is therefore on.
 module algebra_mumps
+   use, intrinsic :: iso_fortran_env, only: int64
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
    public :: mumps_t
-   public :: mumps_definite, mumps_indefinite
+   public :: mumps_definite, mumps_indefinite, mumps_unsymmetric
+   public :: mumps_minimum_degree, mumps_pord
 
    include "dmumps_struc.h"
 
+   integer(ik), parameter :: mumps_unsymmetric = 0  !< any matrix (SYM=0)
    integer(ik), parameter :: mumps_definite = 1  !< symmetric positive definite (SYM=1)
    integer(ik), parameter :: mumps_indefinite = 2  !< general symmetric (SYM=2)
+
+   integer(ik), parameter :: mumps_minimum_degree = 0  !< approximate minimum degree
+   integer(ik), parameter :: mumps_pord = 4  !< a mixture of both kinds of bisection; repeatable
 
    interface
       subroutine dmumps(id)
@@ -36,6 +42,7 @@ module algebra_mumps
       procedure :: analyse
       procedure :: factorize
       procedure :: solve
+      procedure :: get_entries
       procedure :: get_schur
       procedure :: condense
       procedure :: expand
@@ -47,14 +54,16 @@ contains
 
    !> Order the unknowns and find the pattern of the factors.
    !!
-   !! One triangle of the matrix as triplets; entries given twice are added.
-   subroutine analyse(self, n, row, col, kind, error, schur)
+   !! One triangle of the matrix as triplets, or all of one that is not symmetric; entries given
+   !! twice are added.
+   subroutine analyse(self, n, row, col, kind, error, schur, ordering)
       class(mumps_t), intent(inout) :: self
       integer(ik), intent(in) :: n  !< number of unknowns
       integer(ik), intent(in) :: row(:), col(:)  !< (n_entries) from 1
-      integer(ik), intent(in) :: kind  !< mumps_definite or mumps_indefinite
+      integer(ik), intent(in) :: kind  !< mumps_definite, _indefinite or _unsymmetric
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
+      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _pord
 
       call self%release()
       self%id%comm = 0
@@ -67,7 +76,9 @@ contains
       self%id%icntl(4) = 0
       ! No permutation by values: they are not known yet when the order is chosen.
       self%id%icntl(6) = 0
-      self%id%icntl(7) = 0  ! approximate minimum degree
+      self%id%icntl(7) = mumps_minimum_degree
+      if (present(ordering)) self%id%icntl(7) = ordering
+      if (kind == mumps_unsymmetric) self%id%icntl(8) = 0  ! callers scale: MUMPS takes an eighth
       self%id%icntl(14) = 40
       self%id%icntl(24) = 1
       self%id%n = n
@@ -84,7 +95,6 @@ contains
             self%id%size_schur = self%n_schur
             allocate (self%id%listvar_schur(self%n_schur))
             self%id%listvar_schur = schur
-            allocate (self%id%schur(self%n_schur**2))
             allocate (self%id%redrhs(self%n_schur))
          end if
       end if
@@ -110,6 +120,9 @@ contains
                           "the matrix has an entry that is not a finite number")
          return
       end if
+      if (self%n_schur > 0 .and. .not. associated(self%id%schur)) then
+         allocate (self%id%schur(int(self%n_schur, int64)**2))
+      end if
       do attempt = 1, 3
          self%id%a = values
          self%id%job = 2
@@ -125,27 +138,41 @@ contains
    end subroutine factorize
 
    !> Solve for one or more right-hand sides, which are overwritten by the solutions.
-   subroutine solve(self, x, error)
+   subroutine solve(self, x, error, transposed)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(inout), contiguous :: x(:, :)  !< (n, n_rhs)
       type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: transposed  !< with the transpose of the matrix
 
       self%id%nrhs = size(x, 2)
       self%id%lrhs = size(x, 1)
       call provide_rhs(self, size(x))
       self%id%rhs = reshape(x, [size(x)])
       self%id%icntl(26) = 0
+      self%id%icntl(9) = 1
+      if (present(transposed)) self%id%icntl(9) = merge(0, 1, transposed)
       self%id%job = 3
       call dmumps(self%id)
       call check_status(self, "solution", error)
       if (.not. allocated(error)) x = reshape(self%id%rhs, shape(x))
    end subroutine solve
 
-   !> The Schur complement, full and symmetric.
-   subroutine get_schur(self, schur)
+   !> The matrix as it was given.
+   subroutine get_entries(self, row, col, values)
       class(mumps_t), intent(in) :: self
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+      real(rk), allocatable, intent(out) :: values(:)
+
+      row = self%id%irn
+      col = self%id%jcn
+      values = self%id%a
+   end subroutine get_entries
+
+   !> The Schur complement, full and symmetric. It is handed over, not kept: once per factorization.
+   subroutine get_schur(self, schur)
+      class(mumps_t), intent(inout) :: self
       real(rk), intent(out) :: schur(:, :)  !< (n_schur, n_schur)
-      integer(ik) :: i, j
+      integer(int64) :: i, j
 
       ! MUMPS gives the lower triangle by rows, that is, the upper one by columns.
       do j = 1, self%n_schur
@@ -154,6 +181,7 @@ contains
             schur(j, i) = schur(i, j)
          end do
       end do
+      deallocate (self%id%schur)
    end subroutine get_schur
 
    !> Forward elimination: the right-hand side of the condensed system.
@@ -199,7 +227,8 @@ contains
       if (associated(self%id%irn)) deallocate (self%id%irn, self%id%jcn, self%id%a)
       if (associated(self%id%rhs)) deallocate (self%id%rhs)
       if (associated(self%id%listvar_schur)) then
-         deallocate (self%id%listvar_schur, self%id%schur, self%id%redrhs)
+         deallocate (self%id%listvar_schur, self%id%redrhs)
+         if (associated(self%id%schur)) deallocate (self%id%schur)
       end if
       call dmumps(self%id)
       self%active = .false.

@@ -23,11 +23,13 @@ module app_size
       real(rk) :: unknowns = 0.0_rk  !< of the body
       ! At least so much memory [byte]
       real(rk) :: bytes_of_cells = 0.0_rk  !< mesh, matrix and its factors
-      real(rk) :: bytes_of_contact = 0.0_rk  !< the full matrix on the fractures
+      real(rk) :: bytes_of_contact = 0.0_rk  !< the full matrix on the fractures, or sparse factors
       real(rk) :: bytes_of_tables = 0.0_rk  !< which gather in memory
    end type estimate_t
 
    real(rk), parameter :: byte_per_cell = 8.0e3_rk  !< measured: 10e3 to 14e3 at 3e4 cells
+   !> The sparse factors of the fractures' equations; measured: 15e3 to 20e3 at 5e4 to 1e5 cells.
+   real(rk), parameter :: byte_per_cell_of_contact = 1.0e4_rk
    real(rk), parameter :: byte_per_value = 20.0_rk  !< of a table
    real(rk), parameter :: values_per_step = 15.0_rk  !< of history.csv
    real(rk), parameter :: values_per_probe = 6.0_rk
@@ -67,6 +69,10 @@ contains
       end if
       estimate%bytes_of_cells = byte_per_cell*estimate%cells
       estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
+      if (scene%has_fluid() .and. scene%discretization%condensation /= "full") then
+         estimate%bytes_of_contact = min(estimate%bytes_of_contact, &
+                                         byte_per_cell_of_contact*estimate%cells)
+      end if
       values = (values_per_step + values_per_probe*real(size(scene%probes), rk))*estimate%steps
       values = values + values_per_fracture_cell*estimate%fracture_cells*written
       estimate%bytes_of_tables = byte_per_value*values

@@ -8,10 +8,15 @@
 !!               -l/2 (f_n - p_F), -l/2 f_tau at the end,   dt l lambda- )
 !!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
 !! six of each per fracture cell (condensed_layout_t), jumps and forces in n, tau of the cell.
+!!
+!! Where there are many of them S is not formed: it grows with their square, and its elimination
+!! with their cube. The rock is then factorized without its fractures, and S q costs one solution
+!! with its factors.
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_indefinite, mumps_t
+   use algebra_mumps, only: mumps_indefinite, mumps_pord, mumps_t
+   use coarse_coupling, only: coupling_t, find_coupling, find_coupling_values
    use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
    use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
@@ -23,8 +28,15 @@ module coarse_condensed
    !> Factors of the matrix and the dense system on the fractures, for one mesh and one time step.
    type :: condensed_t
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
-      !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]
+      integer(ik) :: factorizations = 0  !< so far: what is made of one is not that of the next
+      logical :: is_full = .true.  !< S is formed; to be chosen before the first factorization
+      !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]; none unless full
       real(rk), allocatable :: stiffness(:, :)
+      type(coupling_t) :: coupling  !< of the fractures with the rest; unless full
+      !> (3 n_cells) what the last q made of the cells, without loads; unless full [m], [m], [Pa]
+      real(rk), allocatable :: rock(:)
+      !> (6 n) diagonal of S where it has been asked for, else huge; unless full
+      real(rk), allocatable :: diagonal(:)
       real(rk), allocatable :: spring(:)  !< (6 n) part of its diagonal that is not the body's [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
@@ -40,6 +52,8 @@ module coarse_condensed
       procedure :: support
       procedure :: condense
       procedure :: expand
+      procedure :: find_forces
+      procedure :: find_volume_slopes
    end type condensed_t
 
 contains
@@ -53,26 +67,39 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: row(:), col(:), schur(:)
       real(rk), allocatable :: values(:)
-      integer(ik) :: i, n
+      integer(ik) :: i, n, n_blocks
 
       self%dt = -1.0_rk
+      self%factorizations = self%factorizations + 1
+      n_blocks = merge(matrix%n_blocks, matrix%n_cells, self%is_full)
       if (.not. self%analysed) then
          self%n = mesh%fracture%n_cells
          self%layout = condensed_layout(self%n)
          self%at_fractures = at_component(matrix%n_cells + 1, 1)
          call find_frames(mesh, self%normal, self%length)
-         call triplet_pattern(matrix, row, col)
-         n = 3*matrix%n_blocks
+         call triplet_pattern(matrix, n_blocks, row, col)
+         n = 3*n_blocks
          schur = [(i, i=self%at_fractures, n)]
-         call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
+         if (self%is_full) then
+            call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
+         else
+            call self%solver%analyse(n, row, col, mumps_indefinite, error, ordering=mumps_pord)
+            call find_coupling(matrix, self%coupling)
+         end if
          if (allocated(error)) return
          self%analysed = .true.
       end if
       call find_scale(matrix, dt, self%scale)
-      call triplet_values(matrix, self%scale, dt, values)
+      call triplet_values(matrix, n_blocks, self%scale, dt, values)
       call self%solver%factorize(values, error)
       if (allocated(error)) return
-      if (self%n > 0) call find_stiffness(self)
+      if (self%is_full) then
+         if (self%n > 0) call find_stiffness(self)
+      else
+         call find_coupling_values(matrix, self%normal, dt, self%coupling)
+         self%spring = spread(0.0_rk, 1, self%layout%count())
+         self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
+      end if
       self%dt = dt
    end subroutine factorize
 
@@ -83,11 +110,23 @@ contains
       real(rk), intent(in) :: rhs(:, :)
       real(rk), intent(out) :: g(:)  !< (6 n) [N/m], [N/m], [m2]
       type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: b(:), all(:)
 
       if (self%n == 0) return
-      call self%solver%condense(reshape(rhs, [size(rhs)])*self%scale, g, error)
-      g = g/self%scale(self%at_fractures:)
-      call turn_to_normals(self, g)
+      if (self%is_full) then
+         call self%solver%condense(reshape(rhs, [size(rhs)])*self%scale, g, error)
+         g = g/self%scale(self%at_fractures:)
+         call turn_to_normals(self, g)
+      else
+         all = reshape(rhs, [size(rhs)])
+         b = all(:self%coupling%n_bulk)
+         call solve_rock(self, b, error)
+         call self%coupling%forces(b, 0.0_rk*g, g)
+         associate (own => all(self%at_fractures:))
+            call turn_to_normals(self, own)
+            g = own - g
+         end associate
+      end if
    end subroutine condense
 
    !> All unknowns from q on the fractures, or, without fractures, from the right-hand side.
@@ -98,39 +137,145 @@ contains
       real(rk), intent(out) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: x(size(rhs), 1)
-      real(rk), allocatable :: jumps(:)
+      real(rk), allocatable :: b(:), jumps(:)
 
+      x(:, 1) = reshape(rhs, [size(rhs)])
       if (self%n == 0) then
-         x(:, 1) = reshape(rhs, [size(rhs)])*self%scale
+         x(:, 1) = x(:, 1)*self%scale
          call self%solver%solve(x, error)
-      else
-         jumps = q
-         call turn_to_axes(self, jumps)
-         call self%solver%expand(jumps/self%scale(self%at_fractures:), x(:, 1), error)
+         unknowns = reshape(x(:, 1)*self%scale, shape(unknowns))
+         return
       end if
-      unknowns = reshape(x(:, 1)*self%scale, shape(unknowns))
+      jumps = q
+      call turn_to_axes(self, jumps)
+      if (self%is_full) then
+         call self%solver%expand(jumps/self%scale(self%at_fractures:), x(:, 1), error)
+         x(:, 1) = x(:, 1)*self%scale
+      else
+         allocate (b(self%coupling%n_bulk))
+         call self%coupling%bulk_load(q, b)
+         b = x(:size(b), 1) - b
+         call solve_rock(self, b, error)
+         x(:size(b), 1) = b
+         x(self%at_fractures:, 1) = jumps
+      end if
+      unknowns = reshape(x(:, 1), shape(unknowns))
    end subroutine expand
+
+   !> S q.
+   subroutine find_forces(self, q, force, error)
+      class(condensed_t), intent(inout) :: self
+      real(rk), intent(in) :: q(:)  !< (6 n) [m], [m], [Pa]
+      real(rk), intent(out) :: force(:)  !< (6 n) [N/m], [N/m], [m2]
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%is_full) then
+         force = matmul(self%stiffness, q)
+      else
+         if (.not. allocated(self%rock)) allocate (self%rock(self%coupling%n_bulk))
+         call self%coupling%bulk_load(q, self%rock)
+         call solve_rock(self, self%rock, error)
+         self%rock = -self%rock
+         call self%coupling%forces(self%rock, q, force)
+         force = force + self%spring*q
+      end if
+   end subroutine find_forces
+
+   !> Derivatives of the volumes of some faces by their own pressures, on the diagonal of S. They
+   !! have no springs.
+   subroutine find_volume_slopes(self, at, slope, error)
+      class(condensed_t), intent(inout) :: self
+      integer(ik), intent(in) :: at(:)  !< numbers in q
+      real(rk), intent(out) :: slope(:)  !< [m2/Pa]
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: missing(:)
+      integer(ik) :: i
+
+      if (self%is_full) then
+         slope = [(self%stiffness(at(i), at(i)), i=1, size(at))]
+      else
+         missing = pack(at,.not. self%diagonal(at) < huge(1.0_rk))
+         call find_diagonal(self, missing, error)
+         slope = self%diagonal(at)
+      end if
+   end subroutine find_volume_slopes
+
+   !> Entries on the diagonal of S one by one, each from the answer of the rock to its unknown.
+   subroutine find_diagonal(self, at, error)
+      class(condensed_t), intent(inout) :: self
+      integer(ik), intent(in) :: at(:)  !< numbers in q
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), parameter :: together = 32  ! right-hand sides
+      real(rk) :: q(self%layout%count())
+      real(rk), allocatable :: answer(:, :), row(:, :)
+      integer(ik) :: first, i, n
+
+      q = 0.0_rk
+      associate (scale => self%scale(:self%coupling%n_bulk))
+         do first = 1, size(at), together
+            n = min(together, size(at, kind=ik) - first + 1)
+            allocate (row(size(scale), n))
+            do i = 1, n
+               q(at(first + i - 1)) = 1.0_rk
+               call self%coupling%bulk_load(q, row(:, i))
+               q(at(first + i - 1)) = 0.0_rk
+               row(:, i) = row(:, i)*scale
+            end do
+            answer = row
+            call self%solver%solve(answer, error)
+            if (allocated(error)) return
+            do i = 1, n
+               associate (place => at(first + i - 1))
+                  self%diagonal(place) = self%coupling%diagonal(place) &
+                                         - dot_product(row(:, i), answer(:, i))
+               end associate
+            end do
+            deallocate (row)
+         end do
+      end associate
+   end subroutine find_diagonal
+
+   !> The unknowns of the cells, those on the fractures being zero, instead of the right-hand side.
+   subroutine solve_rock(self, b, error)
+      class(condensed_t), intent(inout) :: self
+      real(rk), intent(inout) :: b(:)  !< from [N/m], [m2] to [m], [Pa] cell by cell
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: x(:, :)
+
+      associate (scale => self%scale(:size(b)))
+         allocate (x(size(b), 1))
+         x(:, 1) = b*scale
+         call self%solver%solve(x, error)
+         b = x(:, 1)*scale
+      end associate
+   end subroutine solve_rock
 
    !> S, in the fractures' own directions.
    subroutine find_stiffness(self)
       class(condensed_t), intent(inout) :: self
-      real(rk) :: schur(self%layout%count(), self%layout%count())
-      integer(ik) :: i
+      integer(ik) :: at, cell, end, i
+      real(rk), allocatable :: first(:)
 
-      call self%solver%get_schur(schur)
-      associate (s => self%scale(self%at_fractures:))
+      if (allocated(self%stiffness)) deallocate (self%stiffness)
+      allocate (self%stiffness(self%layout%count(), self%layout%count()))
+      associate (s => self%scale(self%at_fractures:), stiffness => self%stiffness)
+         call self%solver%get_schur(stiffness)
          do i = 1, size(s)
-            schur(:, i) = schur(:, i)/(s*s(i))
-            call turn_to_normals(self, schur(:, i))
+            stiffness(:, i) = stiffness(:, i)/(s*s(i))
+            call turn_to_normals(self, stiffness(:, i))
+         end do
+         do cell = 1, self%n
+            associate (n => self%normal(:, cell))
+               do end = 1, 2
+                  at = self%layout%at_jump(cell, end)
+                  first = stiffness(:, at)
+                  stiffness(:, at) = n(1)*first + n(2)*stiffness(:, at + 1)
+                  stiffness(:, at + 1) = n(2)*first - n(1)*stiffness(:, at + 1)
+               end do
+            end associate
          end do
       end associate
-      schur = transpose(schur)
-      do i = 1, size(schur, 2)
-         call turn_to_normals(self, schur(:, i))
-      end do
-      self%stiffness = schur
-      if (allocated(self%spring)) deallocate (self%spring)
-      allocate (self%spring(size(schur, 1)), source=0.0_rk)
+      self%spring = spread(0.0_rk, 1, self%layout%count())
    end subroutine find_stiffness
 
    !> Springs on the unknowns of q, instead of those so far.
@@ -139,9 +284,11 @@ contains
       real(rk), intent(in) :: spring(:)  !< (6 n) [Pa]
       integer(ik) :: i
 
-      do i = 1, size(spring, kind=ik)
-         self%stiffness(i, i) = self%stiffness(i, i) + (spring(i) - self%spring(i))
-      end do
+      if (self%is_full) then
+         do i = 1, size(spring, kind=ik)
+            self%stiffness(i, i) = self%stiffness(i, i) + (spring(i) - self%spring(i))
+         end do
+      end if
       self%spring = spring
    end subroutine support
 
@@ -208,15 +355,16 @@ contains
    end subroutine find_frames
 
    !> Where the numbers of the lower triangle stand, one by one.
-   subroutine triplet_pattern(matrix, row, col)
+   subroutine triplet_pattern(matrix, n_blocks, row, col)
       type(matrix_t), intent(in) :: matrix
+      integer(ik), intent(in) :: n_blocks  !< so many of them
       integer(ik), allocatable, intent(out) :: row(:), col(:)
       integer(ik) :: a, b, block, entry, i, n
 
-      n = triplet_count(matrix)
+      n = triplet_count(matrix, n_blocks)
       allocate (row(n), col(n))
       n = 0
-      do i = 1, matrix%n_blocks
+      do i = 1, n_blocks
          do entry = matrix%columns%first(i), matrix%columns%last(i)
             block = matrix%columns%item(entry)
             do b = 1, 3
@@ -231,17 +379,18 @@ contains
    end subroutine triplet_pattern
 
    !> The numbers themselves, for scaled unknowns and equations.
-   subroutine triplet_values(matrix, scale, dt, values)
+   subroutine triplet_values(matrix, n_blocks, scale, dt, values)
       type(matrix_t), intent(in) :: matrix
+      integer(ik), intent(in) :: n_blocks  !< so many of them
       real(rk), intent(in) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(out) :: values(:)  !< [-]
       integer(ik) :: a, at_col, at_row, b, entry, i, n
       real(rk) :: block(3, 3)
 
-      allocate (values(triplet_count(matrix)))
+      allocate (values(triplet_count(matrix, n_blocks)))
       n = 0
-      do i = 1, matrix%n_blocks
+      do i = 1, n_blocks
          at_row = at_component(i, 1) - 1
          do entry = matrix%columns%first(i), matrix%columns%last(i)
             at_col = at_component(matrix%columns%item(entry), 1) - 1
@@ -258,10 +407,11 @@ contains
    end subroutine triplet_values
 
    !> How many numbers the lower triangle has: six in a diagonal block, nine in another.
-   pure integer(ik) function triplet_count(matrix)
+   pure integer(ik) function triplet_count(matrix, n_blocks)
       type(matrix_t), intent(in) :: matrix
+      integer(ik), intent(in) :: n_blocks  !< so many of them
 
-      triplet_count = 9*(size(matrix%columns%item, kind=ik) - matrix%n_blocks) + 6*matrix%n_blocks
+      triplet_count = 9*(matrix%columns%last(n_blocks) - n_blocks) + 6*n_blocks
    end function triplet_count
 
 end module coarse_condensed

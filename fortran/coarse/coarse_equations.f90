@@ -1,6 +1,7 @@
 !> The equations of one time step on the fractures: contact at both ends of every cell, and the
 !! fluid (coarse_fracture_flow, coarse_joint_flow). Their unknowns are those of fracture_layout_t.
 module coarse_equations
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
    use coarse_joint_flow, only: fill_branch, fill_joint
@@ -27,7 +28,7 @@ contains
       integer(ik) :: end, i, k
 
       call self%find_forces(x)
-      self%jacobian = 0.0_rk
+      call self%slopes%clear(self%layout%count())
       pressure = 0.0_rk
       do i = 1, self%layout%n_cells
          do end = 1, 2
@@ -51,6 +52,7 @@ contains
          call fill_branch(k, x, self)
       end do
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
+      if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate
 
    !> The two contact equations at one end of cell i.
@@ -59,11 +61,10 @@ contains
       integer(ik), intent(in) :: end  !< 1 start, 2 end
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(equations_t), intent(inout) :: eq
-      real(rk) :: by_force, by_traction(2, 2), by_jump(2, 2), half_length
+      real(rk) :: by_traction(2, 2), by_jump(2, 2), half_length
       type(cell_fluid_t) :: fluid
-      integer(ik) :: at, k, m, n, point, row
+      integer(ik) :: at, k, m, point, row
 
-      n = size(eq%force_slope, 1)
       half_length = 0.5_rk*eq%condensed%length(i)
       at = eq%condensed%layout%at_jump(i, end)
       row = eq%layout%at_jump(i, end)
@@ -74,16 +75,13 @@ contains
                              eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
                              eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
       do k = 1, 2
-         associate (slope => eq%jacobian(:, row + k - 1))
+         associate (slopes => eq%slopes, equation => row + k - 1)
             do m = 1, 2
-               if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
-               by_force = by_traction(k, m)/half_length
-               slope(:n) = slope(:n) - by_force*eq%force_slope(:, at + m - 1)
+               call slopes%add_force(equation, at + m - 1, -by_traction(k, m)/half_length)
+               call slopes%add(equation, row + m - 1, by_jump(k, m)/eq%stiffness)
             end do
-            associate (by_fluid => slope(eq%layout%at_pressure(i)))
-               by_fluid = by_fluid + by_traction(k, 1)*fluid%pressure_slope
-            end associate
-            slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/eq%stiffness
+            call slopes%add(equation, eq%layout%at_pressure(i), &
+                            by_traction(k, 1)*fluid%pressure_slope)
          end associate
       end do
    end subroutine fill_contact

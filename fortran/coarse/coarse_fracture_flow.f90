@@ -34,9 +34,8 @@ contains
       real(rk), parameter :: most = 0.8_rk  ! of the rock's own resistance, at a tip
       real(rk) :: aperture, conductance, resistance, slope, volume
       type(cell_fluid_t) :: fluid
-      integer(ik) :: at, jumps(2), n, row, side
+      integer(ik) :: at, end, jumps(2), row, side
 
-      n = size(eq%force_slope, 1)
       jumps = eq%layout%at_jump(i, both)
       fluid = eq%fluid_at(x, i)
       call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
@@ -50,15 +49,15 @@ contains
          volume = eq%force(at)
          resistance = 1.0_rk/conductance &
                       + max(eq%cells%leak_resistance(i)/(eq%settings%mobility*eq%dt), &
-                            -most/abs(eq%force_slope(row, at)))
+                            -most/abs(eq%volume_slope(side, i)))
          eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
-         eq%jacobian(:n, row) = eq%force_slope(:, at)*resistance
-         eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
-                                   - 0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness
-         eq%jacobian(row, row) = eq%jacobian(row, row) - 1.0_rk
-         associate (by_fluid => eq%jacobian(eq%layout%at_pressure(i), row))
-            by_fluid = by_fluid + fluid%pressure_slope
-         end associate
+         call eq%slopes%add_force(row, at, resistance)
+         do end = 1, 2
+            call eq%slopes%add(row, jumps(end), &
+                               -0.5_rk*volume/(conductance*aperture)*slope/eq%stiffness)
+         end do
+         call eq%slopes%add(row, row, -1.0_rk)
+         call eq%slopes%add(row, eq%layout%at_pressure(i), fluid%pressure_slope)
       end do
    end subroutine fill_exchange
 
@@ -69,9 +68,8 @@ contains
       class(fracture_system_t), intent(inout) :: eq
       real(rk) :: compression, filled
       type(cell_fluid_t) :: fluid
-      integer(ik) :: from_rock(2), jumps(2), n, row
+      integer(ik) :: from_rock(2), jumps(2), k, row
 
-      n = size(eq%force_slope, 1)
       row = eq%layout%at_pressure(i)
       jumps = eq%layout%at_jump(i, both)
       from_rock = eq%condensed%layout%at_face_pressure(i, both)
@@ -84,13 +82,14 @@ contains
                                      + filled*compression) &
                              - eq%force(from_rock(1)) - eq%force(from_rock(2)) &
                              - eq%dt*eq%cells%injection(i))/eq%unit
-         eq%jacobian(:n, row) = -(eq%force_slope(:, from_rock(1)) &
-                                  + eq%force_slope(:, from_rock(2)))/eq%unit
-         eq%jacobian(jumps, row) = eq%jacobian(jumps, row) &
-                                   + 0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit)
-         eq%jacobian(row, row) = eq%jacobian(row, row) + length/eq%unit &
-                                 *(filled*compressibility*fluid%pressure_slope &
-                                   - fluid%void_slope*(1.0_rk + compression))
+         do k = 1, 2
+            call eq%slopes%add_force(row, from_rock(k), -1.0_rk/eq%unit)
+            call eq%slopes%add(row, jumps(k), &
+                               0.5_rk*length*(1.0_rk + compression)/(eq%stiffness*eq%unit))
+         end do
+         call eq%slopes%add(row, row, length/eq%unit &
+                            *(filled*compressibility*fluid%pressure_slope &
+                              - fluid%void_slope*(1.0_rk + compression)))
       end associate
    end subroutine fill_balance
 
@@ -107,15 +106,17 @@ contains
       do side = 1, 2
          at = eq%condensed%layout%at_face_pressure(i, side)
          associate (row => faces(side))
-            conductance = abs(eq%force_slope(row, at))
+            conductance = abs(eq%volume_slope(side, i))
             eq%residual(row) = eq%force(at)/conductance
-            eq%jacobian(:size(eq%force_slope, 1), row) = eq%force_slope(:, at)/conductance
+            call eq%slopes%add_force(row, at, 1.0_rk/conductance)
          end associate
       end do
       fluid = eq%layout%at_pressure(i)
       eq%residual(fluid) = x(fluid) - 0.5_rk*(x(faces(1)) + x(faces(2)))
-      eq%jacobian(fluid, fluid) = 1.0_rk
-      eq%jacobian(faces, fluid) = -0.5_rk
+      call eq%slopes%add(fluid, fluid, 1.0_rk)
+      do side = 1, 2
+         call eq%slopes%add(fluid, faces(side), -0.5_rk)
+      end do
    end subroutine fill_equilibrium
 
    !> Flow from the first to the second cell of pair k: cubic law between their middles; and its
@@ -126,7 +127,7 @@ contains
       class(fracture_system_t), intent(inout) :: eq
       type(cell_fluid_t) :: fluid(2)
       real(rk) :: aperture, length(2), opening, resistance, slope, weight(2)
-      integer(ik) :: at(2), cells(2), end, jumps(2), other, row
+      integer(ik) :: at(2), cells(2), end, jumps(2), m, other, row
 
       row = eq%layout%at_flow(k)
       cells = eq%connections(:, k)
@@ -143,16 +144,20 @@ contains
                                   eq%cells%roughness(cells(end)), opening, aperture, slope)
          resistance = 12.0_rk*eq%settings%viscosity*length(end)/aperture**3*eq%unit/eq%dt
          eq%residual(row) = eq%residual(row) + resistance*x(row)
-         eq%jacobian(row, row) = eq%jacobian(row, row) + resistance
+         call eq%slopes%add(row, row, resistance)
          do other = 1, 2
             jumps = eq%layout%at_jump(cells(other), both)
-            eq%jacobian(jumps, row) = eq%jacobian(jumps, row) - 1.5_rk*resistance*x(row) &
-                                      /aperture*slope*weight(other)/eq%stiffness
+            do m = 1, 2
+               call eq%slopes%add(row, jumps(m), -1.5_rk*resistance*x(row)/aperture*slope &
+                                  *weight(other)/eq%stiffness)
+            end do
          end do
+         associate (sign => real(2*end - 3, rk))
+            call eq%slopes%add(row, at(end), sign*fluid(end)%pressure_slope)
+            eq%residual(at(end)) = eq%residual(at(end)) - sign*x(row)
+            call eq%slopes%add(at(end), row, -sign)
+         end associate
       end do
-      eq%jacobian(at, row) = [-1.0_rk, 1.0_rk]*fluid%pressure_slope
-      eq%residual(at) = eq%residual(at) + [1.0_rk, -1.0_rk]*x(row)
-      eq%jacobian(row, at) = [1.0_rk, -1.0_rk]
    end subroutine fill_flow
 
    !> The way of the fluid from the middle of each of two neighbours to where they meet, as a length

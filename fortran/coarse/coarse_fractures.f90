@@ -4,12 +4,16 @@
 !!
 !! All unknowns x and equations are scaled to Pa: jumps by a stiffness, flows and volumes by a unit.
 module coarse_fractures
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_joints, only: joints_t
    use coarse_layout, only: fracture_layout, fracture_layout_t
+   use coarse_slopes, only: slopes_t
    use coarse_state, only: fracture_cells_t, state_t
-   use contact_dense, only: dense_system_t
+   use coarse_full_step, only: find_full_step
+   use coarse_sparse_step, only: sparse_step_t
+   use contact_newton, only: contact_system_t, step_quality_t
    implicit none(type, external)
    private
 
@@ -30,11 +34,13 @@ module coarse_fractures
 
    !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and
    !! must outlive them. The points of contact are the starts and ends of the cells in turn.
-   type, abstract, extends(dense_system_t) :: fracture_system_t
+   type, abstract, extends(contact_system_t) :: fracture_system_t
       type(condensed_t), pointer :: condensed => null()
       type(fracture_cells_t), pointer :: cells => null()
       integer(ik), pointer :: connections(:, :) => null()  !< (2, m) cells that exchange fluid
       type(joints_t), pointer :: joints => null()
+      !> Factors of the linear step where the condensed matrix is not formed
+      type(sparse_step_t), pointer :: factors => null()
       real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), pointer :: before => null()  !< at the last accepted time
       type(newton_settings_t) :: settings
@@ -45,11 +51,17 @@ module coarse_fractures
       real(rk) :: load_stress = 0.0_rk  !< traction of the faces without jumps and fluid [Pa]
       real(rk), allocatable :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
-      !> (unknowns of the cells, 6 n) of the condensed forces [m], volumes [m2/Pa]
-      real(rk), allocatable :: force_slope(:, :)
+      logical :: has_failed = .false.  !< the condensed body could not answer
+      type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
+      integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
+      real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
+      !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
+      real(rk), allocatable :: volume_slope(:, :)
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
    contains
       procedure :: find_forces
+      procedure :: find_step
+      procedure :: size_of_terms
       procedure :: is_balanced
       procedure :: opening
       procedure :: fluid_at
@@ -68,9 +80,9 @@ module coarse_fractures
 
 contains
 
-   !> Units, and the part of the derivatives that does not change within the step.
+   !> Units, and what does not change within the step.
    subroutine prepare(condensed, cells, connections, joints, settings, dt, g, before, eq)
-      type(condensed_t), intent(in), target :: condensed
+      type(condensed_t), intent(inout), target :: condensed
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
@@ -100,30 +112,63 @@ contains
       n_all = eq%layout%count()
       n_condensed = condensed%layout%count()
       allocate (eq%way(2*n), source=0_ik)
-      allocate (eq%q(n_condensed), eq%traction(2, 2, n))
-      allocate (eq%residual(n_all), eq%jacobian(n_all, n_all))
-      call find_slopes(eq)
+      allocate (eq%q(n_condensed), eq%force(n_condensed), eq%traction(2, 2, n))
+      allocate (eq%residual(n_all))
+      call link_unknowns(eq)
+      call find_volume_slopes(eq)
    end subroutine prepare
 
-   !> Derivatives of the condensed forces by the unknowns of the cells.
-   subroutine find_slopes(eq)
+   !> Which of the unknowns are those of q.
+   pure subroutine link_unknowns(eq)
       class(fracture_system_t), intent(inout) :: eq
-      integer(ik) :: at, from, i, k
+      integer(ik) :: at, i, k
 
-      allocate (eq%force_slope(eq%layout%cell_count(), eq%condensed%layout%count()), source=0.0_rk)
-      associate (slope => eq%force_slope, stiffness => eq%condensed%stiffness)
-         do i = 1, eq%condensed%n
-            do k = 1, 2
-               at = eq%layout%at_jump(i, k)
-               from = eq%condensed%layout%at_jump(i, k)
-               slope(at:at + 1, :) = stiffness(from:from + 1, :)/eq%stiffness
-               at = eq%layout%at_face_pressure(i, k)
-               from = eq%condensed%layout%at_face_pressure(i, k)
-               slope(at, :) = stiffness(from, :)
-            end do
+      allocate (eq%x_of_q(eq%condensed%layout%count()))
+      allocate (eq%q_per_x(eq%condensed%layout%count()), source=1.0_rk)
+      do i = 1, eq%condensed%n
+         do k = 1, 2
+            at = eq%condensed%layout%at_jump(i, k)
+            eq%x_of_q(at:at + 1) = eq%layout%at_jump(i, k) + [0_ik, 1_ik]
+            eq%q_per_x(at:at + 1) = 1.0_rk/eq%stiffness
+            eq%x_of_q(eq%condensed%layout%at_face_pressure(i, k)) = &
+               eq%layout%at_face_pressure(i, k)
          end do
+      end do
+   end subroutine link_unknowns
+
+   !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
+   !! state everywhere, but as a unit of the equations only.
+   subroutine find_volume_slopes(eq)
+      class(fracture_system_t), intent(inout) :: eq
+      type(error_t), allocatable :: error
+      integer(ik), allocatable :: at(:), tips(:)
+      real(rk), allocatable :: slope(:)
+      integer(ik) :: i, side
+
+      allocate (eq%volume_slope(2, eq%condensed%n), source=huge(1.0_rk))
+      associate (condensed => eq%condensed)
+         if (eq%settings%equilibrate .and. .not. condensed%is_full) then
+            do i = 1, condensed%n
+               do side = 1, 2
+                  eq%volume_slope(side, i) = condensed%coupling%diagonal( &
+                                             condensed%layout%at_face_pressure(i, side))
+               end do
+            end do
+         else
+            tips = [(i, i=1, condensed%n)]
+            if (.not. condensed%is_full) then
+               tips = pack(tips, eq%cells%leak_resistance < 0.0_rk)
+            end if
+            allocate (slope(size(tips)))
+            do side = 1, 2
+               at = condensed%layout%at_face_pressure(tips, side)
+               call condensed%find_volume_slopes(at, slope, error)
+               eq%has_failed = eq%has_failed .or. allocated(error)
+               eq%volume_slope(side, tips) = slope
+            end do
+         end if
       end associate
-   end subroutine find_slopes
+   end subroutine find_volume_slopes
 
    !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
    !! without fluid carry none, and yet rounding errors are relative to what has been released
@@ -148,21 +193,62 @@ contains
    subroutine find_forces(self, x)
       class(fracture_system_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
-      integer(ik) :: at, from, i, k
+      type(error_t), allocatable :: error
 
-      associate (condensed => self%condensed)
-         do i = 1, condensed%n
-            do k = 1, 2
-               at = condensed%layout%at_jump(i, k)
-               from = self%layout%at_jump(i, k)
-               self%q(at:at + 1) = x(from:from + 1)/self%stiffness
-               self%q(condensed%layout%at_face_pressure(i, k)) = &
-                  x(self%layout%at_face_pressure(i, k))
-            end do
-         end do
-         self%force = matmul(condensed%stiffness, self%q) - self%g
-      end associate
+      self%q = x(self%x_of_q)*self%q_per_x
+      call self%condensed%find_forces(self%q, self%force, error)
+      self%has_failed = self%has_failed .or. allocated(error)
+      self%force = self%force - self%g
    end subroutine find_forces
+
+   !> The linear step, by the full condensed matrix or with the factors of a sparse one.
+   subroutine find_step(self, with_condition, step, quality)
+      class(fracture_system_t), intent(inout) :: self
+      logical, intent(in) :: with_condition
+      real(rk), intent(out) :: step(:)  !< [Pa]
+      type(step_quality_t), intent(out) :: quality
+      integer(ik) :: end, i
+
+      if (self%condensed%is_full) then
+         associate (jumps => [((self%layout%at_jump(i, end), end=1, 2), i=1, self%condensed%n)])
+            call find_full_step(self%condensed%stiffness, self%slopes, jumps, self%x_of_q, &
+                                self%q_per_x, self%residual, with_condition, step, quality)
+         end associate
+      else
+         call self%factors%find_step(self%condensed, self%slopes, self%x_of_q, self%q_per_x, &
+                                     self%residual, self%stress_scale, step, quality)
+      end if
+   end subroutine find_step
+
+   !> The sum of the sizes of a residual's terms. Where the condensed matrix is not formed, forces
+   !! are sums over the cells around.
+   pure function size_of_terms(self, x, row) result(total)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      integer(ik), intent(in) :: row  !< number of the residual
+      real(rk) :: total  !< [Pa]
+      real(rk) :: slope(size(x))
+      integer(ik) :: k, m
+
+      slope = 0.0_rk
+      associate (slopes => self%slopes, condensed => self%condensed)
+         do k = 1, slopes%n_local
+            if (slopes%row(k) == row) slope(slopes%col(k)) = slope(slopes%col(k)) + slopes%value(k)
+         end do
+         total = 0.0_rk
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, row) == 0) cycle
+            if (condensed%is_full) then
+               slope(self%x_of_q) = slope(self%x_of_q) + slopes%weight(m, row)*self%q_per_x &
+                                    *condensed%stiffness(:, slopes%force(m, row))
+            else
+               total = total + abs(slopes%weight(m, row)) &
+                       *condensed%coupling%sizes(condensed%rock, self%q, slopes%force(m, row))
+            end if
+         end do
+      end associate
+      total = total + dot_product(abs(slope), abs(x))
+   end function size_of_terms
 
    !> Fluid that the step makes or loses is nothing beside what flows in it and what is there.
    logical function is_balanced(self)

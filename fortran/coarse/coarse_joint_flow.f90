@@ -40,7 +40,7 @@ contains
          eq%jacobian(at, row) = -fluid%pressure_slope
       else if (eq%joints%is_outlet(j)) then
          eq%residual(row) = x(row) - eq%joints%side_pressure(j)
-         eq%jacobian(row, row) = 1.0_rk
+         call eq%slopes%add(row, row, 1.0_rk)
       else
          eq%residual(row) = -eq%dt*eq%joints%injection(j)/eq%unit
       end if
@@ -54,7 +54,7 @@ contains
       class(fracture_system_t), intent(inout) :: eq
       real(rk) :: aperture, length, opening, resistance, slope, weight(2)
       type(cell_fluid_t) :: fluid
-      integer(ik) :: at, cell, cells(2), joint, jumps(2), k, row
+      integer(ik) :: at, cell, cells(2), end, joint, jumps(2), k, row
 
       row = eq%layout%at_branch(b)
       if (eq%joints%is_shut(b)) then
@@ -72,19 +72,21 @@ contains
                                opening, aperture, slope)
       resistance = 12.0_rk*eq%settings%viscosity*length/aperture**3*eq%unit/eq%dt
       eq%residual(row) = x(joint) - fluid%pressure + resistance*x(row)
-      eq%jacobian(row, row) = resistance
-      eq%jacobian(joint, row) = 1.0_rk
-      eq%jacobian(at, row) = -fluid%pressure_slope
+      call eq%slopes%add(row, row, resistance)
+      call eq%slopes%add(row, joint, 1.0_rk)
+      call eq%slopes%add(row, at, -fluid%pressure_slope)
       do k = 1, 2
          jumps = eq%layout%at_jump(cells(k), both)
-         eq%jacobian(jumps, row) = eq%jacobian(jumps, row) - 1.5_rk*resistance*x(row) &
-                                   /aperture*slope*weight(k)/eq%stiffness
+         do end = 1, 2
+            call eq%slopes%add(row, jumps(end), -1.5_rk*resistance*x(row)/aperture*slope &
+                               *weight(k)/eq%stiffness)
+         end do
       end do
       eq%residual(at) = eq%residual(at) + x(row)
-      eq%jacobian(row, at) = eq%jacobian(row, at) + 1.0_rk
+      call eq%slopes%add(at, row, 1.0_rk)
       if (eq%joints%is_outlet(eq%joints%joint(b))) return
       eq%residual(joint) = eq%residual(joint) - x(row)
-      eq%jacobian(row, joint) = -1.0_rk
+      call eq%slopes%add(joint, row, -1.0_rk)
    end subroutine fill_branch
 
    !> The way of the fluid from the middle of a branch's cell to the joint, as a length with the

@@ -21,6 +21,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t
+   use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
    use mesh_types, only: mesh_t, point_interior
@@ -37,6 +38,7 @@ module coarse_model
       type(regions_t) :: regions
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
+      type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
@@ -89,10 +91,25 @@ contains
       end if
       self%ends = free_ends(mesh%fracture)
       call self%condensed%solver%release()
+      call self%factors%release()
       self%condensed%analysed = .false.
+      self%condensed%is_full = is_full(mesh, scene%discretization%condensation)
       self%condensed%dt = -1.0_rk
       call timers%stop(phase_discretize)
    end subroutine set_mesh
+
+   !> Whether the rock is condensed onto its fractures as a full matrix: as asked for, or where it
+   !! costs less: its elimination grows with the cube of the fracture cells, that of the sparse one
+   !! with the cells to the power 1.2, and growth and contact take about as many of both.
+   pure logical function is_full(mesh, condensation)
+      type(mesh_t), intent(in) :: mesh
+      character(len=*), intent(in) :: condensation  !< "auto", "full", "sparse"
+      real(rk), parameter :: cells_per_square = 15.0_rk  ! where both cost the same, measured
+
+      is_full = real(mesh%fracture%n_cells, rk)**2 <= cells_per_square*mesh%n_cells
+      if (condensation /= "auto") is_full = condensation == "full"
+      is_full = is_full .or. mesh%fracture%n_cells == 0
+   end function is_full
 
    !> The state before anything happens: no displacement, uniform pressure.
    subroutine new_state(mesh, cells, initial, model, state)
@@ -208,8 +225,8 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%condensed, self%cells, self%connections, self%joints, &
-                              self%settings, dt, g, state, q, report)
+         call solve_fractures(self%condensed, self%factors, self%cells, self%connections, &
+                              self%joints, self%settings, dt, g, state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
       end if

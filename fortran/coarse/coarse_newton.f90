@@ -6,6 +6,7 @@ module coarse_newton
    use coarse_equations, only: equations_t
    use coarse_joints, only: joints_t
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
+   use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
@@ -21,9 +22,10 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, cells, connections, joints, settings, dt, g, state, q, &
-                              report)
-      type(condensed_t), intent(in), target :: condensed
+   subroutine solve_fractures(condensed, factors, cells, connections, joints, settings, dt, g, &
+                              state, q, report)
+      type(condensed_t), intent(inout), target :: condensed
+      type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
@@ -38,6 +40,7 @@ contains
       real(rk), allocatable :: x(:)
 
       call prepare(condensed, cells, connections, joints, settings, dt, g, state, eq)
+      eq%factors => factors
       call first_guess(eq, state, x)
       call iterate(eq, x, iteration_settings_t(tolerance=settings%tolerance, &
                                                iterations_max=settings%iterations_max, &

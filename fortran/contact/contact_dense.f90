@@ -7,7 +7,7 @@ module contact_dense
    implicit none(type, external)
    private
 
-   public :: dense_system_t
+   public :: dense_system_t, solve_full
 
    !> `evaluate` fills the matrix along with the residuals.
    type, abstract, extends(contact_system_t) :: dense_system_t
@@ -19,10 +19,21 @@ module contact_dense
 
 contains
 
-   !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
-   !! that of the scaled matrix in the 1-norm of its transpose.
+   !> The step of a system that is kept as a full matrix.
    subroutine find_step(self, with_condition, step, quality)
       class(dense_system_t), intent(inout) :: self
+      logical, intent(in) :: with_condition
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      type(step_quality_t), intent(out) :: quality
+
+      call solve_full(self%jacobian, self%residual, with_condition, step, quality)
+   end subroutine find_step
+
+   !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
+   !! that of the scaled matrix in the 1-norm of its transpose. Matrix and residual are used up.
+   subroutine solve_full(jacobian, residual, with_condition, step, quality)
+      real(rk), intent(inout), contiguous :: jacobian(:, :)  !< (n, n) an equation per column [-]
+      real(rk), intent(inout) :: residual(:)  !< (n) [Pa]
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(out) :: quality
@@ -34,24 +45,24 @@ contains
       n = size(step, kind=ik)
       norm = 0.0_rk
       do row = 1, n
-         scale = maxval(abs(self%jacobian(:, row)))
+         scale = maxval(abs(jacobian(:, row)))
          if (scale > 0.0_rk) then
-            self%jacobian(:, row) = self%jacobian(:, row)/scale
-            self%residual(row) = self%residual(row)/scale
+            jacobian(:, row) = jacobian(:, row)/scale
+            residual(row) = residual(row)/scale
          end if
-         if (with_condition) norm = max(norm, sum(abs(self%jacobian(:, row))))
+         if (with_condition) norm = max(norm, sum(abs(jacobian(:, row))))
       end do
-      rhs(:, 1) = -self%residual
-      call dgetrf(n, n, self%jacobian, n, pivots, info)
+      rhs(:, 1) = -residual
+      call dgetrf(n, n, jacobian, n, pivots, info)
       quality%is_singular = info /= 0
       if (quality%is_singular) return
-      call dgetrs("T", n, 1_ik, self%jacobian, n, pivots, rhs, n, info)
+      call dgetrs("T", n, 1_ik, jacobian, n, pivots, rhs, n, info)
       step = rhs(:, 1)
       if (.not. with_condition) return
       allocate (work(4*n), iwork(n))
-      call dgecon("1", n, self%jacobian, n, norm, inverse_condition, work, iwork, info)
+      call dgecon("1", n, jacobian, n, norm, inverse_condition, work, iwork, info)
       quality%condition = 1.0_rk/max(inverse_condition, tiny(1.0_rk))
-   end subroutine find_step
+   end subroutine solve_full
 
    !> The sum of the sizes of a residual's terms.
    pure function size_of_terms(self, x, row) result(total)

@@ -30,6 +30,9 @@ module contact_newton
       logical :: is_singular = .false.  !< there is no step
       !> Condition number of the matrix, its equations scaled (estimated; 0: not asked for) [-]
       real(rk) :: condition = 0.0_rk
+      !> What the step leaves of the scaled equations, over their sizes; 0 where they are solved by
+      !! elimination, up to rounding [-]
+      real(rk) :: rest = 0.0_rk
    end type step_quality_t
 
    !> Equations for the iteration.
@@ -220,7 +223,8 @@ contains
             return
          end if
          report%condition = quality%condition
-         report%error_bound = min(1.0_rk, quality%condition*epsilon(1.0_rk))
+         report%error_bound = min(1.0_rk, quality%condition &
+                                  *(epsilon(1.0_rk) + quality%rest))
          x = x + step
          report%iterations = report%iterations + 1
       end do

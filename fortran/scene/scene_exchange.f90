@@ -330,6 +330,7 @@ contains
          call exchange(record, "size_boundary", discretization%size_boundary, reading)
          call exchange(record, "newton_max", discretization%newton_max, reading)
          call exchange(record, "newton_tolerance", discretization%newton_tolerance, reading)
+         call exchange(record, "condensation", discretization%condensation, reading)
       case ("fe")
          call exchange(record, "size_fracture", discretization%size_fracture, reading, &
                        nothing=0.0_rk)

@@ -426,6 +426,10 @@ module scene_parameters
                   meaning="Newton iterations before a step is cut"), &
       parameter_t("coarse", "newton_tolerance", default="1.0e-9", range=tolerance_range, &
                   meaning="Relative residual at which a step has converged"), &
+      parameter_t("coarse", "condensation", kind_choice, default="'auto'", &
+                  choices="auto|full|sparse", &
+                 meaning="How the fractures' equations are solved: on a full matrix onto which "// &
+                  "the rock is condensed, or without it; `auto` takes what is cheaper"), &
       parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
                   absent="no fine level", &
                   meaning="Edge l of the square window around a tip, more than 2 size_ratio dH"), &

@@ -169,6 +169,7 @@ module scene_types
       character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
+      character(len=name_length) :: condensation = "auto"  !< or "full", "sparse"
    end type discretization_t
 
    !> Fracture growth.

@@ -2,7 +2,7 @@
 program test_algebra_lapack
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use algebra_lapack, only: dgesv, dgetrf, dgetrs, dpotrf, dpotrs
+   use algebra_lapack, only: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
    implicit none(type, external)
 
    real(rk), parameter :: tolerance = 1.0e-14_rk  !< relative to solutions of size 3
@@ -11,6 +11,7 @@ program test_algebra_lapack
    call general()
    call positive_definite()
    call refused()
+   call estimated_norm()
    call checks%finish()
 
 contains
@@ -90,5 +91,22 @@ contains
       call dpotrf("L", 2_ik, a, 2_ik, info)
       call checks%is_true(info == 2, "an indefinite matrix")
    end subroutine refused
+
+   !> The 1-norm of A = [0 -2 1; 1 1 0; 3 0 2] from its products: 4, by its first column.
+   subroutine estimated_norm()
+      real(rk), parameter :: a(3, 3) = reshape([0.0_rk, 1.0_rk, 3.0_rk, -2.0_rk, 1.0_rk, 0.0_rk, &
+                                                1.0_rk, 0.0_rk, 2.0_rk], [3, 3])
+      real(rk) :: norm, v(3), x(3)
+      integer(ik) :: kase, save(3), signs(3)
+
+      kase = 0
+      do
+         call dlacn2(3_ik, v, x, signs, norm, kase, save)
+         if (kase == 0) exit
+         if (kase == 1) x = matmul(a, x)
+         if (kase == 2) x = matmul(x, a)
+      end do
+      call checks%is_close(norm, 4.0_rk, tolerance, "dlacn2")
+   end subroutine estimated_norm
 
 end program test_algebra_lapack

@@ -4,13 +4,15 @@ program test_algebra_mumps
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_t
+   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_pord, mumps_t, &
+                            mumps_unsymmetric
    implicit none(type, external)
 
    type(checks_t) :: checks
 
    call solves_a_chain()
    call condenses()
+   call solves_unsymmetric()
    call refuses_singular()
    call checks%finish()
 
@@ -82,6 +84,36 @@ contains
       call checks%is_close(x(1) + 2.0_rk*x(3) + x(4), 3.0_rk, 1.0e-13_rk, "row 3")
       call checks%is_close(2.0_rk*x(1) + x(2) + x(3) + 5.0_rk*x(4), 4.0_rk, 1.0e-13_rk, "row 4")
    end subroutine condenses
+
+   !> A = [0 2 1; 1 1 0; 3 0 2], an entry of it in two parts; A [1 2 3] and A' [1 2 3].
+   subroutine solves_unsymmetric()
+      type(mumps_t) :: solver
+      type(error_t), allocatable :: error
+      integer(ik), parameter :: row(7) = [1, 1, 2, 2, 3, 3, 3]
+      integer(ik), parameter :: col(7) = [2, 3, 1, 2, 1, 3, 3]
+      real(rk), parameter :: values(7) = [2.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 3.0_rk, 0.5_rk, 1.5_rk]
+      real(rk), parameter :: expected(3) = [1.0_rk, 2.0_rk, 3.0_rk]
+      integer(ik), allocatable :: col_kept(:), row_kept(:)
+      real(rk), allocatable :: values_kept(:)
+      real(rk) :: x(3, 1)
+
+      call solver%analyse(3_ik, row, col, mumps_unsymmetric, error, ordering=mumps_pord)
+      call checks%no_error(error, "analyse an unsymmetric matrix")
+      call solver%factorize(values, error)
+      call checks%no_error(error, "factorize an unsymmetric matrix")
+      x(:, 1) = [7.0_rk, 3.0_rk, 9.0_rk]
+      call solver%solve(x, error)
+      call checks%is_close(maxval(abs(x(:, 1) - expected)), 0.0_rk, 1.0e-14_rk, "unsymmetric")
+      x(:, 1) = [11.0_rk, 4.0_rk, 7.0_rk]
+      call solver%solve(x, error, transposed=.true.)
+      call checks%is_close(maxval(abs(x(:, 1) - expected)), 0.0_rk, 1.0e-14_rk, "transposed")
+      x(:, 1) = [7.0_rk, 3.0_rk, 9.0_rk]
+      call solver%solve(x, error)
+      call checks%is_close(maxval(abs(x(:, 1) - expected)), 0.0_rk, 1.0e-14_rk, "and back again")
+      call solver%get_entries(row_kept, col_kept, values_kept)
+      call checks%is_true(all(row_kept == row) .and. all(col_kept == col), "pattern is kept")
+      call checks%is_close(maxval(abs(values_kept - values)), 0.0_rk, 0.0_rk, "values are kept")
+   end subroutine solves_unsymmetric
 
    subroutine refuses_singular()
       type(mumps_t) :: solver

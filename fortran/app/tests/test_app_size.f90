@@ -63,8 +63,10 @@ contains
       call read_and_judge("1e-3", "1e-3", "end=60 step=60", "8: &coarse: the sizes ask for "// &
                           "about 4620000 cells and 13900000 unknowns, which need at least 37 "// &
                           "GB of memory, and this machine has 16: give larger ones")
-      call read_and_judge("2e-5", "0.1", "end=60 step=60", "8: &coarse: size_fracture asks for "// &
-                          "about 10000 fracture cells, which need at least")
+      call read_and_judge("2e-5", "0.1", "end=60 step=60", "")
+      call read_and_judge("2e-5", "0.1 condensation='full'", "end=60 step=60", &
+                          "8: &coarse: size_fracture asks for about 10000 fracture cells, "// &
+                          "which need at least")
       call read_and_judge("1e-8", "0.1", "end=60 step=60", "8: &coarse: the sizes ask for about")
    end subroutine check_limits
 

@@ -21,6 +21,7 @@ program test_coarse_condensed
 
    call test_with_fractures()
    call test_without_fracture()
+   call test_without_full_matrix()
    call checks%finish()
 
 contains
@@ -218,5 +219,82 @@ contains
          call compare(unknowns, expected, mesh%n_cells, "without fracture")
       end do
    end subroutine test_without_fracture
+
+   !> The same forces, loads and unknowns where S is not formed.
+   subroutine test_without_full_matrix()
+      type(mesh_t) :: mesh
+      type(mesher_t) :: mesher
+      type(rock_t) :: rock
+      type(matrix_t) :: matrix
+      type(condensed_t) :: full, sparse
+      type(error_t), allocatable :: error
+      real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.4_rk, &
+                                                       0.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
+      real(rk), parameter :: steps(2) = [1.0_rk, 1.0e6_rk]
+      real(rk), allocatable :: expected(:), force(:), q(:), rhs(:, :), spring(:)
+      real(rk), allocatable :: all_expected(:, :), unknowns(:, :)
+      integer(ik), allocatable :: faces(:)
+      integer(ik) :: i, k, n
+
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call prepare(mesh, rock, matrix)
+      sparse%is_full = .false.
+      do k = 1, size(steps)
+         call full%factorize(mesh, matrix, steps(k), error)
+         call sparse%factorize(mesh, matrix, steps(k), error)
+         call checks%no_error(error, "factorization without its fractures")
+         n = full%layout%count()
+         q = scattered(n)
+         q(3 :: 3) = 1.0e9_rk*q(3 :: 3)
+         spring = 1.0e9_rk*abs(scattered(n))
+         spring(3 :: 3) = 0.0_rk
+         call full%support(spring)
+         call sparse%support(spring)
+         expected = spread(0.0_rk, 1, n)
+         force = expected
+         call full%find_forces(q, expected, error)
+         call sparse%find_forces(q, force, error)
+         call checks%no_error(error, "forces")
+         call compare_kinds(force, expected, "forces", "volumes")
+         rhs = some_load(matrix, steps(k))
+         call full%condense(rhs, expected, error)
+         call sparse%condense(rhs, force, error)
+         call checks%no_error(error, "load")
+         call compare_kinds(force, expected, "loads", "volumes of the load")
+         allocate (unknowns(3, matrix%n_blocks), all_expected(3, matrix%n_blocks))
+         call full%expand(q, rhs, all_expected, error)
+         call sparse%expand(q, rhs, unknowns, error)
+         call checks%no_error(error, "all unknowns")
+         call compare_kinds(reshape(unknowns, [size(unknowns)]), &
+                            reshape(all_expected, [size(unknowns)]), "displacements", "pressures")
+         deallocate (unknowns, all_expected)
+         faces = [(3*i, i=1, n/3)]
+         expected = spread(0.0_rk, 1, size(faces))
+         force = expected
+         call full%find_volume_slopes(faces, expected, error)
+         call sparse%find_volume_slopes(faces(:3), force(:3), error)
+         call sparse%find_volume_slopes(faces, force, error)
+         call checks%no_error(error, "slopes of volumes")
+         call checks%is_close(maxval(abs(force/expected - 1.0_rk)), 0.0_rk, 1.0e-9_rk, &
+                              "slopes of volumes")
+      end do
+   end subroutine test_without_full_matrix
+
+   !> Two of three numbers are of the first kind, one of the second.
+   subroutine compare_kinds(found, expected, first, second)
+      real(rk), intent(in) :: found(:), expected(:)
+      character(len=*), intent(in) :: first, second
+      real(rk) :: scale
+      integer(ik) :: a
+
+      scale = max(maxval(abs(expected(1 :: 3))), maxval(abs(expected(2 :: 3))))
+      do a = 1, 2
+         call checks%is_close(maxval(abs(found(a :: 3) - expected(a :: 3))), 0.0_rk, &
+                              1.0e-9_rk*scale, first)
+      end do
+      scale = maxval(abs(expected(3 :: 3)))
+      call checks%is_close(maxval(abs(found(3 :: 3) - expected(3 :: 3))), 0.0_rk, &
+                           1.0e-9_rk*scale, second)
+   end subroutine compare_kinds
 
 end program test_coarse_condensed

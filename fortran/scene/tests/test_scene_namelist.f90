@@ -29,7 +29,7 @@ contains
                             "&injection fracture='b',rate=1d-7,start=10,end=20,x=0.5,y=0.25 /", &
                             "&TIME End = 100. Step = +1.0E1, /", &
                             "&coarse size_fracture=0.1,size_boundary=", "   0.5 ! [m]", &
-                            "   newton_max = 17 newton_tolerance = 1e-10 /", &
+                            "   newton_max = 17 newton_tolerance = 1e-10 condensation='full' /", &
                             "&domain x_min=-1 x_max=1 y_min=-.5 y_max=5.0d-1/", &
                             "&fracture name=""a"" x=2*0.0 y=-0.2,0.2, friction=0.6 "// &
                             "aperture=1e-4 /", "&fracture name='b' x=0.25 0.5", &
@@ -101,6 +101,7 @@ contains
                        d%newton_tolerance], [0.1_rk, 0.5_rk, 0.4_rk, 1.0_rk, 1.0e-10_rk], "sizes")
          call checks%is_true(d%newton_max == 17 .and. d%rosette_sectors == 16, "counts")
          call checks%is_true(d%face_condition == "jump", "face condition")
+         call checks%is_true(d%condensation == "full", "condensation")
       end associate
       associate (g => scene%growth)
          call checks%is_true(g%enabled .and. g%intensities, "growth computes intensity factors")

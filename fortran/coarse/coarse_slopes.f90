@@ -1,0 +1,106 @@
+!> The derivatives of the equations on the fractures, in the two parts that they consist of: each
+!! equation holds a few of its neighbours' unknowns, and at most two of the forces or volumes that
+!! the condensed body answers with, which hold all jumps and face pressures:
+!!   d residual_k = sum_j local_kj dx_j + sum_m weight_km d force_m
+!! So they are short lists, whatever becomes of them: a full matrix (coarse_full_step) or rows of a
+!! sparse one (coarse_sparse_step).
+module coarse_slopes
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: slopes_t
+
+   integer(ik), parameter :: forces_max = 2
+
+   type :: slopes_t
+      integer(ik) :: n = 0  !< equations
+      integer(ik) :: n_local = 0  !< entries of the local part; several may have the same place
+      integer(ik), allocatable :: row(:), col(:)  !< of each
+      real(rk), allocatable :: value(:)  !< of each [-]
+      integer(ik), allocatable :: force(:, :)  !< (2, n) numbers in q; 0: none
+      !> (2, n) [1/m] of a force, [Pa/m2] of a volume
+      real(rk), allocatable :: weight(:, :)
+   contains
+      procedure :: clear
+      procedure :: add
+      procedure :: add_force
+      procedure :: by_row
+   end type slopes_t
+
+contains
+
+   !> Begin with derivatives that are all zero.
+   pure subroutine clear(self, n)
+      class(slopes_t), intent(inout) :: self
+      integer(ik), intent(in) :: n  !< equations
+
+      if (self%n /= n .or. .not. allocated(self%row)) then
+         if (allocated(self%row)) deallocate (self%row, self%col, self%value, self%force, &
+                                              self%weight)
+         allocate (self%row(16*n), self%col(16*n), self%value(16*n))
+         allocate (self%force(forces_max, n), self%weight(forces_max, n))
+         self%n = n
+      end if
+      self%n_local = 0
+      self%force = 0
+      self%weight = 0.0_rk
+   end subroutine clear
+
+   !> Add to the derivative of an equation by an unknown.
+   pure subroutine add(self, row, col, value)
+      class(slopes_t), intent(inout) :: self
+      integer(ik), intent(in) :: row  !< the equation
+      integer(ik), intent(in) :: col  !< the unknown
+      real(rk), intent(in) :: value  !< [-]
+
+      if (self%n_local == size(self%row)) then
+         self%row = [self%row, self%row]
+         self%col = [self%col, self%col]
+         self%value = [self%value, self%value]
+      end if
+      self%n_local = self%n_local + 1
+      self%row(self%n_local) = row
+      self%col(self%n_local) = col
+      self%value(self%n_local) = value
+   end subroutine add
+
+   !> The numbers of the local entries, equation by equation.
+   pure subroutine by_row(self, first, local)
+      class(slopes_t), intent(in) :: self
+      integer(ik), allocatable, intent(out) :: first(:)  !< (n + 1) where those of each begin
+      integer(ik), allocatable, intent(out) :: local(:)
+      integer(ik) :: k, row
+      integer(ik), allocatable :: next(:)
+
+      allocate (first(self%n + 1), source=0_ik)
+      do k = 1, self%n_local
+         first(self%row(k) + 1) = first(self%row(k) + 1) + 1
+      end do
+      first(1) = 1
+      do row = 1, self%n
+         first(row + 1) = first(row) + first(row + 1)
+      end do
+      next = first(:self%n)
+      allocate (local(self%n_local))
+      do k = 1, self%n_local
+         local(next(self%row(k))) = k
+         next(self%row(k)) = next(self%row(k)) + 1
+      end do
+   end subroutine by_row
+
+   !> An equation holds a force or volume. Its place is kept with a weight of zero too: the pattern
+   !! is to be the same in every state.
+   pure subroutine add_force(self, row, force, weight)
+      class(slopes_t), intent(inout) :: self
+      integer(ik), intent(in) :: row  !< the equation
+      integer(ik), intent(in) :: force  !< its number in q
+      real(rk), intent(in) :: weight  !< [1/m] of a force, [Pa/m2] of a volume
+      integer(ik) :: m
+
+      m = merge(1_ik, 2_ik, self%force(1, row) == 0)
+      self%force(m, row) = force
+      self%weight(m, row) = weight
+   end subroutine add_force
+
+end module coarse_slopes

@@ -1,0 +1,196 @@
+!> Cells and fractures together as one sparse matrix, for coarse_sparse_step: the equations of the
+!! cells, which do not change as long as the time step does not, and those of the fractures, with
+!! each force as the sum over the cells around (coarse_coupling).
+module coarse_sparse_matrix
+   use base_kinds, only: ik, rk
+   use coarse_condensed, only: condensed_t
+   use coarse_slopes, only: slopes_t
+   implicit none(type, external)
+   private
+
+   public :: apply_columns, apply_rows, assemble_rock, assemble_rows
+
+contains
+
+   !> What the fractures' rows make of unknowns and of the forces that belong to them.
+   pure subroutine apply_rows(slopes, x, force, answer)
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk), intent(in) :: force(:)  !< [N/m], [m2]
+      real(rk), intent(out) :: answer(:)  !< [Pa]
+      integer(ik) :: k, m, row
+
+      answer = 0.0_rk
+      do k = 1, slopes%n_local
+         answer(slopes%row(k)) = answer(slopes%row(k)) + slopes%value(k)*x(slopes%col(k))
+      end do
+      do row = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, row) > 0) answer(row) = answer(row) + slopes%weight(m, row) &
+                                                        *force(slopes%force(m, row))
+         end do
+      end do
+   end subroutine apply_rows
+
+   !> The same with the transpose.
+   pure subroutine apply_columns(slopes, y, x, force)
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: y(:)
+      real(rk), intent(out) :: x(:), force(:)  !< by local entries, by the forces
+      integer(ik) :: k, m, row
+
+      x = 0.0_rk
+      force = 0.0_rk
+      do k = 1, slopes%n_local
+         x(slopes%col(k)) = x(slopes%col(k)) + slopes%value(k)*y(slopes%row(k))
+      end do
+      do row = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, row) == 0) cycle
+            force(slopes%force(m, row)) = force(slopes%force(m, row)) + slopes%weight(m, row)*y(row)
+         end do
+      end do
+   end subroutine apply_columns
+
+   !> The equations of the cells as triplets, for scaled equations and unknowns.
+   subroutine assemble_rock(condensed, n_rows, x_of_q, q_per_x, col_scale, row, col, values)
+      type(condensed_t), intent(in) :: condensed
+      integer(ik), intent(in) :: n_rows  !< equations of the fractures
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), allocatable, intent(out) :: col_scale(:)
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+      real(rk), allocatable, intent(out) :: values(:)
+      integer(ik), allocatable :: rock_col(:), rock_row(:)
+      real(rk), allocatable :: rock(:)
+      integer(ik) :: at, k, n, n_bulk, q
+
+      call condensed%solver%get_entries(rock_row, rock_col, rock)
+      n_bulk = condensed%coupling%n_bulk
+      n = 2*count(rock_row /= rock_col) + count(rock_row == rock_col) &
+          + count(condensed%coupling%col <= n_bulk)
+      allocate (row(n), col(n), values(n))
+      ! Pressures and flows of the fluid in the units of the rock's pressures at the fractures.
+      allocate (col_scale(n_bulk + n_rows), source=minval(condensed%scale(n_bulk + 3 :: 3)))
+      col_scale(:n_bulk) = condensed%scale(:n_bulk)
+      do q = 1, size(x_of_q)
+         col_scale(n_bulk + x_of_q(q)) = condensed%scale(n_bulk + q)/q_per_x(q)
+      end do
+      n = 0
+      do k = 1, size(rock)
+         call add(rock_row(k), rock_col(k), rock(k))
+         if (rock_row(k) /= rock_col(k)) call add(rock_col(k), rock_row(k), rock(k))
+      end do
+      ! C'Q, for unknowns as they are: values so far are those of scaled ones.
+      do q = 1, size(x_of_q)
+         do k = condensed%coupling%first(q), condensed%coupling%first(q + 1) - 1
+            at = condensed%coupling%col(k)
+            if (at > n_bulk) cycle
+            call add(at, n_bulk + x_of_q(q), condensed%coupling%value(k)*q_per_x(q) &
+                     *col_scale(at)*col_scale(n_bulk + x_of_q(q)))
+         end do
+      end do
+
+   contains
+
+      subroutine add(i, j, value)
+         integer(ik), intent(in) :: i, j
+         real(rk), intent(in) :: value
+
+         n = n + 1
+         row(n) = i
+         col(n) = j
+         values(n) = value
+      end subroutine add
+
+   end subroutine assemble_rock
+
+   !> Those of the fractures.
+   subroutine assemble_rows(condensed, slopes, x_of_q, q_per_x, col_scale, row_scale, row_factor, &
+                            row, col, values)
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), intent(in) :: col_scale(:)
+      real(rk), allocatable, intent(out) :: row_scale(:), row_factor(:)
+      integer(ik), allocatable, intent(out) :: row(:), col(:)
+      real(rk), allocatable, intent(out) :: values(:)
+      integer(ik) :: k, m, n, n_bulk
+
+      n_bulk = condensed%coupling%n_bulk
+      n = slopes%n_local
+      do k = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, k) > 0) n = n + entries_of(slopes%force(m, k)) + 1
+         end do
+      end do
+      allocate (row(n), col(n), values(n))
+      allocate (row_scale(slopes%n), row_factor(slopes%n), source=0.0_rk)
+      n = 0
+      do k = 1, slopes%n_local
+         call add(slopes%row(k), n_bulk + slopes%col(k), slopes%value(k))
+      end do
+      do k = 1, slopes%n
+         do m = 1, size(slopes%force, 1)
+            if (slopes%force(m, k) > 0) call add_force(k, slopes%force(m, k), slopes%weight(m, k))
+         end do
+      end do
+      do k = 1, n
+         associate (i => row(k) - n_bulk)
+            row_factor(i) = max(row_factor(i), abs(values(k)))
+            if (col(k) <= n_bulk) cycle
+            row_scale(i) = max(row_scale(i), abs(values(k))/col_scale(col(k)))
+         end associate
+      end do
+      where (row_scale > 0.0_rk)
+         row_factor = 1.0_rk/row_factor
+      else where
+         row_scale = 1.0_rk
+         row_factor = 1.0_rk
+      end where
+      do k = 1, n
+         values(k) = values(k)*row_factor(row(k) - n_bulk)
+      end do
+
+   contains
+
+      pure integer(ik) function entries_of(force)
+         integer(ik), intent(in) :: force
+
+         entries_of = condensed%coupling%first(force + 1) - condensed%coupling%first(force)
+      end function entries_of
+
+      subroutine add(i, j, value)
+         integer(ik), intent(in) :: i, j
+         real(rk), intent(in) :: value
+
+         n = n + 1
+         row(n) = n_bulk + i
+         col(n) = j
+         values(n) = value*col_scale(j)
+      end subroutine add
+
+      !> A force, as the sum over the cells around.
+      subroutine add_force(i, force, weight)
+         integer(ik), intent(in) :: i, force
+         real(rk), intent(in) :: weight
+         integer(ik) :: entry, j
+
+         associate (coupling => condensed%coupling)
+            do entry = coupling%first(force), coupling%first(force + 1) - 1
+               j = coupling%col(entry)
+               if (j <= n_bulk) then
+                  call add(i, j, weight*coupling%value(entry))
+               else
+                  j = j - n_bulk
+                  call add(i, n_bulk + x_of_q(j), weight*coupling%value(entry)*q_per_x(j))
+               end if
+            end do
+         end associate
+         call add(i, n_bulk + x_of_q(force), weight*condensed%spring(force)*q_per_x(force))
+      end subroutine add_force
+
+   end subroutine assemble_rows
+
+end module coarse_sparse_matrix

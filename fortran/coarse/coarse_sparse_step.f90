@@ -1,0 +1,364 @@
+!> The linear step of the fractures' equations where the body is not condensed onto them: cells and
+!! fractures together as one sparse system,
+!!   ( A    C'Q           ) (b)   (  0)
+!!   ( W C  W D Q + local ) (x) = ( -r),   Q: q per x, W: weights of the forces (coarse_slopes)
+!! that is not symmetric. A is constant as long as the time step is, and what changes from one
+!! iteration to the next are the fractures' rows alone, often few of them. So the system is
+!! factorized once, and its factors M serve the following iterations and steps as a preconditioner:
+!! p = M^-1 (0, r) fulfils the equations of the cells exactly, and conjugate residuals over such p
+!! (Eisenstat, Elman and Schultz 1983; equivalent to GMRES) make the fractures' residuals as small
+!! as is asked, in about as many solutions as there are contact points that have changed their
+!! state. Directions p that were found are kept along with the factors: what the rows of now make of
+!! them costs no solution. Where too many points have changed, or it takes too many directions, the
+!! factors are made anew from the rows of now.
+!!
+!! What is known of the error: the residual that is left (`rest` of step_quality_t), and the
+!! condition of the condensed matrix with its equations scaled, estimated from products and
+!! solutions as dgecon does from factors (Higham 1988). It costs as much as a dozen solutions, and
+!! is found for the first matrix of a time step and then at every tenth factorization: in between,
+!! and where old factors serve, it is that of a matrix some states away.
+module coarse_sparse_step
+   use algebra_lapack, only: dlacn2
+   use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use coarse_condensed, only: condensed_t
+   use coarse_slopes, only: slopes_t
+   use coarse_sparse_matrix, only: apply_columns, apply_rows, assemble_rock, assemble_rows
+   use contact_newton, only: step_quality_t
+   implicit none(type, external)
+   private
+
+   public :: sparse_step_t
+
+   integer(ik), parameter :: most_changes = 20  !< of contact, after which new factors cost less
+   integer(ik), parameter :: most_directions = 12  !< of one step with old factors; as above
+   integer(ik), parameter :: most_kept = 32  !< directions
+   integer(ik), parameter :: estimate_every = 10  !< factorizations
+   real(rk), parameter :: reduction = 1.0e-8_rk  !< of the residuals
+   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale: no more is left
+   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale: less is not asked for
+
+   type :: sparse_step_t
+      private
+      type(mumps_t) :: solver
+      logical :: is_ready = .false.
+      integer(ik) :: of = 0  !< the factorization of the rock that the factors hold
+      integer(ik), allocatable :: row(:), col(:)  !< what has been analysed
+      real(rk), allocatable :: values(:)  !< of the same
+      integer(ik) :: n_rock = 0  !< so many of them are those of the cells' equations
+      real(rk), allocatable :: col_scale(:)  !< (unknowns) unknown = scale * scaled unknown
+      real(rk), allocatable :: row_scale(:)  !< (equations of the fractures) largest coefficient
+      real(rk), allocatable :: row_factor(:)  !< (the same) what the factors' are multiplied by
+      real(rk), allocatable :: weight(:, :)  !< of the forces in the factors' rows
+      integer(ik) :: n_kept = 0
+      real(rk), allocatable :: direction(:, :)  !< (unknowns, kept) p of the fractures
+      real(rk), allocatable :: force(:, :)  !< (6 n, kept) the forces that belong to them
+      real(rk) :: condition = 0.0_rk
+      integer(ik) :: estimated_for = 0  !< factorization of the rock
+      integer(ik) :: estimated_at = 0  !< factorization
+      integer(ik), public :: factorizations = 0  !< so far
+      integer(ik), public :: solutions = 0  !< so far, but for those of the estimates
+   contains
+      procedure :: find_step
+      procedure :: release
+   end type sparse_step_t
+
+contains
+
+   !> Solve for the step.
+   subroutine find_step(self, condensed, slopes, x_of_q, q_per_x, residual, stress_scale, step, &
+                        quality)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)  !< the number of each unknown of q in x
+      real(rk), intent(in) :: q_per_x(:)  !< their units [m/Pa], [-]
+      real(rk), intent(in) :: residual(:)  !< (n) [Pa]
+      real(rk), intent(in) :: stress_scale  !< [Pa]
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      type(step_quality_t), intent(out) :: quality
+      real(rk), allocatable :: left(:)
+      real(rk) :: enough
+      logical :: is_done, is_new
+      type(error_t), allocatable :: error
+
+      is_new = needs_factors(self, condensed, slopes)
+      if (is_new) call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+      quality%is_singular = allocated(error)
+      if (quality%is_singular) return
+      enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
+      step = 0.0_rk
+      left = -residual
+      call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+      if (.not. is_done .and. .not. is_new .and. .not. allocated(error)) then
+         call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+         if (.not. allocated(error)) then
+            call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, &
+                        error)
+         end if
+      end if
+      quality%is_singular = allocated(error)
+      if (quality%is_singular) return
+      quality%condition = self%condition
+      quality%rest = maxval(abs(left)/self%row_scale)/stress_scale
+   end subroutine find_step
+
+   !> There are none, those of another time step, or of other contact at too many points.
+   pure logical function needs_factors(self, condensed, slopes)
+      class(sparse_step_t), intent(in) :: self
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      real(rk), parameter :: share = 0.5_rk  ! of a weight: no change of contact is less
+
+      needs_factors = .not. self%is_ready .or. self%of /= condensed%factorizations
+      if (.not. needs_factors) needs_factors = size(self%weight, 2) /= slopes%n
+      if (.not. needs_factors) then
+         needs_factors = count(abs(slopes%weight - self%weight) &
+                               > share*max(abs(slopes%weight), abs(self%weight))) > most_changes
+      end if
+   end function needs_factors
+
+   !> Conjugate residuals: add to the step what makes less of what is left, first of the directions
+   !! that are known.
+   subroutine reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), intent(in) :: enough  !< largest residual [Pa]
+      real(rk), intent(inout) :: step(:)  !< [Pa]
+      real(rk), intent(inout) :: left(:)  !< minus the residuals after the step [Pa]
+      logical, intent(out) :: is_done
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: independent = 1.0e-6_rk  ! so much is left of a known direction
+      real(rk) :: answer(size(step), most_kept), before, share
+      integer(ik) :: k, known
+      logical :: is_used
+
+      known = self%n_kept
+      self%n_kept = 0
+      do k = 1, known
+         associate (place => self%n_kept + 1)
+            self%direction(:, place) = self%direction(:, k)
+            self%force(:, place) = self%force(:, k)
+            call use_direction(place, independent, is_used)
+            if (is_used) self%n_kept = place
+         end associate
+      end do
+      is_done = maxval(abs(left)) <= enough
+      do k = 1, most_directions
+         if (is_done .or. self%n_kept == most_kept) return
+         associate (place => self%n_kept + 1)
+            call precondition(self, condensed, x_of_q, q_per_x, left, self%direction(:, place), &
+                              self%force(:, place), error)
+            if (allocated(error)) return
+            call use_direction(place, 0.0_rk, is_used)
+            if (.not. is_used) return
+            self%n_kept = place
+         end associate
+         is_done = maxval(abs(left)) <= enough
+      end do
+
+   contains
+
+      !> Make the answer to a direction orthogonal to those before, and go along it. What is left is
+      !! formed anew from the answer, not from the factors.
+      subroutine use_direction(place, least_share, is_used)
+         integer(ik), intent(in) :: place
+         real(rk), intent(in) :: least_share
+         logical, intent(out) :: is_used
+         integer(ik) :: j, pass
+
+         associate (p => self%direction(:, place), f => self%force(:, place))
+            call apply_rows(slopes, p, f + condensed%spring*p(x_of_q)*q_per_x, answer(:, place))
+            answer(:, place) = answer(:, place)/self%row_scale
+            before = norm2(answer(:, place))
+            do pass = 1, 2
+               do j = 1, place - 1
+                  share = dot_product(answer(:, j), answer(:, place))
+                  answer(:, place) = answer(:, place) - share*answer(:, j)
+                  p = p - share*self%direction(:, j)
+                  f = f - share*self%force(:, j)
+               end do
+            end do
+            share = norm2(answer(:, place))
+            is_used = share > least_share*before .and. share > 0.0_rk
+            if (.not. is_used) return
+            answer(:, place) = answer(:, place)/share
+            p = p/share
+            f = f/share
+            share = dot_product(answer(:, place), left/self%row_scale)
+            step = step + share*p
+            left = left - share*answer(:, place)*self%row_scale
+         end associate
+      end subroutine use_direction
+
+   end subroutine reduce
+
+   !> The unknowns of the fractures that the factors give for a right-hand side of their rows, and
+   !! the forces that belong to them, without springs.
+   subroutine precondition(self, condensed, x_of_q, q_per_x, rhs, x, force, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(in) :: condensed
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      real(rk), intent(in) :: rhs(:)  !< [Pa]
+      real(rk), intent(out) :: x(:)  !< [Pa]
+      real(rk), intent(out) :: force(:)  !< [N/m], [m2]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: all(:, :)
+      integer(ik) :: n
+
+      n = condensed%coupling%n_bulk
+      allocate (all(n + size(x), 1), source=0.0_rk)
+      all(n + 1:, 1) = rhs*self%row_factor
+      call self%solver%solve(all, error)
+      self%solutions = self%solutions + 1
+      all(:, 1) = all(:, 1)*self%col_scale
+      x = all(n + 1:, 1)
+      call condensed%coupling%forces(all(:n, 1), x(x_of_q)*q_per_x, force)
+   end subroutine precondition
+
+   !> Factors of the system with the rows of now.
+   subroutine renew(self, condensed, slopes, x_of_q, q_per_x, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: col(:), row(:)
+      real(rk), allocatable :: values(:)
+      logical :: is_known
+
+      is_known = allocated(self%row)
+      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
+      if (.not. is_known .or. self%of /= condensed%factorizations) then
+         call assemble_rock(condensed, slopes%n, x_of_q, q_per_x, self%col_scale, row, col, values)
+         if (is_known) is_known = size(row) == self%n_rock
+         if (is_known) is_known = all(self%row(:size(row)) == row) &
+                                  .and. all(self%col(:size(col)) == col)
+         if (is_known) then
+            self%values(:size(values)) = values
+         else
+            call move_alloc(row, self%row)
+            call move_alloc(col, self%col)
+            call move_alloc(values, self%values)
+            self%n_rock = size(self%row, kind=ik)
+         end if
+      end if
+      self%is_ready = .false.
+      call assemble_rows(condensed, slopes, x_of_q, q_per_x, self%col_scale, self%row_scale, &
+                         self%row_factor, row, col, values)
+      associate (n => self%n_rock)
+         if (is_known) is_known = size(self%row) == n + size(row)
+         if (is_known) is_known = all(self%row(n + 1:) == row) .and. all(self%col(n + 1:) == col)
+         if (is_known) then
+            self%values(n + 1:) = values
+         else
+            self%row = [self%row(:n), row]
+            self%col = [self%col(:n), col]
+            self%values = [self%values(:n), values]
+            call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
+                                     mumps_unsymmetric, error, ordering=mumps_pord)
+            if (allocated(error)) then
+               deallocate (self%row, self%col, self%values)
+               return
+            end if
+         end if
+      end associate
+      call self%solver%factorize(self%values, error)
+      if (allocated(error)) return
+      self%factorizations = self%factorizations + 1
+      self%of = condensed%factorizations
+      self%weight = slopes%weight
+      self%n_kept = 0
+      if (allocated(self%direction)) deallocate (self%direction, self%force)
+      allocate (self%direction(slopes%n, most_kept), self%force(size(x_of_q), most_kept))
+      self%is_ready = .true.
+      if (self%estimated_for == self%of .and. &
+          self%factorizations < self%estimated_at + estimate_every) return
+      call estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+      self%estimated_for = self%of
+      self%estimated_at = self%factorizations
+   end subroutine renew
+
+   !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
+   !! transpose: the norms of both that matrix and its inverse, estimated.
+   subroutine estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      integer(ik), intent(in) :: x_of_q(:)
+      real(rk), intent(in) :: q_per_x(:)
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: norm(2), v(slopes%n), x(slopes%n)
+      integer(ik) :: kase, part, save(3), signs(slopes%n)
+
+      norm = 0.0_rk
+      do part = 1, 2
+         kase = 0
+         do
+            call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
+            if (kase == 0) exit
+            if (part == 1) then
+               call multiply(kase == 1)
+            else
+               call solve(kase == 1)
+            end if
+            if (allocated(error)) return
+         end do
+      end do
+      self%condition = norm(1)*norm(2)
+
+   contains
+
+      subroutine multiply(transposed)
+         logical, intent(in) :: transposed
+         real(rk) :: force(size(x_of_q)), moved(size(x_of_q)), y(size(x))
+
+         if (transposed) then
+            y = x/self%row_scale
+            call apply_columns(slopes, y, x, moved)
+            call condensed%find_forces(moved, force, error)
+            x(x_of_q) = x(x_of_q) + force*q_per_x
+         else
+            call condensed%find_forces(x(x_of_q)*q_per_x, force, error)
+            call apply_rows(slopes, x, force, y)
+            x = y/self%row_scale
+         end if
+      end subroutine multiply
+
+      subroutine solve(transposed)
+         logical, intent(in) :: transposed
+         real(rk), allocatable :: all(:, :)
+
+         allocate (all(size(self%col_scale), 1), source=0.0_rk)
+         associate (n => condensed%coupling%n_bulk)
+            if (transposed) then
+               all(n + 1:, 1) = x*self%col_scale(n + 1:)
+               call self%solver%solve(all, error, transposed=.true.)
+               x = all(n + 1:, 1)*self%row_factor*self%row_scale
+            else
+               all(n + 1:, 1) = x*self%row_factor*self%row_scale
+               call self%solver%solve(all, error)
+               x = all(n + 1:, 1)*self%col_scale(n + 1:)
+            end if
+         end associate
+      end subroutine solve
+
+   end subroutine estimate_condition
+
+   !> Give all memory back.
+   subroutine release(self)
+      class(sparse_step_t), intent(inout) :: self
+
+      call self%solver%release()
+      self%is_ready = .false.
+      if (allocated(self%row)) deallocate (self%row, self%col, self%values)
+      if (allocated(self%direction)) deallocate (self%direction, self%force)
+   end subroutine release
+
+end module coarse_sparse_step
