@@ -142,7 +142,7 @@ def test_a_hook_joins_itself(tmp_path: Path) -> None:
             ("x_max = 12.0, y_min = -12.0, y_max = 12.0", "x_max = 6.0, y_min = -6.0, y_max = 6.0"),
             ("x = -0.65, 0.65", "x = -0.5, 0.5, 0.6, 0.3, 0.05, 0.03"),
             ("y = 0.0, 0.0", "y = 0.0, 0.0, 0.35, 0.6, 0.4, 0.16"),
-            ("'left', x_displacement = 0.0", "'left', x_traction = 2.0e6"),
+            ("'left', x_displacement = 0.0", "'left', x_traction = -2.0e6"),
             ("'right', x_traction = -4.0e6", "'right', x_displacement = 0.0"),
             ("end = 80.0", "end = 20.0"),
         ),
