@@ -130,3 +130,27 @@ def test_a_crossing_grows(tmp_path: Path) -> None:
     out = run(tmp_path, changed((BAR, BAR + upright), ("end = 80.0", "end = 95.0")))
     network = json.loads((out / "network.json").read_text())
     assert sorted(j["kind"] for j in network["joints"]) == ["T", "X"]
+
+
+def test_a_hook_joins_itself(tmp_path: Path) -> None:
+    """A fracture from the left side turns back; pulled at, it comes to where it has been."""
+    out = run(
+        tmp_path,
+        changed(
+            (BAR, ""),
+            ("x_min = -12.0", "x_min = -0.5"),
+            ("x_max = 12.0, y_min = -12.0, y_max = 12.0", "x_max = 6.0, y_min = -6.0, y_max = 6.0"),
+            ("x = -0.65, 0.65", "x = -0.5, 0.5, 0.6, 0.3, 0.05, 0.03"),
+            ("y = 0.0, 0.0", "y = 0.0, 0.0, 0.35, 0.6, 0.4, 0.16"),
+            ("'left', x_displacement = 0.0", "'left', x_traction = -2.0e6"),
+            ("'right', x_traction = -4.0e6", "'right', x_displacement = 0.0"),
+            ("end = 80.0", "end = 20.0"),
+        ),
+    )
+    (joint,) = joints(out)
+    assert joint["detail"] == "joins its own fracture"
+    assert float(joint["y_m"]) == pytest.approx(0.0, abs=1e-12)
+    assert rows(out / "history.csv")[-1]["n_tips"] == "0"
+    mass_error = record(out)["mass_error_relative"]
+    assert isinstance(mass_error, float)
+    assert mass_error < 1.0e-9

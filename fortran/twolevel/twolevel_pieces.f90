@@ -2,11 +2,11 @@
 !! end.
 !!
 !! A piece whose way comes to a fracture or to a side of the body ends on it. The coarse mesh has
-!! the joint from then on, but the crack ends at its tip, wherever that is (coarse_tips), and nothing
-!! flows to the joint. A tip has no intensities at the joint itself: a small rest of the piece,
-!! which shrinks with the increments, is left. Where K_eq exceeds the toughness there still, the
-!! rest fails: the crack joins what it has come to, at once, and fluid flows there. So a joint is
-!! made where and when the rock in between has failed, wherever the nodes of the mesh are.
+!! the joint from then on, but the crack ends at its tip, wherever that is (coarse_tips), and
+!! nothing flows to the joint. A tip has no intensities at the joint itself: a small rest of the
+!! piece, which shrinks with the increments, is left. Where K_eq exceeds the toughness there still,
+!! the rest fails: the crack joins what it has come to, at once, and fluid flows there. So a joint
+!! is made where and when the rock in between has failed, wherever the nodes of the mesh are.
 module twolevel_pieces
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -171,6 +171,11 @@ contains
       call checks%is_true(.not. stepper%takes(trial), "an onset within the step")
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_close(dt, 3.0_rk, 1.0e-14_rk, "the step to the onset")
+      dt = 10.0_rk
+      trial = trial_t(converged=.true., is_late=.true., arrival=0.4_rk)
+      call checks%is_true(.not. stepper%takes(trial), "a joint early in the step")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 4.0_rk, 1.0e-14_rk, "the step to the joint")
    end subroutine test_onset
 
    !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
