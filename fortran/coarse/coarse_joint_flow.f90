@@ -28,22 +28,26 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
       type(cell_fluid_t) :: fluid
+      real(rk) :: slope(2)  ! by the pressures of the joint and of its first cell
       integer(ik) :: at, cell, row
 
       row = eq%layout%at_joint(j)
+      cell = eq%joints%cell(eq%joints%branches%at(j, 1_ik))
+      at = eq%layout%at_pressure(cell)
+      slope = 0.0_rk
       if (all(eq%joints%is_shut(eq%joints%branches%of(j)))) then
-         cell = eq%joints%cell(eq%joints%branches%at(j, 1_ik))
-         at = eq%layout%at_pressure(cell)
          fluid = eq%fluid_at(x, cell)
          eq%residual(row) = x(row) - fluid%pressure
-         eq%jacobian(row, row) = 1.0_rk
-         eq%jacobian(at, row) = -fluid%pressure_slope
+         slope = [1.0_rk, -fluid%pressure_slope]
       else if (eq%joints%is_outlet(j)) then
          eq%residual(row) = x(row) - eq%joints%side_pressure(j)
-         call eq%slopes%add(row, row, 1.0_rk)
+         slope(1) = 1.0_rk
       else
          eq%residual(row) = -eq%dt*eq%joints%injection(j)/eq%unit
       end if
+      ! The places of the derivatives are the same in every state (coarse_slopes).
+      call eq%slopes%add(row, row, slope(1))
+      call eq%slopes%add(row, at, slope(2))
    end subroutine fill_joint
 
    !> Flow of branch b into its joint, and its part in the balances of the cell and, unless that is
@@ -52,41 +56,47 @@ contains
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, length, opening, resistance, slope, weight(2)
+      real(rk) :: aperture, by_jump(2), by_pressure(2), length, opening, resistance, slope, weight(2)
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, cell, cells(2), end, joint, jumps(2), k, row
+      logical :: ends_in_joint
 
       row = eq%layout%at_branch(b)
-      if (eq%joints%is_shut(b)) then
-         eq%residual(row) = x(row)
-         eq%jacobian(row, row) = 1.0_rk
-         return
-      end if
       cell = eq%joints%cell(b)
       at = eq%layout%at_pressure(cell)
       joint = eq%layout%at_joint(eq%joints%joint(b))
-      fluid = eq%fluid_at(x, cell)
       call find_way(b, eq, length, cells, weight)
-      opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
-      call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
-                               opening, aperture, slope)
-      resistance = 12.0_rk*eq%settings%viscosity*length/aperture**3*eq%unit/eq%dt
-      eq%residual(row) = x(joint) - fluid%pressure + resistance*x(row)
+      if (eq%joints%is_shut(b)) then
+         resistance = 1.0_rk
+         by_pressure = 0.0_rk
+         by_jump = 0.0_rk
+         ends_in_joint = .false.
+         eq%residual(row) = x(row)
+      else
+         fluid = eq%fluid_at(x, cell)
+         opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
+         call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
+                                  opening, aperture, slope)
+         resistance = 12.0_rk*eq%settings%viscosity*length/aperture**3*eq%unit/eq%dt
+         by_pressure = [1.0_rk, -fluid%pressure_slope]
+         by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
+         ends_in_joint = .not. eq%joints%is_outlet(eq%joints%joint(b))
+         eq%residual(row) = x(joint) - fluid%pressure + resistance*x(row)
+         eq%residual(at) = eq%residual(at) + x(row)
+         if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
+      end if
+      ! The places of the derivatives are the same in every state (coarse_slopes).
       call eq%slopes%add(row, row, resistance)
-      call eq%slopes%add(row, joint, 1.0_rk)
-      call eq%slopes%add(row, at, -fluid%pressure_slope)
+      call eq%slopes%add(row, joint, by_pressure(1))
+      call eq%slopes%add(row, at, by_pressure(2))
       do k = 1, 2
          jumps = eq%layout%at_jump(cells(k), both)
          do end = 1, 2
-            call eq%slopes%add(row, jumps(end), -1.5_rk*resistance*x(row)/aperture*slope &
-                               *weight(k)/eq%stiffness)
+            call eq%slopes%add(row, jumps(end), by_jump(k))
          end do
       end do
-      eq%residual(at) = eq%residual(at) + x(row)
-      call eq%slopes%add(at, row, 1.0_rk)
-      if (eq%joints%is_outlet(eq%joints%joint(b))) return
-      eq%residual(joint) = eq%residual(joint) - x(row)
-      call eq%slopes%add(joint, row, -1.0_rk)
+      call eq%slopes%add(at, row, by_pressure(1))
+      call eq%slopes%add(joint, row, merge(-1.0_rk, 0.0_rk, ends_in_joint))
    end subroutine fill_branch
 
    !> The way of the fluid from the middle of a branch's cell to the joint, as a length with the

@@ -72,8 +72,8 @@ contains
       has_occurred = .false.
       do k = 1, 8
          if (k == 7) then
-            full%ahead(1) = 0.03_rk
-            sparse%ahead(1) = 0.03_rk
+            full%ends%ahead(1) = 0.03_rk
+            sparse%ends%ahead(1) = 0.03_rk
          end if
          call advance(mesh, merge(10.0_rk, 25.0_rk, k < 6), full, by_full, full_report)
          call advance(mesh, merge(10.0_rk, 25.0_rk, k < 6), sparse, by_sparse, sparse_report)
