@@ -51,7 +51,7 @@ contains
       type(coarse_model_t) :: full, sparse
       type(state_t) :: by_full, by_sparse
       type(step_report_t) :: full_report, sparse_report
-      integer(ik) :: k
+      integer(ik) :: k, n_shut
       logical :: has_occurred(state_stick:state_open)
 
       scene = porous_body()
@@ -74,6 +74,14 @@ contains
          if (k == 7) then
             full%ends%ahead(1) = 0.03_rk
             sparse%ends%ahead(1) = 0.03_rk
+         end if
+         ! A branch that has been shut opens: on the same mesh, with the same factors.
+         if (joints > 0) then
+            n_shut = merge(1_ik, 0_ik, k == 2 .or. k == 3)
+            associate (cell => full%joints%cell(:n_shut), end => full%joints%end(:n_shut))
+               call full%joints%shut_only(cell, end)
+               call sparse%joints%shut_only(cell, end)
+            end associate
          end if
          call advance(mesh, merge(10.0_rk, 25.0_rk, k < 6), full, by_full, full_report)
          call advance(mesh, merge(10.0_rk, 25.0_rk, k < 6), sparse, by_sparse, sparse_report)
