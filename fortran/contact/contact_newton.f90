@@ -101,6 +101,9 @@ module contact_newton
       end function sum_terms
    end interface
 
+   !> What a step leaves of its equations may make this error; more asks for another step [-].
+   real(rk), parameter :: well_solved = 1.0e-7_rk
+
 contains
 
    !> Whether x fulfils the law within a tolerance though states go on changing, as they do where a
@@ -184,13 +187,14 @@ contains
       type(iteration_report_t), intent(inout) :: report
       integer(ik) :: before(size(system%state))
       integer(ik) :: seen(2*size(system%state), 0:settings%iterations_max)
-      real(rk) :: seen_worst(0:settings%iterations_max), step(size(x)), worst
+      real(rk) :: left, seen_worst(0:settings%iterations_max), step(size(x)), worst
       type(step_quality_t) :: quality
       integer(ik) :: k
       logical :: is_end, is_small, was_small
 
       before = system%state
       was_small = .false.
+      left = 0.0_rk
       do k = 0, settings%iterations_max
          call system%evaluate(x)
          worst = maxval(abs(system%residual))
@@ -202,7 +206,9 @@ contains
          is_small = worst <= settings%tolerance*system%stress_scale
          if (all(system%state == before)) then
             if (is_small) then
-               is_end = was_small .or. system%is_balanced()
+               is_end = was_small
+               if (.not. is_end) is_end = left*report%condition <= well_solved &
+                                          .and. system%is_balanced()
             else
                is_end = settings%allows_rounding
                if (is_end) is_end = is_rounding(system, x, settings%tolerance)
@@ -222,6 +228,7 @@ contains
             report%outcome = outcome_singular
             return
          end if
+         left = quality%rest
          report%condition = quality%condition
          report%error_bound = min(1.0_rk, quality%condition &
                                   *(epsilon(1.0_rk) + quality%rest))
