@@ -56,7 +56,8 @@ contains
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, by_jump(2), by_pressure(2), length, opening, resistance, slope, weight(2)
+      real(rk) :: aperture, by_jump(2), by_pressure(2), length, opening, resistance, slope
+      real(rk) :: weight(2)
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, cell, cells(2), end, joint, jumps(2), k, row
       logical :: ends_in_joint
