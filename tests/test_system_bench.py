@@ -40,7 +40,7 @@ def test_a_measurement_as_table_and_json(tmp_path: Path) -> None:
 def test_the_listed_scenes_are_there() -> None:
     table = (TOP / "tools" / "benchmarks.txt").read_text().splitlines()
     entries = [line.split("|") for line in table if line and not line.startswith("#")]
-    assert [entry[0].strip() for entry in entries] == ["c1", "c2", "b1", "b4", "b6"]
+    assert [entry[0].strip() for entry in entries] == ["c1", "n1", "c2", "b1", "b4", "b6"]
     for _, scene, title in entries:
         assert (TOP / scene.strip()).exists()
         assert title.strip()

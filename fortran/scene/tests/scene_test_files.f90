@@ -124,7 +124,12 @@ contains
 
       same_regions = .false.
       if (allocated(a%regions) .neqv. allocated(b%regions)) return
-      do i = 1, merge(size(a%regions), 0, allocated(a%regions))
+      if (.not. allocated(a%regions)) then
+         same_regions = .true.
+         return
+      end if
+      if (size(a%regions) /= size(b%regions)) return
+      do i = 1, size(a%regions)
          associate (p => a%regions(i), q => b%regions(i))
             if (p%name /= q%name .or. p%shape /= q%shape) return
           if (.not. (same(numbers(p%x), numbers(q%x)) .and. same(numbers(p%y), numbers(q%y)) .and. &
