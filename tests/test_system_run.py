@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 import pyvista
-from system_scene import GROWING, SCENE, call, numbers, rows, run, start, varied
+from system_scene import GROWING, SCENE, TOP, call, numbers, record, rows, run, start, varied
 
 # The columns that users may rely on, in their order; docs/output.md may have more among them.
 HISTORY = [
@@ -387,3 +390,18 @@ def test_a_scene_is_checked_without_running(tmp_path: Path) -> None:
     for words in ("small", "poroelastic", "intensities", "cells"):
         assert words in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["small.nml"]
+
+
+@pytest.mark.parametrize("rows_of_fractures", [1, 3])
+def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> None:
+    """Its estimate knows where fractures are only on average: within a quarter of the mesh."""
+    tool = TOP / "tools" / "many_fractures.py"
+    command = [sys.executable, str(tool), "--rows", str(rows_of_fractures), "--cells", "8"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    (tmp_path / "many.nml").write_text(text)
+    told = call(tmp_path, "check", "many.nml").stdout
+    foreseen = re.search(r"about: +(\d+) cells", told)
+    assert foreseen, told
+    cells = record(run(tmp_path, text))["cells"]
+    assert isinstance(cells, int)
+    assert abs(int(foreseen[1]) - cells) < 0.25 * cells

@@ -9,7 +9,7 @@ run_all_tests() {
     with_lock build release all
     step 'CTest, debug build' ctest --preset debug -j "$(nproc)"
     step 'CTest, release build' ctest --preset release -j "$(nproc)"
-    step 'pytest' run_pytest
+    step 'pytest' run_pytest --numprocesses "$(nproc)" --dist loadfile
     end_steps
 }
 

@@ -91,8 +91,10 @@ contains
    end function number_of_steps
 
    !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
-   !! from the fractures, up to half of that of the farthest point (size_field.cpp); the part of the
-   !! body up to a distance d is taken as 2 L d + n pi d**2 for n fractures of length L altogether.
+   !! from the fractures, up to half of that of the farthest point (size_field.cpp). Up to a
+   !! distance d from n fractures of length L altogether are 2 L d + n pi d**2. Where these overlap,
+   !! as those of fractures at random do, the share exp(-(2 L d + n pi d**2)/area) of the body is
+   !! farther off (Boolean model: Chiu, Stoyan, Kendall, Mecke, Stochastic Geometry, 2013, ch. 3).
    function number_of_cells(scene, length) result(n)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: length  !< of all fractures [m]
@@ -100,8 +102,10 @@ contains
       integer, parameter :: layers = 400
       real(rk), parameter :: cells_per_square = 4.0_rk/sqrt(3.0_rk)  ! equilateral triangles
       real(rk), parameter :: pi = acos(-1.0_rk)
+      !> The farthest point: no more than exp(-5) of the body is beyond it.
+      real(rk), parameter :: covered = 5.0_rk
       type(outline_t) :: outline
-      real(rk) :: area, inner, outer, farthest, slope, d, nearest
+      real(rk) :: area, inner, outer, farthest, slope, d, nearest, n_fractures
       integer :: i
 
       if (scene%domain%shape == "disc") then
@@ -118,14 +122,17 @@ contains
                  near => scene%discretization%size_fracture)
          n = cells_per_square*area/far**2
          if (.not. (length > 0.0_rk .and. near < far)) return
-         farthest = 0.5_rk*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
+         n_fractures = real(size(scene%fractures), rk)
+         ! 2 L d + n pi d**2 = covered*area, in a form that one long fracture does not cancel
+         farthest = covered*area/(length + sqrt(length**2 + covered*area*n_fractures*pi))
+         farthest = min(farthest, 0.5_rk*norm2([body%x_max - body%x_min, body%y_max - body%y_min]))
          slope = (far - near)/(0.5_rk*farthest)
          n = 0.0_rk
          inner = 0.0_rk
          nearest = 1.0e-2_rk*near  ! layers grow geometrically from there to the farthest
          do i = 1, layers
             d = nearest*(farthest/nearest)**(real(i, rk)/layers)
-            outer = min(2.0_rk*length*d + size(scene%fractures)*pi*d**2, area)
+            outer = area*(1.0_rk - exp(-(2.0_rk*length*d + n_fractures*pi*d**2)/area))
             if (i == layers) outer = area
             n = n + cells_per_square*(outer - inner)/min(far, near + slope*d)**2
             inner = outer

@@ -67,8 +67,12 @@ def _parser() -> argparse.ArgumentParser:
         ("--cache", TOP / "build" / "verification", "where the files of the runs are kept"),
         ("--report", TOP / "verification" / "report", "where the report goes"),
     ):
-        parser.add_argument(name, type=Path, default=path, metavar="DIR", help=text)
+        parser.add_argument(name, type=_folder, default=path, metavar="DIR", help=text)
     return parser
+
+
+def _folder(text: str) -> Path:
+    return Path(text).resolve()  # programs are run in folders of their own
 
 
 def _count(text: str) -> int:
