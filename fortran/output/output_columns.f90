@@ -102,7 +102,7 @@ module output_columns
                "Length of the fractures that fluid reaches from the wells along fractures and "// &
                "through joints"), &
       column_t("connected_stimulated_m", "m", with_wells, &
-               "Part of it that is reached through stimulated faces only"), &
+               "Part of stimulated_length_m that is so connected"), &
       column_t("n_clusters", "-", with_fractures, "Groups of fractures that hang together"), &
       column_t("connections_per_branch", "-", with_fractures, &
                "How many ends of a branch of the network are connected, in the mean: 0 to 2 "// &

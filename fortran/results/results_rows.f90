@@ -38,7 +38,7 @@ module results_rows
       real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
       real(rk) :: stimulated_length = 0.0_rk  !< [m]
       real(rk) :: connected_length = 0.0_rk  !< with the wells [m]
-      real(rk) :: connected_stimulated = 0.0_rk  !< with them through stimulated faces [m]
+      real(rk) :: connected_stimulated = 0.0_rk  !< of both lengths [m]
       integer(ik) :: n_clusters = 0  !< groups of fractures that hang together
       real(rk) :: connections_per_branch = 0.0_rk  !< [-]
    end type history_row_t

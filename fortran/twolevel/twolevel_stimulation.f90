@@ -106,7 +106,7 @@ contains
       type(history_row_t), intent(inout) :: row
       type(fracture_mesh_t) :: fracture
       real(rk), allocatable :: length(:)
-      logical, allocatable :: all_pass(:), is_stimulated(:), starts(:)
+      logical, allocatable :: all_pass(:), is_connected(:), is_stimulated(:)
       real(rk) :: rise
       integer(ik) :: i
 
@@ -133,9 +133,9 @@ contains
                                0.5_rk*sum(levels%mesh%fracture%cell_s(:, i))), &
                         i=1, fracture%n_cells)]
       allocate (all_pass(fracture%n_cells), source=.true.)
-      starts = fed_cells(levels, fracture)
-      row%connected_length = sum(length, mask=reached_cells(fracture, starts, all_pass))
-      row%connected_stimulated = sum(length, mask=reached_cells(fracture, starts, is_stimulated))
+      is_connected = reached_cells(fracture, fed_cells(levels, fracture), all_pass)
+      row%connected_length = sum(length, mask=is_connected)
+      row%connected_stimulated = sum(length, mask=is_connected .and. is_stimulated)
    end subroutine describe
 
    !> A place of a fracture is stimulated: it has moved, or is new.
