@@ -197,13 +197,13 @@ module output_columns
       column_t("area_m2", "m2", with_fluid, &
                "Length that has slipped times out_of_plane_length of &output"), &
       column_t("mean_slip_m", "m", with_fluid, "Mean slip over that area, without its sign"), &
-      column_t("largest_slip_rate_m_s", "m/s", with_fluid, &
-               "Largest rate of slip of a cell in a step"), &
       column_t("moment_nm", "N m", with_fluid, &
                "Seismic moment: shear modulus times mean slip times area"), &
       column_t("magnitude", "-", with_fluid, "Moment magnitude (log10(moment_nm) - 9.1)/1.5"), &
       column_t("open_share", "-", with_fluid, &
                "Share of the moment from cells that were open: no friction there"), &
+      column_t("sudden_share", "-", with_fluid, &
+               "Share of the moment from steps in which growth was unstable: it comes at once"), &
       column_t("ended_by", "-", with_fluid, "What ended it")]
 
    type(column_t), parameter :: record_keys(*) = [ &

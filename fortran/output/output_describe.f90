@@ -97,18 +97,20 @@ contains
                     "probe.", probe_columns)
       call describe(unit, "events.csv", "A row per event.", event_columns)
       call describe_words(unit, "kind", event_words)
-     call describe(unit, "slip_events.csv", "With a fluid and fractures: a row per slip event, "// &
-                   "once it is over. In a step, a patch is a row of cells of one fracture that "// &
-                  "slip, in contact or open. Patches of steps that follow each other belong to "// &
-                   "one event if they have faces in common; events that meet are one from then "// &
-                    "on. The event is over when nothing of it slips any more. Events of less "// &
-                  "mean slip than stimulated_jump of &output are left out, and the slip of the "// &
-                   "initial equilibrium is none. The simulation is quasi-static: slip lasts as "// &
-                    "long as the injection drives it, so the events are slow, moment and "// &
-                    "magnitude those of all their slip whether or not it would be heard. The "// &
-                   "largest rate of slip tells: earthquakes slip at 0.1 to 10 m/s. The moments "// &
-                   "add up to what seismic_moment_nm of history.csv has gained since the first "// &
-                    "state, times out_of_plane_length, but for the events left out.", &
+      call describe(unit, "slip_events.csv", &
+                    "With a fluid and fractures: a row per slip event, once it is over."// &
+                    " In a step, a patch is a row of cells of one fracture that slip, "// &
+                    "in contact or open. Patches of steps that follow each other belong"// &
+                    " to one event if they have faces in common; events that meet are "// &
+                    "one from then on. An event is over when nothing of it slips any "// &
+                    "more. Events of less mean slip than `stimulated_jump` of `&output`"// &
+                    " are left out, and the slip of the initial equilibrium is none. "// &
+                    "The simulation is quasi-static: slip lasts as long as the "// &
+                    "injection drives it, and moment and magnitude are those of all of "// &
+                    "it, whether or not it would be heard; what comes at once, by "// &
+                    "unstable growth, is `sudden_share` of it. The moments add up to "// &
+                    "what seismic_moment_nm of history.csv has gained since the first "// &
+                    "state, times `out_of_plane_length`, but for the events left out.", &
                     slip_event_columns)
       call describe_words(unit, "ended_by", end_words)
       call describe(unit, "run.json", "How the run went. A dot in a name leads into an object.", &

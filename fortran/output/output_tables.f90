@@ -250,10 +250,10 @@ contains
          call table%put("s_to_m", event%s(2))
          call table%put("area_m2", event%area)
          call table%put("mean_slip_m", event%mean_slip)
-         call table%put("largest_slip_rate_m_s", event%largest_rate)
          call table%put("moment_nm", event%moment)
          call table%put("magnitude", event%magnitude)
          call table%put("open_share", event%open_share)
+         call table%put("sudden_share", event%sudden_share)
          call table%put("ended_by", trim(merge("stick", "run  ", event%sticks)))
          call table%end_row()
       end associate

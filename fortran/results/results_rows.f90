@@ -52,10 +52,10 @@ module results_rows
       real(rk) :: s(2) = 0.0_rk  !< arc lengths of its ends [m]
       real(rk) :: area = 0.0_rk  !< [m2]
       real(rk) :: mean_slip = 0.0_rk  !< [m]
-      real(rk) :: largest_rate = 0.0_rk  !< of slip [m/s]
       real(rk) :: moment = 0.0_rk  !< [N m]
       real(rk) :: magnitude = 0.0_rk  !< [-]
       real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
+      real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
       logical :: sticks = .false.  !< it has ended before the run
    end type slip_event_t
 

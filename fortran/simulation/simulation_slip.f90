@@ -23,6 +23,7 @@ module simulation_slip
       type(slip_event_t) :: event  !< its place is still weighed with the potency
       real(rk) :: potency = 0.0_rk  !< slip times length so far [m2]
       real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [m2]
+      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [m2]
    end type live_t
 
    !> A row of sliding cells in the last step.
@@ -63,13 +64,14 @@ contains
    end subroutine begin
 
    !> A step of length dt that led to a time.
-   pure subroutine follow(self, time, dt, fracture, potency, slides, is_open)
+   pure subroutine follow(self, time, dt, fracture, potency, slides, is_open, is_sudden)
       class(slip_catalogue_t), intent(inout) :: self
       real(rk), intent(in) :: time, dt  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
       logical, intent(in) :: slides(:)  !< (cells) its faces do
       logical, intent(in) :: is_open(:)  !< (cells) they do not touch
+      logical, intent(in) :: is_sudden  !< growth was unstable in the step
       type(patch_t), allocatable :: patches(:)
       integer(ik) :: cell, first, p
 
@@ -86,8 +88,8 @@ contains
          end associate
          call assign_patch(self, patches, time - dt)
          p = size(patches)
-         call add_slip(self%live(patches(p)%live), time, dt, fracture, first, cell, potency, &
-                       is_open)
+         call add_slip(self%live(patches(p)%live), time, fracture, first, cell, potency, is_open, &
+                       is_sudden)
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
@@ -153,9 +155,9 @@ contains
          a%event%end = max(a%event%end, b%event%end)
          a%event%s = [min(a%event%s(1), b%event%s(1)), max(a%event%s(2), b%event%s(2))]
          a%event%xy = a%event%xy + b%event%xy
-         a%event%largest_rate = max(a%event%largest_rate, b%event%largest_rate)
          a%potency = a%potency + b%potency
          a%open = a%open + b%open
+         a%sudden = a%sudden + b%sudden
          b%potency = 0.0_rk
       end associate
       where (self%patch%live == gone) self%patch%live = keeps
@@ -163,25 +165,23 @@ contains
    end subroutine take_in
 
    !> Slip of some cells that follow each other.
-   pure subroutine add_slip(live, time, dt, fracture, first, last, potency, is_open)
+   pure subroutine add_slip(live, time, fracture, first, last, potency, is_open, is_sudden)
       type(live_t), intent(inout) :: live
-      real(rk), intent(in) :: time, dt  !< [s]
+      real(rk), intent(in) :: time  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: first, last
       real(rk), intent(in) :: potency(:)  !< (cells) [m2]
       logical, intent(in) :: is_open(:)  !< (cells)
-      real(rk) :: length
+      logical, intent(in) :: is_sudden
       integer(ik) :: cell
 
       live%event%end = time
       live%potency = live%potency + sum(potency(first:last))
       live%open = live%open + sum(potency(first:last), mask=is_open(first:last))
+      if (is_sudden) live%sudden = live%sudden + sum(potency(first:last))
       do cell = first, last
          live%event%xy = live%event%xy + potency(cell) &
                          *0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
-         length = fracture%cell_s(2, cell) - fracture%cell_s(1, cell)
-         if (.not. length*dt > 0.0_rk) cycle
-         live%event%largest_rate = max(live%event%largest_rate, potency(cell)/(length*dt))
       end do
    end subroutine add_slip
 
@@ -231,6 +231,7 @@ contains
       event%moment = self%shear*live%potency*self%breadth
       event%magnitude = magnitude(event%moment)
       event%open_share = live%open/live%potency
+      event%sudden_share = live%sudden/live%potency
       event%sticks = sticks
       self%news = [self%news, event]
    end subroutine list

@@ -81,9 +81,9 @@ contains
    pure real(rk) function fracture_volume(simulation) result(volume)
       class(two_levels_t), intent(in) :: simulation
 
-      associate (state => simulation%state)
+      associate (state => simulation%state, s => simulation%mesh%fracture%cell_s)
          volume = sum((state%aperture - state%void - simulation%model%cells%roughness) &
-                      *simulation%model%condensed%length)
+                      *(s(2, :) - s(1, :)))
       end associate
    end function fracture_volume
 

@@ -39,6 +39,7 @@ module twolevel_simulation
       logical :: is_after_switch = .false.  !< of a well: the last step
       logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
+      logical :: is_unstable = .false.  !< tips grew without equilibrium in the last step
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
@@ -159,7 +160,7 @@ contains
       self%seismic_moment = self%seismic_moment + self%model%rock%shear*sum(potency)
       if (self%is_initial) return
       call end_at_tips(self, fracture)
-      call self%note_slip(self%dt, fracture, potency, cell_states(self))
+      call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)
    end subroutine book_change
 
    !> The state before the first step.
@@ -275,6 +276,7 @@ contains
       self%ends_at_switch = next_switch(self%scene, self%before%time) &
                             <= self%state%time*(1.0_rk + same_time)
       call self%book_step(self%dt)
+      self%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (is_equilibrium(self)) then
          call accept_equilibrium(self)

@@ -50,7 +50,7 @@ def network_figure(run: Run) -> Figure:
     growths = read_growth(run.network)
     if not growths:
         raise AbsentError("the scene has no fractures")
-    box = _box(growths, run.scene)
+    box = network_box(growths, run.scene)
     ratio = (box[3] - box[2]) / (box[1] - box[0])
     beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
     width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
@@ -83,7 +83,7 @@ def draw_network(
     scene : Scene or None
         For the outline of the body.
     """
-    box = _box(growths, scene)
+    box = network_box(growths, scene)
     # that of the body, as in all other maps, not of the part in view
     unit = length_unit(box if scene is None or scene.outline is None else scene.outline)
     if scene is not None and scene.outline is not None:
@@ -192,9 +192,7 @@ def _constant_from(values: Mapping[int, float]) -> str:
     return f", constant from {changed[-1] + 1} on"
 
 
-def _legend(
-    axes: Axes, regions: Sequence[Patch], *, has_growth: bool, has_joints: bool
-) -> None:
+def _legend(axes: Axes, regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> None:
     handles: list[Artist] = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
     if has_growth:
         colour = style.time_colours()(0.5)
@@ -208,7 +206,9 @@ def _legend(
     style.outside_legend(figure, [*handles, *regions], 2 if regions else 3)
 
 
-def _box(growths: Sequence[Growth], scene: Scene | None) -> tuple[float, float, float, float]:
+def network_box(
+    growths: Sequence[Growth], scene: Scene | None
+) -> tuple[float, float, float, float]:
     """What is shown: the body, or a square around a network that is small in it."""
     points = np.concatenate([np.concatenate((g.initial, g.start, g.end)) for g in growths])
     lower, upper = points.min(axis=0), points.max(axis=0)

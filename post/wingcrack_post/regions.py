@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -130,18 +131,14 @@ def region_label(region: Region) -> str:
 
 
 def _power(value: float) -> str:
-    """Write a number as a product with a power of ten.
-
-    >>> _power(5.0e-18)
-    '$5\\\\cdot10^{-18}$'
-    """
+    """Write a number as a product with a power of ten."""
     mantissa, exponent = f"{value:.2e}".split("e")
     digits = f"{float(mantissa):g}"
     power = f"10^{{{int(exponent)}}}"
     return f"${power}$" if digits == "1" else f"${digits}\\cdot{power}$"
 
 
-def _look(region: Region, rock_m2: tuple[float, float] | None) -> dict[str, str]:
+def _look(region: Region, rock_m2: tuple[float, float] | None) -> dict[str, Any]:
     decades = 0.0
     if rock_m2 is not None:
         ratio = np.log10(np.array(region.permeability_m2) / np.array(rock_m2))
@@ -152,7 +149,7 @@ def _look(region: Region, rock_m2: tuple[float, float] | None) -> dict[str, str]
         round((1.0 - share) * int(pale[i : i + 2], 16) + share * int(strong[i : i + 2], 16))
         for i in (1, 3, 5)
     ]
-    look = {"facecolor": "#{:02X}{:02X}{:02X}".format(*mixed), "edgecolor": _EDGE}
+    look: dict[str, Any] = {"facecolor": "#{:02X}{:02X}{:02X}".format(*mixed), "edgecolor": _EDGE}
     if decades < 0.0:
         look["hatch"] = "////"
     return look

@@ -190,7 +190,9 @@ def _regions(
         if group != "region":
             continue
         numbers = {
-            key: [number for raw in raws if (number := _one_number(path, group, raw, key))is not None]
+            key: [
+                number for raw in raws if (number := _one_number(path, group, raw, key)) is not None
+            ]
             for key, raws in values.items()
             if key not in ("name", "shape")
         }

@@ -33,25 +33,29 @@ contains
       fracture%point_xy = reshape([(real(i, rk), 0.0_rk, i=0, n)], [2, n + 1])
    end subroutine make_fractures
 
-   !> A step in which the given cells slip by 1 mm, those of `open` without contact.
-   subroutine step(time, cells, open)
+   !> A step in which the given cells slip by 1 mm, those of `apart` without contact.
+   subroutine step(time, cells, apart, is_sudden)
       real(rk), intent(in) :: time  !< [s]
       integer, intent(in) :: cells(:)
-      integer, intent(in) :: open (:)
-      logical :: is_open(n), slides(n)
+      integer, intent(in) :: apart(:)
+      logical, intent(in), optional :: is_sudden  !< default: no
+      logical :: is_open(n), slides(n), sudden
 
       is_open = .false.
       slides = .false.
       slides(cells) = .true.
-      is_open(open) = .true.
-      call catalogue%follow(time, dt, fracture, merge(slip, 0.0_rk, slides), slides, is_open)
+      is_open(apart) = .true.
+      sudden = .false.
+      if (present(is_sudden)) sudden = is_sudden
+      call catalogue%follow(time, dt, fracture, merge(slip, 0.0_rk, slides), slides, is_open, &
+                            sudden)
    end subroutine step
 
    !> Two steps on a patch that moves, then rest.
    subroutine test_one()
       call catalogue%begin(shear, breadth, 1.0e-6_rk)
       call step(0.5_rk, [2, 3], [integer ::])
-      call step(1.0_rk, [3, 4], [3])
+      call step(1.0_rk, [3, 4], [3], is_sudden=.true.)
       call checks%is_true(size(catalogue%news) == 0, "it is not over")
       call step(1.5_rk, [integer ::], [integer ::])
       call checks%is_true(size(catalogue%news) == 1, "it is")
@@ -64,7 +68,7 @@ contains
          call checks%is_close(event%area, 6.0_rk, 1.0e-14_rk, "area")
          call checks%is_close(event%mean_slip, 4.0_rk*slip/3.0_rk, 1.0e-17_rk, "mean slip")
          call checks%is_close(event%moment, 4.0_rk*slip*shear*breadth, 1.0e-6_rk, "moment")
-         call checks%is_close(event%largest_rate, slip/dt, 1.0e-17_rk, "rate")
+         call checks%is_close(event%sudden_share, 0.5_rk, 1.0e-15_rk, "share of the second step")
          call checks%is_close(event%open_share, 0.25_rk, 1.0e-15_rk, "share of open faces")
          call checks%is_true(event%sticks, "it sticks")
       end associate
@@ -109,7 +113,7 @@ contains
       finer%cell_s = reshape([(0.5_rk*(i - 1), 0.5_rk*i, i=1, 10)], [2, 10])
       finer%point_xy = reshape([(0.5_rk*i, 0.0_rk, i=0, 10)], [2, 11])
       call catalogue%follow(1.0_rk, dt, finer, [(merge(0.5_rk*slip, 0.0_rk, i == 6), i=1, 10)], &
-                            [(i == 6, i=1, 10)], spread(.false., 1, 10))
+                            [(i == 6, i=1, 10)], spread(.false., 1, 10), .false.)
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "one event on two meshes")
       call checks%is_close(catalogue%news(1)%moment, 1.5_rk*slip*shear*breadth, 1.0e-6_rk, &
