@@ -154,6 +154,7 @@ def test_units_end_the_names_of_columns(described: dict[str, list[Entry]]) -> No
         "m2/s": "_m2_s",
         "m2/s/Pa": "_m2_s_pa",
         "N m": "_nm",
+        "N m/s": "_nm_s",
     }
     for file in (*TABLES, "run.json", "network.json"):
         for entry in described[file]:

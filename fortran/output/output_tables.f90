@@ -251,6 +251,7 @@ contains
          call table%put("area_m2", event%area)
          call table%put("mean_slip_m", event%mean_slip)
          call table%put("moment_nm", event%moment)
+         call table%put("largest_moment_rate_nm_s", event%largest_rate)
          call table%put("magnitude", event%magnitude)
          call table%put("open_share", event%open_share)
          call table%put("sudden_share", event%sudden_share)

@@ -53,6 +53,7 @@ module results_rows
       real(rk) :: area = 0.0_rk  !< [m2]
       real(rk) :: mean_slip = 0.0_rk  !< [m]
       real(rk) :: moment = 0.0_rk  !< [N m]
+      real(rk) :: largest_rate = 0.0_rk  !< of the moment, mean over a step [N m/s]
       real(rk) :: magnitude = 0.0_rk  !< [-]
       real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
       real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]

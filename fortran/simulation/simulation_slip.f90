@@ -22,6 +22,7 @@ module simulation_slip
    type :: live_t
       type(slip_event_t) :: event  !< its place is still weighed with the potency
       real(rk) :: potency = 0.0_rk  !< slip times length so far [m2]
+      real(rk) :: last = 0.0_rk  !< of it, in the last step [m2]
       real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [m2]
       real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [m2]
    end type live_t
@@ -66,7 +67,7 @@ contains
    !> A step of length dt that led to a time.
    pure subroutine follow(self, time, dt, fracture, potency, slides, is_open, is_sudden)
       class(slip_catalogue_t), intent(inout) :: self
-      real(rk), intent(in) :: time, dt  !< [s]
+      real(rk), intent(in) :: time, dt  !< [s]; dt > 0
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
       logical, intent(in) :: slides(:)  !< (cells) its faces do
@@ -76,6 +77,7 @@ contains
       integer(ik) :: cell, first, p
 
       allocate (patches(0))
+      self%live%last = 0.0_rk
       first = 1
       do while (first <= fracture%n_cells)
          if (.not. slides(first)) then
@@ -93,6 +95,12 @@ contains
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
+      do p = 1, size(self%live)
+         associate (live => self%live(p))
+            live%event%largest_rate = max(live%event%largest_rate, &
+                                          self%shear*live%last*self%breadth/dt)
+         end associate
+      end do
       call end_quiet(self)
    end subroutine follow
 
@@ -156,6 +164,8 @@ contains
          a%event%s = [min(a%event%s(1), b%event%s(1)), max(a%event%s(2), b%event%s(2))]
          a%event%xy = a%event%xy + b%event%xy
          a%potency = a%potency + b%potency
+         a%last = a%last + b%last
+         a%event%largest_rate = max(a%event%largest_rate, b%event%largest_rate)
          a%open = a%open + b%open
          a%sudden = a%sudden + b%sudden
          b%potency = 0.0_rk
@@ -177,6 +187,7 @@ contains
 
       live%event%end = time
       live%potency = live%potency + sum(potency(first:last))
+      live%last = live%last + sum(potency(first:last))
       live%open = live%open + sum(potency(first:last), mask=is_open(first:last))
       if (is_sudden) live%sudden = live%sudden + sum(potency(first:last))
       do cell = first, last

@@ -46,7 +46,7 @@ def test_polygon_and_band(tmp_path: Path) -> None:
     assert area(band.corners) == pytest.approx(0.2)
     assert square.permeability_m2 == (2.0e-17, 2.0e-17)
     assert region_label(square) == r"square: $k$ = $2\cdot10^{-17}$ m²"
-    assert region_label(band) == r"band: $k_{xx}$, $k_{yy}$ = $10^{-20}$, $10^{-19}$ m²"
+    assert region_label(band) == "band: $k_{xx}$ = $10^{-20}$ m²,\n$k_{yy}$ = $10^{-19}$ m²"
 
 
 def test_all_to_the_left_of_a_line(tmp_path: Path) -> None:

@@ -127,7 +127,8 @@ def region_label(region: Region) -> str:
     along_x, along_y = region.permeability_m2
     if along_x == along_y:
         return f"{region.name}: $k$ = {_power(along_x)} m²"
-    return f"{region.name}: $k_{{xx}}$, $k_{{yy}}$ = {_power(along_x)}, {_power(along_y)} m²"
+    # on two lines: one would be too long beside a map
+    return f"{region.name}: $k_{{xx}}$ = {_power(along_x)} m²,\n$k_{{yy}}$ = {_power(along_y)} m²"
 
 
 def _power(value: float) -> str:

@@ -296,7 +296,8 @@ def _name_events(axes: Axes, run: Run, table: Table, begin: FloatArray, size: Fl
 
 def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], facts: str) -> None:
     """Legend of the map, and below it the run in numbers."""
-    heights = (len(handles) + 1.0, facts.count("\n") + 2.0)
+    labels = [str(handle.get_label()) for handle in handles]
+    heights = (sum(label.count("\n") + 1.0 for label in labels) + 1.0, facts.count("\n") + 2.0)
     grid = place.subgridspec(2, 1, height_ratios=heights)
     legend, text = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
     for axes in (legend, text):

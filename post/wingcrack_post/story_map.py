@@ -25,6 +25,7 @@ _CORE = 1.3
 _FLATTEST = 0.68  # height of the map over its width
 _WELL: dict[str, Any] = {"mfc": "#FFFFFF", "mec": "#000000", "mew": 0.9, "ms": 6}
 _JOINT: dict[str, Any] = {"mfc": "#FFFFFF", "mec": "#000000", "mew": 0.7, "ms": 3.2}
+_WING: dict[str, Any] = {"mfc": "#000000", "mec": "#000000", "ms": 2.6}
 _EVENT: dict[str, Any] = {"mfc": "none", "mec": "#CC79A7", "mew": 1.2}
 _EVENT_SIZES = (6.0, 20.0)  # [points] of the smallest and the largest event
 _EVENT_RANGE = 2.0  # magnitudes between these, at least
@@ -47,6 +48,10 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     handles = [*_draw_states(axes, network, cells, unit), *handles]
     for item in growths:
         _name(axes, item.name, unit.of(item.initial), box, unit)
+    begins = [points[0] for g in growths for points in (g.start, g.end) if len(points) > 1]
+    if begins:
+        axes.plot(*unit.of(np.array(begins)).T, "s", zorder=5, ls="none", **_WING)
+        handles.append(Line2D([], [], ls="none", marker="s", label="a wing begins", **_WING))
     joints = [(joint["x_m"], joint["y_m"]) for joint in network.get("joints", [])]
     if joints:
         axes.plot(*unit.of(np.array(joints)).T, "o", zorder=6, ls="none", **_JOINT)

@@ -68,6 +68,7 @@ contains
          call checks%is_close(event%area, 6.0_rk, 1.0e-14_rk, "area")
          call checks%is_close(event%mean_slip, 4.0_rk*slip/3.0_rk, 1.0e-17_rk, "mean slip")
          call checks%is_close(event%moment, 4.0_rk*slip*shear*breadth, 1.0e-6_rk, "moment")
+         call checks%is_close(event%largest_rate, 2.0_rk*slip*shear*breadth/dt, 1.0e-6_rk, "rate")
          call checks%is_close(event%sudden_share, 0.5_rk, 1.0e-15_rk, "share of the second step")
          call checks%is_close(event%open_share, 0.25_rk, 1.0e-15_rk, "share of open faces")
          call checks%is_true(event%sticks, "it sticks")
@@ -94,6 +95,8 @@ contains
                               "every cell's slip belongs to one of them")
          call checks%is_close(events(4)%moment/(slip*shear*breadth), 9.0_rk, 1.0e-12_rk, &
                               "those that meet are one")
+         call checks%is_close(events(4)%largest_rate/(slip*shear*breadth/dt), 4.0_rk, 1.0e-12_rk, &
+                              "its rate is that of all its patches")
          call checks%is_close(events(4)%time, 0.0_rk, 0.0_rk, "which began with the first")
          call checks%is_close(maxval(abs(events(4)%s - [1.0_rk, 5.0_rk])), 0.0_rk, 1.0e-15_rk, &
                               "and covers both")
