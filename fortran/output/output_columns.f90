@@ -201,7 +201,8 @@ module output_columns
                "Seismic moment: shear modulus times mean slip times area"), &
       column_t("largest_moment_rate_nm_s", "N m/s", with_fluid, &
                "Largest rate of moment, as the mean over a time step"), &
-      column_t("magnitude", "-", with_fluid, "Moment magnitude (log10(moment_nm) - 9.1)/1.5"), &
+      column_t("magnitude", "-", with_fluid, &
+               "Moment magnitude (log10(moment_nm) - 9.1)/1.5 (Hanks and Kanamori 1979)"), &
       column_t("open_share", "-", with_fluid, &
                "Share of the moment from cells that were open: no friction there"), &
       column_t("sudden_share", "-", with_fluid, &

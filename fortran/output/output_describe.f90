@@ -81,7 +81,10 @@ contains
                     "the run. With a fluid, a "// &
                     "step may hold several increments of growth, which the windows around the "// &
                     "tips follow: tips.csv has a row of each, and the next row of history.csv "// &
-                    "comes once the mesh of the body has followed.", history_columns)
+                    "comes once the mesh of the body has followed. Fluid adds up: what was "// &
+                    "injected and prefilled is, up to the mass error, fracture_fluid_m2, "// &
+                    "rock_fluid_m2, outflow_m2 and rock_outflow_m2, and what leaked off is "// &
+                    "rock_fluid_m2 and rock_outflow_m2.", history_columns)
       call describe(unit, "tips.csv", "With growth or stress intensity factors: a row per free "// &
                     "tip and state, or per tip and increment of growth. Where any tip grows, "// &
                     "the rows of all hold the values before that. A tip that "// &
