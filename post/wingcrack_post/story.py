@@ -166,7 +166,7 @@ def _draw_pressure(axes: Axes, run: Run) -> None:
     beside.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
     beside.yaxis.get_offset_text().set_fontsize(6)
     lines = [axes.lines[0], beside.lines[0]]
-    axes.legend(handles=lines, loc="lower right")
+    axes.legend(handles=lines, loc="lower center")
 
 
 def _draw_injectivity(axes: Axes, run: Run) -> None:
