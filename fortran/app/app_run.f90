@@ -95,6 +95,7 @@ contains
 
       call journal%progress%clear()
       call timers%start(phase_output)
+      call simulation%end_slip()
       call journal%write_chronicle(simulation)
       call journal%write_fields(simulation, error)
       call journal%files%flush(trouble)

@@ -239,40 +239,51 @@ contains
       call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
                          state%tractions, state%content)
       state%time = state%time + dt
-      call mass_error(self, mesh, dt, before, state, report%mass_error)
+      call book_fluid(self, mesh, dt, before, state, report)
       call timers%stop(phase_assemble)
       if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
    end subroutine advance
 
-   !> Fluid that appeared or vanished in the step: what is stored less what came in.
-   subroutine mass_error(self, mesh, dt, before, after, balance)
+   !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
+   !! in.
+   subroutine book_fluid(self, mesh, dt, before, after, report)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
-      real(rk), intent(out) :: balance  !< [m2]
+      type(step_report_t), intent(inout) :: report
       real(rk), allocatable :: held(:), outflow(:)
 
-      balance = sum(after%content - before%content)
-      if (mesh%fracture%n_cells > 0) then
-         held = after%aperture - after%void
-         balance = balance + sum(self%condensed%length*(held - (before%aperture - before%void) &
-                         + held*self%settings%compressibility*(after%pressure - before%pressure))) &
-                   - dt*sum(self%cells%injection)
-         if (self%joints%n > 0) balance = balance - dt*sum(self%joints%injection) &
-                                          + dt*self%joints%outflow(after%branch_flow)
-      end if
-      if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
-      if (self%drained) then
-         allocate (outflow(mesh%n_cells))
-         call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
-         balance = balance + dt*sum(outflow)
-         if (mesh%fracture%n_cells > 0) balance = balance &
-                                                  + dt*sum(self%condensed%length*after%leakoff)
-      end if
-   end subroutine mass_error
+      report%compressed = 0.0_rk
+      report%rock_outflow = 0.0_rk
+      associate (balance => report%mass_error)
+         balance = sum(after%content - before%content)
+         if (mesh%fracture%n_cells > 0) then
+            held = after%aperture - after%void
+            report%compressed = sum(self%condensed%length*held*self%settings%compressibility &
+                                    *(after%pressure - before%pressure))
+            held = held - (before%aperture - before%void)
+            balance = balance + sum(self%condensed%length*held) + report%compressed &
+                      - dt*sum(self%cells%injection)
+            if (self%joints%n > 0) balance = balance - dt*sum(self%joints%injection) &
+                                             + dt*self%joints%outflow(after%branch_flow)
+         end if
+         if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
+         if (self%drained) then
+            allocate (outflow(mesh%n_cells))
+            call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
+            report%rock_outflow = dt*sum(outflow)
+            if (mesh%fracture%n_cells > 0) then
+               ! Through the faces of fractures fluid stays inside.
+               report%rock_outflow = report%rock_outflow &
+                                     + dt*sum(self%condensed%length*after%leakoff)
+            end if
+            balance = balance + report%rock_outflow
+         end if
+      end associate
+   end subroutine book_fluid
 
    !> Pairs of fracture cells that exchange fluid along their fracture.
    subroutine find_connections(mesh, connections)

@@ -53,6 +53,8 @@ module coarse_state
       real(rk) :: error_bound = 0.0_rk  !< of the relative error of its solution [-]
       real(rk) :: stress_scale = 0.0_rk  !< [Pa]
       real(rk) :: mass_error = 0.0_rk  !< [m2]
+      real(rk) :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]
+      real(rk) :: rock_outflow = 0.0_rk  !< fluid out of the rock through the boundary [m2]
       character(len=:), allocatable :: reason  !< why it did not converge
    end type step_report_t
 

@@ -10,13 +10,14 @@ module output_columns
    private
 
    public :: always, with_error, with_fluid, with_fractures, with_growth
-   public :: with_joints, with_toughness
+   public :: with_joints, with_toughness, with_wells
    public :: without_fluid
    public :: applies, column_t, word_t
-   public :: event_columns, fracture_columns, history_columns, probe_columns, tip_columns
+   public :: event_columns, fracture_columns, history_columns, probe_columns
+   public :: slip_event_columns, tip_columns
    public :: fracture_fields, intersection_fields, matrix_fields
    public :: network_keys, record_keys
-   public :: contact_words, event_words, joint_words, status_words
+   public :: contact_words, end_words, event_words, joint_words, status_words
 
    ! Runs in which a column, key or field is written.
    character(len=*), parameter :: always = "always"
@@ -26,6 +27,7 @@ module output_columns
    character(len=*), parameter :: with_growth = "without a fluid, with growth"
    character(len=*), parameter :: with_toughness = "with tips and a toughness"
    character(len=*), parameter :: with_joints = "with a fluid and joints"
+   character(len=*), parameter :: with_wells = "with a fluid and wells"
    character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
 
    !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
@@ -82,7 +84,29 @@ module output_columns
                "'paris', where there is none"), &
       column_t("well_pressure_error_pa", "Pa", with_fluid, &
                "Estimated error of well_pressure_pa; -1 with law = 'paris'"), &
-      column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body")]
+      column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body"), &
+      column_t("injection_rate_m2_s", "m2/s", with_wells, "Rate of all wells in the step"), &
+      column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
+               "Rate of the wells over the rise of well_pressure_pa above the rock's pressure "// &
+               "around them at the start; 0 where nothing is injected or nothing has risen"), &
+      column_t("fracture_fluid_m2", "m2", with_fractures, &
+               "Fluid that the fractures have gained so far, by volume and by compression; "// &
+               "joints hold none of their own"), &
+      column_t("rock_fluid_m2", "m2", with_fluid, "Fluid that the rock has gained so far"), &
+      column_t("rock_outflow_m2", "m2", with_fluid, &
+              "Fluid that left the rock through sides with a pressure so far; negative: entered"), &
+      column_t("stimulated_length_m", "m", with_fractures, &
+               "Length of the faces that are new, or have slipped or opened since the start by "// &
+               "more than stimulated_jump of &output at any time"), &
+      column_t("connected_length_m", "m", with_wells, &
+               "Length of the fractures that fluid reaches from the wells along fractures and "// &
+               "through joints"), &
+      column_t("connected_stimulated_m", "m", with_wells, &
+               "Part of stimulated_length_m that is so connected"), &
+      column_t("n_clusters", "-", with_fractures, "Groups of fractures that hang together"), &
+      column_t("connections_per_branch", "-", with_fractures, &
+               "How many ends of a branch of the network are connected, in the mean: 0 to 2 "// &
+               "(Sanderson and Nixon 2015)")]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
@@ -158,6 +182,32 @@ module output_columns
       column_t("x_m", "m", always, "Where; empty where that has no meaning"), &
       column_t("y_m", "m", always, "Where; empty where that has no meaning"), &
       column_t("detail", "-", always, "A few words for people")]
+
+   type(column_t), parameter :: slip_event_columns(*) = [ &
+    column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of their ends"), &
+      column_t("time_s", "s", with_fluid, "When the patch began to slip"), &
+      column_t("end_s", "s", with_fluid, "When it had come to rest, or when the run ended"), &
+      column_t("fracture", "-", with_fluid, &
+               "Number of the fracture, from 1 in the scene's order"), &
+      column_t("x_m", "m", with_fluid, "Centre of the event, weighed with the slip"), &
+      column_t("y_m", "m", with_fluid, "Centre of the event, weighed with the slip"), &
+      column_t("s_from_m", "m", with_fluid, &
+               "Arc length, as in fractures.csv, from which the fracture has slipped"), &
+      column_t("s_to_m", "m", with_fluid, "Arc length to which it has slipped"), &
+      column_t("area_m2", "m2", with_fluid, &
+               "Length that has slipped times out_of_plane_length of &output"), &
+      column_t("mean_slip_m", "m", with_fluid, "Mean slip over that area, without its sign"), &
+      column_t("moment_nm", "N m", with_fluid, &
+               "Seismic moment: shear modulus times mean slip times area"), &
+      column_t("largest_moment_rate_nm_s", "N m/s", with_fluid, &
+               "Largest rate of moment, as the mean over a time step"), &
+      column_t("magnitude", "-", with_fluid, &
+               "Moment magnitude (log10(moment_nm) - 9.1)/1.5 (Hanks and Kanamori 1979)"), &
+      column_t("open_share", "-", with_fluid, &
+               "Share of the moment from cells that were open: no friction there"), &
+      column_t("sudden_share", "-", with_fluid, &
+               "Share of the moment from steps in which growth was unstable: it comes at once"), &
+      column_t("ended_by", "-", with_fluid, "What ended it")]
 
    type(column_t), parameter :: record_keys(*) = [ &
       column_t("scene", "-", always, "The scene's name"), &
@@ -297,6 +347,10 @@ module output_columns
       word_t("window", "stress intensity factors of a tip that would grow are not known well "// &
              "enough: its window becomes larger or finer, as `detail` says")]
 
+   type(word_t), parameter :: end_words(*) = [ &
+      word_t("stick", "nothing of it slips any more"), &
+      word_t("run", "the run ended while it still slipped")]
+
    type(word_t), parameter :: joint_words(*) = [ &
       word_t("boundary", "a fracture ends on the outer boundary"), &
       word_t("T", "a fracture ends on another one"), &
@@ -319,6 +373,10 @@ contains
       select case (column%runs)
       case (with_fluid)
          applies = scene%has_fluid()
+      case (with_fractures)
+         applies = scene%has_fluid() .and. scene%has_fractures()
+      case (with_wells)
+         applies = scene%has_fluid() .and. scene%has_wells()
       case (without_fluid)
          applies = .not. scene%has_fluid()
       case default

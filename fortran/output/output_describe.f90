@@ -1,9 +1,10 @@
 !> docs/output.md, written from the table of columns.
 module output_describe
-   use output_columns, only: column_t, contact_words, event_columns, event_words, &
+   use output_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
                              fracture_columns, fracture_fields, history_columns, &
                              intersection_fields, joint_words, matrix_fields, network_keys, &
-                             probe_columns, record_keys, status_words, tip_columns, word_t
+                             probe_columns, record_keys, slip_event_columns, status_words, &
+                             tip_columns, word_t
    implicit none(type, external)
    private
 
@@ -80,7 +81,10 @@ contains
                     "the run. With a fluid, a "// &
                     "step may hold several increments of growth, which the windows around the "// &
                     "tips follow: tips.csv has a row of each, and the next row of history.csv "// &
-                    "comes once the mesh of the body has followed.", history_columns)
+                    "comes once the mesh of the body has followed. Fluid adds up: what was "// &
+                    "injected and prefilled is, up to the mass error, fracture_fluid_m2, "// &
+                    "rock_fluid_m2, outflow_m2 and rock_outflow_m2, and what leaked off is "// &
+                    "rock_fluid_m2 and rock_outflow_m2.", history_columns)
       call describe(unit, "tips.csv", "With growth or stress intensity factors: a row per free "// &
                     "tip and state, or per tip and increment of growth. Where any tip grows, "// &
                     "the rows of all hold the values before that. A tip that "// &
@@ -96,6 +100,22 @@ contains
                     "probe.", probe_columns)
       call describe(unit, "events.csv", "A row per event.", event_columns)
       call describe_words(unit, "kind", event_words)
+      call describe(unit, "slip_events.csv", &
+                    "With a fluid and fractures: a row per slip event, once it is over."// &
+                    " In a step, a patch is a row of cells of one fracture that slip, "// &
+                    "in contact or open. Patches of steps that follow each other belong"// &
+                    " to one event if they have faces in common; events that meet are "// &
+                    "one from then on. An event is over when nothing of it slips any "// &
+                    "more. Events of less mean slip than `stimulated_jump` of `&output`"// &
+                    " are left out, and the slip of the initial equilibrium is none. "// &
+                    "The simulation is quasi-static: slip lasts as long as the "// &
+                    "injection drives it, and moment and magnitude are those of all of "// &
+                    "it, whether or not it would be heard; what comes at once, by "// &
+                    "unstable growth, is `sudden_share` of it. The moments add up to "// &
+                    "what seismic_moment_nm of history.csv has gained since the first "// &
+                    "state, times `out_of_plane_length`, but for the events left out.", &
+                    slip_event_columns)
+      call describe_words(unit, "ended_by", end_words)
       call describe(unit, "run.json", "How the run went. A dot in a name leads into an object.", &
                     record_keys)
       call describe_words(unit, "status", status_words)

@@ -8,7 +8,7 @@ module output_run
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t, probe_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t
    use output_files, only: write_text_file
    use output_network, only: network_record_t
    use output_place, only: place_t
@@ -49,6 +49,7 @@ module output_run
       procedure :: tip_row
       procedure :: probe_row
       procedure :: event_row
+      procedure :: slip_event_row
       procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
@@ -142,6 +143,14 @@ contains
 
       call self%tables%event_row(time, kind, detail, fracture, xy)
    end subroutine event_row
+
+   !> Add a slip event to slip_events.csv.
+   subroutine slip_event_row(self, event)
+      class(run_output_t), intent(inout) :: self
+      type(slip_event_t), intent(in) :: event
+
+      call self%tables%slip_event_row(event)
+   end subroutine slip_event_row
 
    !> Note the network for network.json; nothing happens if it has not changed.
    subroutine network_step(self, time, network, mesh)

@@ -6,10 +6,10 @@ module output_tables
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
    use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
-                             probe_columns, tip_columns
+                             probe_columns, slip_event_columns, tip_columns
    use output_series, only: series_t
    use results_fields, only: fracture_fields_t
-   use results_rows, only: history_row_t, probe_row_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
    private
@@ -26,6 +26,7 @@ module output_tables
       type(series_t) :: fractures
       type(series_t) :: probes
       type(series_t) :: events
+      type(series_t) :: slip_events
       type(text_t), allocatable, private :: probe_names(:)
    contains
       procedure :: open => open_tables
@@ -34,6 +35,7 @@ module output_tables
       procedure :: fracture_rows
       procedure :: probe_row
       procedure :: event_row
+      procedure :: slip_event_row
       procedure :: flush => flush_tables
    end type tables_t
 
@@ -50,9 +52,10 @@ contains
       if (scene%growth%enabled .or. scene%growth%intensities) then
          call open_table(self%tips, directory//"/tips.csv", tip_columns, scene)
       end if
-      if (allocated(scene%fractures)) then
-         if (size(scene%fractures) > 0) call open_table(self%fractures, &
-            & directory//"/fractures.csv", fracture_columns, scene)
+      if (scene%has_fractures()) then
+         call open_table(self%fractures, directory//"/fractures.csv", fracture_columns, scene)
+         if (scene%has_fluid()) call open_table(self%slip_events, &
+            & directory//"/slip_events.csv", slip_event_columns, scene)
       end if
       if (allocated(scene%probes)) then
          if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
@@ -88,6 +91,16 @@ contains
          call table%put("fracture_length_error_m", row%length_error)
          call table%put("well_pressure_error_pa", row%well_pressure_error)
          call table%put("strain_energy_j", row%strain_energy)
+         call table%put("injection_rate_m2_s", row%injection_rate)
+         call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("fracture_fluid_m2", row%fracture_fluid)
+         call table%put("rock_fluid_m2", row%rock_fluid)
+         call table%put("rock_outflow_m2", row%rock_outflow)
+         call table%put("stimulated_length_m", row%stimulated_length)
+         call table%put("connected_length_m", row%connected_length)
+         call table%put("connected_stimulated_m", row%connected_stimulated)
+         call table%put("n_clusters", row%n_clusters)
+         call table%put("connections_per_branch", row%connections_per_branch)
          call table%end_row()
       end associate
    end subroutine history_row
@@ -220,6 +233,33 @@ contains
       end associate
    end subroutine event_row
 
+   !> Add a slip event that is over.
+   subroutine slip_event_row(self, event)
+      class(tables_t), intent(inout) :: self
+      type(slip_event_t), intent(in) :: event
+
+      if (.not. self%slip_events%is_open()) return
+      associate (table => self%slip_events)
+         call table%put("event", event%number)
+         call table%put("time_s", event%time)
+         call table%put("end_s", event%end)
+         call table%put("fracture", event%fracture)
+         call table%put("x_m", event%xy(1))
+         call table%put("y_m", event%xy(2))
+         call table%put("s_from_m", event%s(1))
+         call table%put("s_to_m", event%s(2))
+         call table%put("area_m2", event%area)
+         call table%put("mean_slip_m", event%mean_slip)
+         call table%put("moment_nm", event%moment)
+         call table%put("largest_moment_rate_nm_s", event%largest_rate)
+         call table%put("magnitude", event%magnitude)
+         call table%put("open_share", event%open_share)
+         call table%put("sudden_share", event%sudden_share)
+         call table%put("ended_by", trim(merge("stick", "run  ", event%sticks)))
+         call table%end_row()
+      end associate
+   end subroutine slip_event_row
+
    !> Write all tables that have changed, each of them though another one fails; the first error.
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
@@ -230,6 +270,7 @@ contains
       call flush_one(self%fractures)
       call flush_one(self%probes)
       call flush_one(self%events)
+      call flush_one(self%slip_events)
 
    contains
 

@@ -2,7 +2,7 @@
 module results_chronicle
    use base_kinds, only: ik, rk
    use base_texts, only: add_text, text_t
-   use results_rows, only: tip_row_t
+   use results_rows, only: slip_event_t, tip_row_t
    implicit none(type, external)
    private
 
@@ -38,6 +38,7 @@ module results_chronicle
    type :: chronicle_t
       type(event_t), allocatable :: events(:)
       type(tip_row_t), allocatable :: tips(:)
+      type(slip_event_t), allocatable :: slip_events(:)  !< that are over
       type(text_t), allocatable :: remarks(:)  !< lines for the log
       logical :: has_new_network = .false.  !< the mesh has followed growth
    contains
@@ -55,6 +56,7 @@ contains
 
       self%events = [event_t ::]
       self%tips = [tip_row_t ::]
+      self%slip_events = [slip_event_t ::]
       self%remarks = [text_t ::]
       self%has_new_network = .false.
    end subroutine clear

@@ -4,7 +4,7 @@ module results_rows
    implicit none(type, external)
    private
 
-   public :: history_row_t, probe_row_t, tip_row_t
+   public :: history_row_t, probe_row_t, slip_event_t, tip_row_t
 
    !> An accepted time step, a row of history.csv.
    type :: history_row_t
@@ -30,7 +30,35 @@ module results_rows
       real(rk) :: length_error = 0.0_rk  !< estimated, of fracture_length; negative: is not [m]
       real(rk) :: well_pressure_error = 0.0_rk  !< estimated; negative: is not [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
+      ! Of a stimulation, with a fluid:
+      real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step [m2/s]
+      real(rk) :: injectivity = 0.0_rk  !< 0: none [m2/s/Pa]
+      real(rk) :: fracture_fluid = 0.0_rk  !< that the fractures have gained so far [m2]
+      real(rk) :: rock_fluid = 0.0_rk  !< that the rock has gained so far [m2]
+      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
+      real(rk) :: stimulated_length = 0.0_rk  !< [m]
+      real(rk) :: connected_length = 0.0_rk  !< with the wells [m]
+      real(rk) :: connected_stimulated = 0.0_rk  !< of both lengths [m]
+      integer(ik) :: n_clusters = 0  !< groups of fractures that hang together
+      real(rk) :: connections_per_branch = 0.0_rk  !< [-]
    end type history_row_t
+
+   !> A patch of a fracture that slipped, a row of slip_events.csv.
+   type :: slip_event_t
+      integer(ik) :: number = 0  !< from 1
+      real(rk) :: time = 0.0_rk, end = 0.0_rk  !< of its beginning and its end [s]
+      integer(ik) :: fracture = 0
+      real(rk) :: xy(2) = 0.0_rk  !< centre, weighed with the moment [m]
+      real(rk) :: s(2) = 0.0_rk  !< arc lengths of its ends [m]
+      real(rk) :: area = 0.0_rk  !< [m2]
+      real(rk) :: mean_slip = 0.0_rk  !< [m]
+      real(rk) :: moment = 0.0_rk  !< [N m]
+      real(rk) :: largest_rate = 0.0_rk  !< of the moment, mean over a step [N m/s]
+      real(rk) :: magnitude = 0.0_rk  !< [-]
+      real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
+      real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
+      logical :: sticks = .false.  !< it has ended before the run
+   end type slip_event_t
 
    !> A state at the probes, a row of probes.csv.
    type :: probe_row_t

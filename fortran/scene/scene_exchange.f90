@@ -247,6 +247,8 @@ contains
          call exchange(record, "vtu", scene%output%vtu, reading)
          call exchange(record, "interval", scene%output%interval, reading, nothing=0.0_rk)
          call exchange(record, "growth_states", scene%output%growth_states, reading)
+         call exchange(record, "stimulated_jump", scene%output%stimulated_jump, reading)
+         call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length, reading)
       case default  ! the repeated groups
          return
       end select

@@ -480,7 +480,15 @@ module scene_parameters
                   meaning="Time between written fields; 0: the regular step"), &
       parameter_t("output", "growth_states", kind_integer, range=at_least_zero, default="200", &
                   meaning="Most states of growth that VTU files are written of beside those of "// &
-                  "interval or of the load's steps")]
+                  "interval or of the load's steps"), &
+      parameter_t("output", "stimulated_jump", unit="m", default="1.0e-6", range=positive, &
+                  scenes=in_fluid, &
+                  meaning="Slip or opening since the start from which faces of fractures count "// &
+                  "as stimulated, and mean slip from which slip_events.csv has an event"), &
+      parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
+                  scenes=in_fluid, &
+                meaning="Assumed length of the fractures out of the plane, for area and moment "// &
+                  "in slip_events.csv; nothing else depends on it")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]

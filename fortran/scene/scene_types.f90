@@ -196,6 +196,9 @@ module scene_types
       logical :: vtu = .true.
       real(rk) :: interval = 0.0_rk  !< between written fields [s]
       integer(ik) :: growth_states = 200  !< of which VTU files are written beside these
+      !> slip or opening that stimulates faces, and mean slip that makes an event, at least [m]
+      real(rk) :: stimulated_jump = 1.0e-6_rk
+      real(rk) :: out_of_plane_length = 1.0_rk  !< of slip events [m]
    end type output_t
 
    !> The whole problem.
@@ -225,6 +228,8 @@ module scene_types
       type(output_t) :: output
    contains
       procedure :: has_fluid
+      procedure :: has_fractures
+      procedure :: has_wells
    end type scene_t
 
 contains
@@ -242,6 +247,20 @@ contains
 
       has_fluid = self%fluid%viscosity > 0.0_rk
    end function has_fluid
+
+   pure logical function has_fractures(self)
+      class(scene_t), intent(in) :: self
+
+      has_fractures = allocated(self%fractures)
+      if (has_fractures) has_fractures = size(self%fractures) > 0
+   end function has_fractures
+
+   pure logical function has_wells(self)
+      class(scene_t), intent(in) :: self
+
+      has_wells = allocated(self%injections)
+      if (has_wells) has_wells = size(self%injections) > 0
+   end function has_wells
 
    !> Along the polyline, as far as it has both coordinates [m].
    pure real(rk) function fracture_length(self) result(length)

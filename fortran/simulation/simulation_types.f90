@@ -5,7 +5,7 @@ module simulation_types
    use base_kinds, only: ik, rk
    use base_texts, only: text_t
    use base_timers, only: timers_t
-   use contact_states, only: state_open, state_slip
+   use contact_states, only: state_open, state_slip, state_stick
    use growth_front, only: front_t
    use growth_network, only: end_gain
    use growth_targets, only: target_boundary
@@ -18,6 +18,7 @@ module simulation_types
    use results_summary, only: summary_t
    use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
+   use simulation_slip, only: slip_catalogue_t
    use simulation_watch, only: watch_t
    implicit none(type, external)
    private
@@ -40,6 +41,7 @@ module simulation_types
       type(chronicle_t) :: chronicle  !< since the files were last written
       type(summary_t) :: summary  !< of the run so far
       type(watch_t) :: watch  !< over the limits of the run
+      type(slip_catalogue_t) :: catalogue  !< slip events; with a fluid
       character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
       logical :: owes_state = .false.  !< the scene is over after one more state
       logical :: shows_growth = .false.  !< the present state has to do with an increment of growth
@@ -59,6 +61,8 @@ module simulation_types
       procedure :: set_scene
       procedure :: is_over
       procedure :: note_contact
+      procedure :: note_slip
+      procedure :: end_slip
       procedure :: note_tips
       procedure :: note_growth
       procedure :: note_mesh
@@ -192,6 +196,41 @@ contains
          end if
       end do
    end subroutine note_contact
+
+   !> Note what has slipped in the step of length dt that led to the present state.
+   pure subroutine note_slip(self, dt, fracture, potency, state, is_sudden)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: potency(:)  !< (fracture cells) slip of the step times length [m2]
+      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_states
+      logical, intent(in) :: is_sudden  !< growth was unstable in the step
+
+      call self%catalogue%follow(self%time(), dt, fracture, potency, &
+                                 state /= state_stick .and. potency > 0.0_rk, &
+                                 state == state_open, is_sudden)
+      call list_events(self)
+   end subroutine note_slip
+
+   !> The run is over, and with it the slip that still went on.
+   pure subroutine end_slip(self)
+      class(simulation_t), intent(inout) :: self
+
+      if (.not. allocated(self%catalogue%news)) return
+      call self%catalogue%end_all()
+      call list_events(self)
+   end subroutine end_slip
+
+   !> Slip events that are over go to the chronicle.
+   pure subroutine list_events(self)
+      class(simulation_t), intent(inout) :: self
+
+      associate (news => self%catalogue%news)
+         if (size(news) == 0) return
+         self%chronicle%slip_events = [self%chronicle%slip_events, news]
+         self%catalogue%news = news(:0)
+      end associate
+   end subroutine list_events
 
    !> Note all tips. Where any tip has just grown at this time, all are as before that, unless the
    !! growth belongs to the step that led to the state. One that has joined something, or been

@@ -19,8 +19,8 @@ module twolevel_results
    private
 
    public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
-   public :: fracture_flow, probes_of_levels
-   public :: slip_moment, snapshot_of_levels
+   public :: fracture_flow, fracture_volume, probes_of_levels
+   public :: slip_potency, snapshot_of_levels
 
 contains
 
@@ -63,9 +63,7 @@ contains
             fracture = simulation%mesh%fracture
             call end_at_tips(simulation, fracture)
             row%n_intersections = count(is_intersection(fracture))
-            row%fracture_volume = sum((state%aperture - state%void &
-                                       - simulation%model%cells%roughness) &
-                                      *simulation%model%condensed%length)
+            row%fracture_volume = fracture_volume(simulation)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
             states = cell_states(simulation)
@@ -79,18 +77,26 @@ contains
       end associate
    end function history_of_levels
 
-   !> Seismic moment of the slip in the last step, per metre of thickness [N m].
-   pure real(rk) function slip_moment(simulation) result(moment)
+   !> Fluid in the fractures but for its compression; roughness holds none [m2].
+   pure real(rk) function fracture_volume(simulation) result(volume)
       class(two_levels_t), intent(in) :: simulation
-      integer(ik) :: i
 
-      moment = 0.0_rk
-      do i = 1, simulation%mesh%fracture%n_cells
-         moment = moment + simulation%model%rock%shear*0.5_rk &
-                  *simulation%model%condensed%length(i) &
-                  *sum(abs(simulation%state%jump(2, :, i) - simulation%state%slip_before(:, i)))
-      end do
-   end function slip_moment
+      associate (state => simulation%state, s => simulation%mesh%fracture%cell_s)
+         volume = sum((state%aperture - state%void - simulation%model%cells%roughness) &
+                      *(s(2, :) - s(1, :)))
+      end associate
+   end function fracture_volume
+
+   !> Slip of each fracture cell in the last step, without its sign, times its length [m2].
+   pure function slip_potency(simulation) result(potency)
+      class(two_levels_t), intent(in) :: simulation
+      real(rk) :: potency(simulation%mesh%fracture%n_cells)
+
+      associate (state => simulation%state)
+         potency = 0.5_rk*simulation%model%condensed%length &
+                   *sum(abs(state%jump(2, :, :) - state%slip_before), dim=1)
+      end associate
+   end function slip_potency
 
    !> Displacement, stress and pressure at the probes.
    subroutine probes_of_levels(simulation, row, error)

@@ -6,7 +6,7 @@ module twolevel_simulation
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: state_t, step_report_t
-   use mesh_types, only: mesh_t, network_t
+   use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_chronicle, only: event_step_cut, event_unstable
    use results_rows, only: history_row_t, probe_row_t
    use scene_types, only: scene_t
@@ -17,9 +17,10 @@ module twolevel_simulation
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, notes_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
-                               probes_of_levels, slip_moment, snapshot_of_levels
+                               probes_of_levels, slip_potency, snapshot_of_levels
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_stimulation, only: stimulation_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_wells, only: next_switch
    implicit none(type, external)
@@ -38,10 +39,12 @@ module twolevel_simulation
       logical :: is_after_switch = .false.  !< of a well: the last step
       logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
+      logical :: is_unstable = .false.  !< tips grew without equilibrium in the last step
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
       type(notes_t) :: notes  !< of growth in equilibrium
+      type(stimulation_t) :: stimulation
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
    contains
@@ -69,6 +72,8 @@ contains
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
+      call self%catalogue%begin(self%model%rock%shear, scene%output%out_of_plane_length, &
+                                scene%output%stimulated_jump)
       call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
@@ -113,10 +118,11 @@ contains
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
       else
+         if (is_first) call self%stimulation%begin(self)
          call take_step(self, timers, error)
       end if
       if (allocated(error)) return
-      self%seismic_moment = self%seismic_moment + slip_moment(self)
+      call book_change(self)
       self%mass_error = self%mass_error + self%report%mass_error
       row = self%history()
       call watch_levels(self, self%report, self%mass_error, row%mass_error_relative)
@@ -135,6 +141,27 @@ contains
       end if
       call note_state(self, row%mass_error_relative)
    end subroutine next_state
+
+   !> What the last step adds to the stimulation and to the slip; that of the initial state is no
+   !! event.
+   subroutine book_change(self)
+      class(twolevel_simulation_t), intent(inout) :: self
+      type(fracture_mesh_t) :: fracture
+      real(rk), allocatable :: potency(:)
+
+      if (self%is_initial) then
+         call self%stimulation%begin(self)
+      else
+         call self%stimulation%follow(self, self%report%compressed, self%report%rock_outflow)
+      end if
+      fracture = self%mesh%fracture
+      if (fracture%n_cells == 0) return
+      potency = slip_potency(self)
+      self%seismic_moment = self%seismic_moment + self%model%rock%shear*sum(potency)
+      if (self%is_initial) return
+      call end_at_tips(self, fracture)
+      call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)
+   end subroutine book_change
 
    !> The state before the first step.
    subroutine find_initial_state(self, timers, error)
@@ -249,6 +276,7 @@ contains
       self%ends_at_switch = next_switch(self%scene, self%before%time) &
                             <= self%state%time*(1.0_rk + same_time)
       call self%book_step(self%dt)
+      self%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (is_equilibrium(self)) then
          call accept_equilibrium(self)
@@ -414,6 +442,7 @@ contains
       row%dt = merge(0.0_rk, self%dt, self%is_initial)
       row%newton_iterations = self%report%iterations
       row%seismic_moment = self%seismic_moment
+      call self%stimulation%describe(self, row)
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self)) return

@@ -9,11 +9,13 @@ from typing import NoReturn
 
 from wingcrack_post.durations import parse_times
 
-GROUPS = ("network", "maps", "fractures", "tips", "probes", "view")
+GROUPS = ("story", "network", "maps", "fractures", "tips", "probes", "view")
 FORMATS = ("png", "pdf")
 
 _EPILOG = """\
 groups of figures (--only), written to DIR/figures:
+  story      an injection on one page: the network with its slip events, well pressure,
+             injectivity, where the fluid is, lengths, seismic moment
   network    the fractures at the start and what has grown, coloured by its order
   maps       pore pressure, or without a fluid stress, in up to six states, with the contact states
   fractures  opening, slip, aperture, pressure and tractions along each fracture

@@ -18,6 +18,7 @@ from wingcrack_post.network import network_figure
 from wingcrack_post.probes import probe_histories
 from wingcrack_post.profiles import fracture_profiles
 from wingcrack_post.read import Run
+from wingcrack_post.story import story
 from wingcrack_post.stress import stress_maps
 from wingcrack_post.view import draw_view
 
@@ -61,6 +62,7 @@ def _one(
 
 
 _FIGURES = (
+    _Figures("story", "story", _one(story)),
     _Figures("network", "network", _one(network_figure)),
     _Figures("maps", "pressure_maps", _one(pressure_maps, timed=True)),
     _Figures("maps", "stress_maps", _one(stress_maps, timed=True)),

@@ -6,18 +6,21 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.growth import Growth, moment_of, read_growth
 from wingcrack_post.read import Run
+from wingcrack_post.regions import draw_regions
 from wingcrack_post.scene import Scene
 from wingcrack_post.table import FloatArray, Table
 from wingcrack_post.units import Unit, length_unit, time_unit
@@ -47,7 +50,7 @@ def network_figure(run: Run) -> Figure:
     growths = read_growth(run.network)
     if not growths:
         raise AbsentError("the scene has no fractures")
-    box = _box(growths, run.scene)
+    box = network_box(growths, run.scene)
     ratio = (box[3] - box[2]) / (box[1] - box[0])
     beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
     width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
@@ -80,12 +83,15 @@ def draw_network(
     scene : Scene or None
         For the outline of the body.
     """
-    box = _box(growths, scene)
+    box = network_box(growths, scene)
     # that of the body, as in all other maps, not of the part in view
     unit = length_unit(box if scene is None or scene.outline is None else scene.outline)
     if scene is not None and scene.outline is not None:
         x, y = unit.of(scene.outline).T
         axes.plot(x, y, color="#888888", linewidth=0.8, zorder=1)
+    regions: list[Patch] = []
+    if scene is not None:
+        regions = draw_regions(axes, scene.regions, scene.permeability_m2, scene.outline, unit)
     order = _order(growths)
     norm = Normalize(1, max([2, *order.values()]))
     colours = style.time_colours()
@@ -117,7 +123,7 @@ def draw_network(
     axes.locator_params(nbins=5)
     if order:
         _colour_bar(axes, norm, order, growths, network, history)
-    _legend(axes, has_growth=bool(order), has_joints=bool(network.get("joints")))
+    _legend(axes, regions, has_growth=bool(order), has_joints=bool(network.get("joints")))
 
 
 def _order(growths: Sequence[Growth]) -> dict[tuple[int, int, int], int]:
@@ -186,8 +192,8 @@ def _constant_from(values: Mapping[int, float]) -> str:
     return f", constant from {changed[-1] + 1} on"
 
 
-def _legend(axes: Axes, *, has_growth: bool, has_joints: bool) -> None:
-    handles = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
+def _legend(axes: Axes, regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> None:
+    handles: list[Artist] = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
     if has_growth:
         colour = style.time_colours()(0.5)
         handles.append(Line2D([], [], color=colour, linewidth=THIN, label="grown"))
@@ -196,10 +202,13 @@ def _legend(axes: Axes, *, has_growth: bool, has_joints: bool) -> None:
         handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))
     figure = axes.get_figure()
     assert isinstance(figure, Figure)
-    style.outside_legend(figure, handles, 3)
+    # a region's entry is as long as two others
+    style.outside_legend(figure, [*handles, *regions], 2 if regions else 3)
 
 
-def _box(growths: Sequence[Growth], scene: Scene | None) -> tuple[float, float, float, float]:
+def network_box(
+    growths: Sequence[Growth], scene: Scene | None
+) -> tuple[float, float, float, float]:
     """What is shown: the body, or a square around a network that is small in it."""
     points = np.concatenate([np.concatenate((g.initial, g.start, g.end)) for g in growths])
     lower, upper = points.min(axis=0), points.max(axis=0)

@@ -25,7 +25,7 @@ class Run:
     directory : Path
     history : Table
         A row per accepted step.
-    tips, fractures, probes, events : Table or None
+    tips, fractures, probes, events, slip_events : Table or None
     record, network : dict or None
         The contents of ``run.json`` and ``network.json``.
     scene : Scene or None
@@ -39,6 +39,7 @@ class Run:
     fractures: Table | None
     probes: Table | None
     events: Table | None
+    slip_events: Table | None
     record: dict[str, Any] | None
     network: dict[str, Any] | None
     scene: Scene | None
@@ -95,6 +96,7 @@ def read_run(directory: str | Path) -> Run:
         fractures=_optional_table(root / "fractures.csv"),
         probes=_optional_table(root / "probes.csv"),
         events=_optional_table(root / "events.csv"),
+        slip_events=_optional_table(root / "slip_events.csv"),
         record=_optional_json(root / "run.json"),
         network=_optional_json(root / "network.json"),
         scene=read_scene(root / "scene.nml"),

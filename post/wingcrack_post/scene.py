@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.regions import Region, read_region
 from wingcrack_post.table import FloatArray
 
 # quoted text (a doubled quote stands for one), comment, group, slash, equal sign, plain word
@@ -26,10 +27,15 @@ class FractureLaw:
 
 @dataclass(frozen=True)
 class Well:
-    """When one injection starts and, unless it lasts to the end of the run, when it stops [s]."""
+    """When one injection starts and, unless it lasts to the end of the run, when it stops [s].
+
+    `place_m` is where it feeds its fracture [m]; None: along all of it.
+    """
 
     start_s: float
     stop_s: float | None
+    fracture: str = ""
+    place_m: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -56,6 +62,12 @@ class Scene:
     load_pa, load_name : float or None, str
         Stress that stands for the load, at load factor 1 [Pa], and how it is called; None where
         the scene has no load of a kind for which there is one.
+    regions : tuple of Region
+        Parts of the rock with a permeability of their own, in the order in which they count.
+    permeability_m2 : tuple of float or None
+        Components xx and yy of the rock elsewhere [m2].
+    breadth_m : float
+        Assumed length of the fractures out of the plane [m].
     """
 
     name: str
@@ -69,6 +81,9 @@ class Scene:
     wells: tuple[Well, ...] = ()
     load_pa: float | None = None
     load_name: str = ""
+    regions: tuple[Region, ...] = ()
+    permeability_m2: tuple[float, float] | None = None
+    breadth_m: float = 1.0
 
     def fracture(self, label: str) -> FractureLaw | None:
         """The law of a fracture known by its name or by its number from 1."""
@@ -128,24 +143,69 @@ def read_scene(path: Path) -> Scene | None:
         Well(
             _number(path, group, values, "start") or 0.0,
             _number(path, group, values, "end"),
+            _text(values, "fracture"),
+            _place(path, values),
         )
         for group, values in groups
         if group == "injection"
     ]
     load, load_name = _load(path, groups)
+    outline = _outline(path, first["domain"]) if "domain" in first else None
+    along_x, along_y = (
+        number("material", key) or number("material", "permeability")
+        for key in ("permeability_xx", "permeability_yy")
+    )
     return Scene(
         name=_text(first.get("scene", {}), "name"),
         title=_text(first.get("scene", {}), "title"),
         toughness_pa_sqrtm=number("material", "toughness"),
         fractures=tuple(laws),
-        outline=_outline(path, first["domain"]) if "domain" in first else None,
+        outline=outline,
         young_pa=number("material", "young"),
         step_s=number("time", "step"),
         chosen_steps=(number("time", "tolerance") or 0.0) > 0.0,
         wells=tuple(wells),
         load_pa=load,
         load_name=load_name,
+        regions=_regions(path, groups, outline),
+        permeability_m2=None if along_x is None or along_y is None else (along_x, along_y),
+        breadth_m=number("output", "out_of_plane_length") or 1.0,
     )
+
+
+def _place(path: Path, values: dict[str, list[str]]) -> tuple[float, float] | None:
+    """Where a well stands [m]; None along a whole fracture."""
+    x, y = (_number(path, "injection", values, key) for key in ("x", "y"))
+    return None if x is None or y is None else (x, y)
+
+
+def _regions(
+    path: Path, groups: list[tuple[str, dict[str, list[str]]]], outline: FloatArray | None
+) -> tuple[Region, ...]:
+    """Regions with an outline, in the order of the file."""
+    if outline is None:
+        return ()
+    found = []
+    for group, values in groups:
+        if group != "region":
+            continue
+        numbers = {
+            key: [
+                number for raw in raws if (number := _one_number(path, group, raw, key)) is not None
+            ]
+            for key, raws in values.items()
+            if key not in ("name", "shape")
+        }
+        region = read_region(
+            _text(values, "name"), _text(values, "shape") or "polygon", numbers, outline
+        )
+        if region is not None:
+            found.append(region)
+    return tuple(found)
+
+
+def _one_number(path: Path, group: str, raw: str, key: str) -> float | None:
+    return _number(path, group, {key: [raw]}, key)
 
 
 def _load(path: Path, groups: list[tuple[str, dict[str, list[str]]]]) -> tuple[float | None, str]:

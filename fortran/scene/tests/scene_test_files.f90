@@ -114,7 +114,9 @@ contains
       if (.not. same_loading(a, b)) return
       if (.not. same_levels(a, b)) return
       if (a%output%vtu .neqv. b%output%vtu) return
-      if (.not. same(a%output%interval, b%output%interval)) return
+      if (.not. same([a%output%interval, a%output%stimulated_jump, a%output%out_of_plane_length], &
+                     [b%output%interval, b%output%stimulated_jump, &
+                      b%output%out_of_plane_length])) return
       same_scene = .true.
    end function same_scene
 

@@ -102,6 +102,10 @@ contains
                   ":12: &fracture: friction is -0.5 but must be a finite number at least 0.0"//doc)
       call refuse(12, "  friction=0.5 dilation_deg=46", ":12: &fracture: dilation_deg is 46 "// &
                   "but must be a finite number at least 0.0 and at most 45.0 [degree]"//doc)
+      call refuse(26, "&output stimulated_jump=0.0 /", ":26: &output: stimulated_jump is 0.0 "// &
+                  "but must be a finite number greater than 0.0 [m]"//doc)
+      call refuse(26, "&output out_of_plane_length=-1.0 /", ":26: &output: out_of_plane_length "// &
+                  "is -1.0 but must be a finite number greater than 0.0 [m]"//doc)
       call refuse(5, "  biot=1.1 porosity=0.01", ":5: &material: biot is 1.1 but must be a "// &
                   "finite number at least 0.0 and at most 1.0"//doc)
       call refuse(23, "  newton_max=30.5 /", ":23: &coarse: newton_max is 30.5 but must be a "// &

@@ -46,7 +46,9 @@ contains
                             "&fine window=.4 size_ratio=1 rosette_sectors=16 "// &
                             "face_condition='jump' /", &
                             "&initial fracture_pressure='undrained', pressure=1.5e6 /", &
-                            "&output vtu=.false. interval=5 /", "&probe name='p' x=1 y=.5/ "// &
+                            "&output vtu=.false. interval=5 out_of_plane_length=2 "// &
+                            "stimulated_jump=1e-7 /", &
+                            "&probe name='p' x=1 y=.5/ "// &
                             "&probe name='q' x=0 y=0 /", "&scene title='it''s a test' /"])
       call read_scene(path, scene, error)
       call checks%no_error(error, "every feature of the syntax")
@@ -113,7 +115,8 @@ contains
       call exactly([scene%probes(1)%x, scene%probes(1)%y], [1.0_rk, 0.5_rk], &
                    "a probe in the corner")
       call checks%is_true(.not. scene%output%vtu, "no VTU files")
-      call exactly([scene%output%interval], [5.0_rk], "output interval")
+      call exactly([scene%output%interval, scene%output%out_of_plane_length, &
+                    scene%output%stimulated_jump], [5.0_rk, 2.0_rk, 1.0e-7_rk], "output")
    end subroutine check_syntax
 
    !> The defaults of the table are those of the types.

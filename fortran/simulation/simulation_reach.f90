@@ -1,0 +1,81 @@
+!> What hangs together in a network of fractures: the graph of its cells, which meet in its points.
+!!
+!! How well a network is connected is told by the ends of the branches between its points. B
+!! branches have N free ends and, over all points where d >= 3 of them meet, sum(d) connected ones:
+!! 2 B = N + sum(d). The mean number of connected ends of a branch,
+!!   C_B = sum(d)/B,
+!! goes from 0, fractures by themselves, to 2 (Sanderson and Nixon 2015, The use of topology in
+!! fracture network characterization, J. Struct. Geol. 72: C_B, there with d = 3 at Y and 4 at X).
+module simulation_reach
+   use base_kinds, only: ik, rk
+   use mesh_types, only: fracture_mesh_t, point_tip
+   implicit none(type, external)
+   private
+
+   public :: cluster_count, connections_per_branch, reached_cells
+
+contains
+
+   !> The cells that can be reached from some of them through cells that let pass.
+   pure function reached_cells(fracture, starts, passes) result(reached)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: starts(:)  !< (cells) those of them that let pass
+      logical, intent(in) :: passes(:)  !< (cells)
+      logical :: reached(fracture%n_cells)
+      integer(ik) :: cell, i, k, n, next, queue(fracture%n_cells)
+
+      reached = starts .and. passes
+      n = count(reached)
+      queue(:n) = pack([(cell, cell=1, fracture%n_cells)], reached)
+      i = 0
+      do while (i < n)
+         i = i + 1
+         do k = 1, 2
+            associate (point => fracture%cell_points(k, queue(i)))
+               do cell = 1, fracture%point_cells%length(point)
+                  next = fracture%point_cells%at(point, cell)
+                  if (reached(next) .or. .not. passes(next)) cycle
+                  reached(next) = .true.
+                  n = n + 1
+                  queue(n) = next
+               end do
+            end associate
+         end do
+      end do
+   end function reached_cells
+
+   !> How many groups of fractures there are that hang together.
+   pure integer(ik) function cluster_count(fracture) result(n)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical :: all_pass(fracture%n_cells), seen(fracture%n_cells), starts(fracture%n_cells)
+      integer(ik) :: cell
+
+      n = 0
+      seen = .false.
+      all_pass = .true.
+      do cell = 1, fracture%n_cells
+         if (seen(cell)) cycle
+         n = n + 1
+         starts = .false.
+         starts(cell) = .true.
+         seen = seen .or. reached_cells(fracture, starts, all_pass)
+      end do
+   end function cluster_count
+
+   !> Mean number of connected ends of a branch, C_B; 0 without branches [-].
+   pure real(rk) function connections_per_branch(fracture) result(connections)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik) :: connected, free, point
+
+      connected = 0
+      free = 0
+      do point = 1, fracture%n_points
+         if (fracture%point_kind(point) == point_tip) free = free + 1
+         associate (n => fracture%point_cells%length(point))
+            if (n >= 3) connected = connected + n
+         end associate
+      end do
+      connections = 2.0_rk*real(connected, rk)/real(max(connected + free, 1_ik), rk)
+   end function connections_per_branch
+
+end module simulation_reach

@@ -1,0 +1,194 @@
+!> What an injection has made of the fractures: where its fluid is, which faces have moved since the
+!! start, and what hangs together with the wells.
+!!
+!! Faces are stimulated that have slipped or opened since the start by more than a length that the
+!! scene gives (`stimulated_jump`), at any time, and all that are new. Connected are the fractures
+!! that fluid reaches from the wells without leaving them: each conducts at least with its residual
+!! aperture, and a joint lets pass once the crack has come to it. Both are known to a cell.
+!!
+!! Injectivity is the rate of the wells over the rise of their mean pressure above that of the rock
+!! around them at the start, as the injectivity index of a well has it; per metre of thickness.
+module twolevel_stimulation
+   use base_kinds, only: ik, rk
+   use growth_network, only: fracture_length, total_length
+   use mesh_types, only: fracture_mesh_t
+   use results_rows, only: history_row_t
+   use simulation_reach, only: cluster_count, connections_per_branch, reached_cells
+   use simulation_stretches, only: stretches_t
+   use twolevel_results, only: end_at_tips, fracture_volume
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: stimulation_t
+
+   !> Since the start.
+   type :: stimulation_t
+      type(stretches_t), private :: faces  !< that have moved, of the scene's fractures
+      type(fracture_mesh_t), private :: fracture  !< at the start
+      real(rk), allocatable, private :: jump(:, :)  !< (2, cells) then, normal and tangential [m]
+      real(rk), private :: rock_pressure = 0.0_rk  !< around the wells at the start [Pa]
+      real(rk), private :: fracture_volume = 0.0_rk  !< at the start [m2]
+      real(rk), private :: content = 0.0_rk  !< of the rock at the start [m2]
+      real(rk), private :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]
+      real(rk), private :: rock_outflow = 0.0_rk  !< out of the rock [m2]
+   contains
+      procedure :: begin
+      procedure :: follow
+      procedure :: describe
+   end type stimulation_t
+
+contains
+
+   !> The present state is that before the injection.
+   subroutine begin(self, levels)
+      class(stimulation_t), intent(out) :: self
+      class(two_levels_t), intent(in) :: levels
+
+      call self%faces%clear()
+      self%fracture = levels%mesh%fracture
+      self%content = sum(levels%state%content)
+      if (self%fracture%n_cells == 0) return
+      self%jump = mean_jump(levels)
+      self%fracture_volume = fracture_volume(levels)
+      self%rock_pressure = pressure_around_wells(levels)
+   end subroutine begin
+
+   !> A step that has been accepted.
+   subroutine follow(self, levels, compressed, rock_outflow)
+      class(stimulation_t), intent(inout) :: self
+      class(two_levels_t), intent(in) :: levels
+      real(rk), intent(in) :: compressed, rock_outflow  !< fluid of the step [m2]
+      real(rk), allocatable :: jump(:, :)
+      real(rk) :: whole
+      integer(ik) :: i
+
+      self%compressed = self%compressed + compressed
+      self%rock_outflow = self%rock_outflow + rock_outflow
+      associate (fracture => levels%mesh%fracture)
+         if (fracture%n_cells == 0) return
+         jump = mean_jump(levels)
+         do i = 1, fracture%n_cells
+            associate (f => fracture%cell_fracture(i), s => fracture%cell_s(:, i))
+               if (.not. has_moved(self, levels, f, s, jump(:, i))) cycle
+               whole = fracture_length(levels%start, f)
+               call self%faces%add(f, [max(s(1), 0.0_rk), min(s(2), whole)])
+            end associate
+         end do
+      end associate
+   end subroutine follow
+
+   !> A cell's faces have moved since the start by as much as counts.
+   pure logical function has_moved(self, levels, f, s, jump)
+      type(stimulation_t), intent(in) :: self
+      class(two_levels_t), intent(in) :: levels
+      integer(ik), intent(in) :: f  !< fracture
+      real(rk), intent(in) :: s(2)  !< arc lengths of the cell's ends [m]
+      real(rk), intent(in) :: jump(2)  !< now [m]
+      integer(ik) :: i
+
+      has_moved = .false.
+      associate (then => self%fracture, middle => 0.5_rk*sum(s))
+         do i = 1, then%n_cells
+            if (then%cell_fracture(i) /= f) cycle
+            if (middle < then%cell_s(1, i) .or. middle > then%cell_s(2, i)) cycle
+            has_moved = max(abs(jump(2) - self%jump(2, i)), jump(1) - self%jump(1, i)) &
+                        > levels%scene%output%stimulated_jump
+            return
+         end do
+      end associate
+   end function has_moved
+
+   !> Into a row of history.csv.
+   pure subroutine describe(self, levels, row)
+      class(stimulation_t), intent(in) :: self
+      class(two_levels_t), intent(in) :: levels
+      type(history_row_t), intent(inout) :: row
+      type(fracture_mesh_t) :: fracture
+      real(rk), allocatable :: length(:)
+      logical, allocatable :: all_pass(:), is_connected(:), is_stimulated(:)
+      real(rk) :: rise
+      integer(ik) :: i
+
+      row%rock_fluid = sum(levels%state%content) - self%content
+      row%rock_outflow = self%rock_outflow
+      fracture = levels%mesh%fracture
+      if (fracture%n_cells == 0) return
+      row%fracture_fluid = row%fracture_volume - self%fracture_volume + self%compressed
+      call end_at_tips(levels, fracture)
+      row%n_clusters = cluster_count(fracture)
+      row%connections_per_branch = connections_per_branch(fracture)
+      row%stimulated_length = self%faces%length() + total_length(levels%network) &
+                              - total_length(levels%start)
+
+      if (size(levels%scene%injections) == 0) return
+      row%injection_rate = sum(levels%model%cells%injection)
+      if (levels%model%joints%n > 0) then
+         row%injection_rate = row%injection_rate + sum(levels%model%joints%injection)
+      end if
+      rise = row%well_pressure - self%rock_pressure
+      if (rise > 0.0_rk) row%injectivity = row%injection_rate/rise
+      length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+      is_stimulated = [(counts(self, levels, fracture%cell_fracture(i), &
+                               0.5_rk*sum(levels%mesh%fracture%cell_s(:, i))), &
+                        i=1, fracture%n_cells)]
+      allocate (all_pass(fracture%n_cells), source=.true.)
+      is_connected = reached_cells(fracture, fed_cells(levels, fracture), all_pass)
+      row%connected_length = sum(length, mask=is_connected)
+      row%connected_stimulated = sum(length, mask=is_connected .and. is_stimulated)
+   end subroutine describe
+
+   !> A place of a fracture is stimulated: it has moved, or is new.
+   pure logical function counts(self, levels, f, s)
+      type(stimulation_t), intent(in) :: self
+      class(two_levels_t), intent(in) :: levels
+      integer(ik), intent(in) :: f  !< fracture
+      real(rk), intent(in) :: s  !< arc length [m]
+
+      counts = s < 0.0_rk .or. s > fracture_length(levels%start, f) .or. self%faces%covers(f, s)
+   end function counts
+
+   !> The cells that wells feed, or that reach joints that these feed.
+   pure function fed_cells(levels, fracture) result(is_fed)
+      class(two_levels_t), intent(in) :: levels
+      type(fracture_mesh_t), intent(in) :: fracture  !< cells end where tips are
+      logical, allocatable :: is_fed(:)
+      integer(ik) :: j
+
+      is_fed = sum(levels%share, dim=2) > 0.0_rk
+      do j = 1, levels%model%joints%n
+         if (.not. sum(levels%joint_share(j, :)) > 0.0_rk) cycle
+         is_fed(fracture%point_cells%of(levels%model%joints%point(j))) = .true.
+      end do
+   end function fed_cells
+
+   !> Mean jump of each cell: normal, tangential [m].
+   pure function mean_jump(levels) result(jump)
+      class(two_levels_t), intent(in) :: levels
+      real(rk) :: jump(2, levels%mesh%fracture%n_cells)
+
+      jump = 0.5_rk*sum(levels%state%jump, dim=2)
+   end function mean_jump
+
+   !> Mean pore pressure of the triangles along the fracture cells that wells feed [Pa].
+   pure real(rk) function pressure_around_wells(levels) result(pressure)
+      class(two_levels_t), intent(in) :: levels
+      logical :: is_fed(levels%mesh%fracture%n_cells)
+      integer(ik) :: i, side
+
+      pressure = 0.0_rk
+      is_fed = fed_cells(levels, levels%mesh%fracture)
+      associate (mesh => levels%mesh)
+         do i = 1, mesh%fracture%n_cells
+            if (.not. is_fed(i)) cycle
+            do side = 1, 2
+               associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(side, i)))
+                  pressure = pressure + 0.5_rk*levels%state%unknowns(3, cell)
+               end associate
+            end do
+         end do
+      end associate
+      pressure = pressure/max(count(is_fed), 1)
+   end function pressure_around_wells
+
+end module twolevel_stimulation
