@@ -13,6 +13,7 @@ module twolevel_doubt
    use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
    use twolevel_window, only: window_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
@@ -32,10 +33,10 @@ contains
 
       any_improved = .false.
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), window => self%windows%window(i), &
+         associate (tip => self%tip(i), w => self%windows%window_of(i), &
                     toughness => self%rules%toughness)
             if (.not. doubtful(tip, toughness)) cycle
-            call improve_window(self, window, what)
+            call improve_window(self, self%windows%window(w), self%windows%tip(i), what)
             if (.not. allocated(what)) then
                call stop_on_doubt(self%watch, tip, toughness, &
                                   self%scene%fractures(tip%fracture)%name, &
@@ -43,10 +44,8 @@ contains
                call self%heed_limits(error)
                return
             end if
-            self%windows%built(i) = .false.
-            window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
-            window%uncertain = 0.0_rk
-            window%passing = 0.0_rk
+            self%windows%built(w) = .false.
+            call self%windows%tip(i)%forget_coarse_error()
             any_improved = .true.
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
@@ -56,17 +55,18 @@ contains
    end subroutine improve_windows
 
    !> Smaller elements or a larger window, next time it is meshed; in words, if that is possible.
-   subroutine improve_window(self, window, what)
+   subroutine improve_window(self, window, tip, what)
       class(two_levels_t), intent(in) :: self
       type(window_t), intent(inout) :: window
+      type(window_tip_t), intent(inout) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
 
-      if (max(window%found%k1_error, window%found%k2_error) >= maxval(window%uncertain)) then
-         if (.not. window%can_be_finer()) return
-         window%times_finer = window%times_finer + 1
+      if (max(tip%found%k1_error, tip%found%k2_error) >= maxval(tip%uncertain)) then
+         if (.not. tip%can_be_finer()) return
+         tip%times_finer = tip%times_finer + 1
          what = "smaller elements at the tip"
-         if (window%times_finer > 1) then
-            what = "elements of "//brief_text(window%element_size(self%scene), 3)//" m"
+         if (tip%times_finer > 1) then
+            what = "elements of "//brief_text(tip%element_size(self%scene), 3)//" m"
          end if
       else
          if (.not. window%can_be_larger(self%scene)) return

@@ -112,7 +112,7 @@ contains
                        self%joint_share)
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
-      if (scene%growth%intensities) call self%windows%begin(self%tip)
+      if (scene%growth%intensities) call self%windows%begin(scene, self%tip)
       allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
       call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)

@@ -31,6 +31,7 @@ module twolevel_trust
    use twolevel_faces, only: coarse_jumps
    use twolevel_state, only: two_levels_t
    use twolevel_window, only: window_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
@@ -59,59 +60,83 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: displacement(2, self%mesh%n_nodes), gradient(2, 2, self%mesh%n_nodes)
       real(rk) :: straight(2, 2, self%mesh%n_nodes)
-      real(rk) :: better(2), rough(2), worse(2)
-      real(rk), parameter :: none(2) = 0.0_rk
-      integer(ik) :: i
+      real(rk), dimension(2, size(self%tip)) :: better, rough, worse
+      integer(ik) :: i, w
 
-      call improve(self, displacement, gradient, error)
-      if (allocated(error)) return
+      ! The whole body takes nothing on its edge.
+      if (.not. all(self%windows%window%is_body)) then
+         call improve(self, displacement, gradient, error)
+         if (allocated(error)) return
+      end if
       straight = 0.0_rk
-      do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
-         associate (window => self%windows%window(i), linear => self%coarse_values%nodal(:2, :))
-            call window%intensity_with(better, error, &
-                                       edge=window%curved_edge(self%mesh, displacement, gradient))
-            if (allocated(error)) return
-            call window%intensity_with(worse, error, &
-                                       edge=window%curved_edge(self%mesh, linear, straight))
-            if (allocated(error)) return
-            rough = [window%found%k1, window%found%k2]
-            if (.not. window%undrained) then
-               call window%intensity_with(rough, error, pressure=self%state%unknowns(3, :))
-               if (allocated(error)) return
-            end if
-            associate (found => [window%found%k1, window%found%k2])
-               window%lacking = better - found
-               associate (closed => window%found%closed)
-                  window%uncertain = safety*shown(better - found, &
-                                                  share_of_order*(worse - found), closed)
-                  window%passing = safety*shown(share_of_pressure*(rough - found), none, closed)
-               end associate
-               if (.not. holds_a_cell(self, window)) then
-                  window%uncertain = norm2(found)
-                  if (window%found%closed) window%uncertain(1) = abs(found(1))
+      associate (tips => self%windows%tip, scene => self%scene, mesh => self%mesh, &
+                 linear => self%coarse_values%nodal(:2, :))
+         do i = 1, size(tips, kind=ik)
+            better(:, i) = [tips(i)%found%k1, tips(i)%found%k2]
+         end do
+         worse = better
+         rough = better
+         do w = 1, size(self%windows%window, kind=ik)
+            if (.not. self%windows%is_asked(w, self%tip)) cycle
+            associate (window => self%windows%window(w))
+               if (.not. window%is_body) then
+                  call window%intensities_with(tips, better, error, &
+                                               edge=window%curved_edge(scene, mesh, displacement, &
+                                                                       gradient))
+                  if (allocated(error)) return
+                  call window%intensities_with(tips, worse, error, &
+                                               edge=window%curved_edge(scene, mesh, linear, &
+                                                                       straight))
+                  if (allocated(error)) return
+               end if
+               if (.not. window%undrained) then
+                  call window%intensities_with(tips, rough, error, &
+                                               pressure=self%state%unknowns(3, :))
+                  if (allocated(error)) return
                end if
             end associate
-            self%tip(i)%intensity = window%with_coarse_error()
-         end associate
-      end do
+         end do
+         do i = 1, size(tips, kind=ik)
+            if (.not. self%tip(i)%is_free) cycle
+            call judge(self, self%windows%window(self%windows%window_of(i)), better(:, i), &
+                       worse(:, i), rough(:, i), tips(i))
+            self%tip(i)%intensity = self%windows%intensity_of(i)
+         end do
+      end associate
    end subroutine estimate
+
+   !> What the comparisons say of a tip.
+   pure subroutine judge(self, window, better, worse, rough, tip)
+      class(two_levels_t), intent(in) :: self
+      type(window_t), intent(in) :: window  !< the tip's
+      real(rk), intent(in), dimension(2) :: better, worse, rough  !< [Pa m^1/2]
+      type(window_tip_t), intent(inout) :: tip
+      real(rk), parameter :: none(2) = 0.0_rk
+
+      associate (found => [tip%found%k1, tip%found%k2], closed => tip%found%closed)
+         tip%lacking = better - found
+         tip%uncertain = safety*shown(better - found, share_of_order*(worse - found), closed)
+         tip%passing = safety*shown(share_of_pressure*(rough - found), none, closed)
+         if (.not. holds_a_cell(self, window, tip)) then
+            tip%uncertain = norm2(found)
+            if (closed) tip%uncertain(1) = abs(found(1))
+         end if
+      end associate
+   end subroutine judge
 
    !> A whole fracture cell lies in the window. In one that is smaller there is nothing that the
    !! coarse level could be compared with, and it knows nothing of the tip itself.
-   pure logical function holds_a_cell(self, window)
+   pure logical function holds_a_cell(self, window, tip)
       class(two_levels_t), intent(in) :: self
       type(window_t), intent(in) :: window
+      type(window_tip_t), intent(in) :: tip
       integer(ik) :: cell
 
       holds_a_cell = .false.
       associate (fracture => self%mesh%fracture)
          do cell = 1, fracture%n_cells
-            if (fracture%cell_fracture(cell) /= window%fracture) cycle
-            associate (ends => fracture%point_xy(:, fracture%cell_points(:, cell)))
-               holds_a_cell = all(minval(ends, dim=2) >= window%lower) .and. &
-                              all(maxval(ends, dim=2) <= window%upper)
-            end associate
+            if (fracture%cell_fracture(cell) /= tip%fracture) cycle
+            holds_a_cell = window%holds(fracture%point_xy(:, fracture%cell_points(:, cell)))
             if (holds_a_cell) return
          end do
       end associate
@@ -194,16 +219,15 @@ contains
       real(rk), intent(in) :: points(2, 2)  !< xy in columns [m]
       integer(ik) :: nearest
       real(rk) :: distance, shortest
-      integer(ik) :: w
+      integer(ik) :: i
 
       nearest = 0
       shortest = huge(1.0_rk)
-      do w = 1, size(self%windows%window, kind=ik)
-         if (.not. self%tip(w)%is_free) cycle
-         associate (window => self%windows%window(w))
-            if (any(minval(points, dim=2) < window%lower) .or. &
-                any(maxval(points, dim=2) > window%upper)) cycle
-            distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(w)%xy)
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%is_free) cycle
+         associate (w => self%windows%window_of(i))
+            if (.not. self%windows%window(w)%holds(points)) cycle
+            distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(i)%xy)
             if (distance >= shortest) cycle
             shortest = distance
             nearest = w
@@ -248,7 +272,7 @@ contains
       q = 0.0_rk
       associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
          do w = 1, size(self%windows%window, kind=ik)
-            if (.not. self%tip(w)%is_free) cycle
+            if (.not. self%windows%is_asked(w, self%tip)) cycle
             associate (window => self%windows%window(w))
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])

@@ -126,11 +126,11 @@ contains
 
       call start(0.3_rk, 0.5_rk, simulation)
       do n = 1, 5
-         simulation%windows%window%found%k2_error = 0.1_rk*toughness
+         simulation%windows%tip%found%k2_error = 0.1_rk*toughness
          simulation%tip%intensity%k2_error = 0.1_rk*toughness
          call improve_windows(simulation, 0.0_rk, any_improved, error)
          if (allocated(error)) exit
-         call checks%is_true(all(simulation%windows%window%times_finer == n), "finer and finer")
+         call checks%is_true(all(simulation%windows%tip%times_finer == n), "finer and finer")
       end do
       call checks%is_true(n == 5, "four times")
     call checks%fails_with(error, "error of K over K_IC where a tip would grow 10 % above 5 at "// &

@@ -16,6 +16,7 @@ program test_twolevel_window
    use tips_types, only: intensity_t
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_window, only: window_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
 
    real(rk), parameter :: degree = 0.017453292519943295_rk  !< [rad]
@@ -61,6 +62,7 @@ contains
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(window_t) :: window
+      type(window_tip_t) :: tips(1) = window_tip_t(fracture=1, end=2)
       type(error_t), allocatable :: error
       real(rk) :: drained, lame, shear, storage
 
@@ -68,7 +70,8 @@ contains
       scene%material%plane_stress = plane_stress
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
       call simulation%begin(scene, timers, error)
-      call window%build(scene, simulation%network, 1_ik, 2_ik, error)
+      window%serves = [1_ik]
+      call window%build(scene, simulation%network, tips, error)
       call checks%no_error(error, "window")
       associate (e => scene%material%young, nu => scene%material%poisson)
          shear = e/(2.0_rk*(1.0_rk + nu))
