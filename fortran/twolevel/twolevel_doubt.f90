@@ -12,8 +12,6 @@ module twolevel_doubt
    use results_chronicle, only: event_window
    use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
-   use twolevel_window, only: window_t
-   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
@@ -33,10 +31,9 @@ contains
 
       any_improved = .false.
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), w => self%windows%window_of(i), &
-                    toughness => self%rules%toughness)
+         associate (tip => self%tip(i), toughness => self%rules%toughness)
             if (.not. doubtful(tip, toughness)) cycle
-            call improve_window(self, self%windows%window(w), self%windows%tip(i), what)
+            call improve_window(self, i, what)
             if (.not. allocated(what)) then
                call stop_on_doubt(self%watch, tip, toughness, &
                                   self%scene%fractures(tip%fracture)%name, &
@@ -44,8 +41,6 @@ contains
                call self%heed_limits(error)
                return
             end if
-            self%windows%built(w) = .false.
-            call self%windows%tip(i)%forget_coarse_error()
             any_improved = .true.
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
@@ -55,24 +50,31 @@ contains
    end subroutine improve_windows
 
    !> Smaller elements or a larger window, next time it is meshed; in words, if that is possible.
-   subroutine improve_window(self, window, tip, what)
-      class(two_levels_t), intent(in) :: self
-      type(window_t), intent(inout) :: window
-      type(window_tip_t), intent(inout) :: tip  !< the doubtful one
+   subroutine improve_window(self, tip, what)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
 
-      if (max(tip%found%k1_error, tip%found%k2_error) >= maxval(tip%uncertain)) then
-         if (.not. tip%can_be_finer()) return
-         tip%times_finer = tip%times_finer + 1
-         what = "smaller elements at the tip"
-         if (tip%times_finer > 1) then
-            what = "elements of "//brief_text(tip%element_size(self%scene), 3)//" m"
+      associate (seen => self%windows%tip(tip), &
+                 window => self%windows%window(self%windows%window_of(tip)))
+         if (seen%of_elements >= seen%of_edge) then
+            if (.not. seen%can_be_finer()) return
+            seen%times_finer = seen%times_finer + 1
+            what = "smaller elements at the tip"
+            if (seen%times_finer > 1) then
+               what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
+            end if
+            if (.not. window%is_body) then
+               self%reference%tip(tip)%times_finer = seen%times_finer
+               call self%reference%make_anew(tip)
+            end if
+         else
+            if (.not. window%can_be_larger(self%scene)) return
+            window%times_larger = window%times_larger + 1
+            what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
          end if
-      else
-         if (.not. window%can_be_larger(self%scene)) return
-         window%times_larger = window%times_larger + 1
-         what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
-      end if
+      end associate
+      call self%windows%make_anew(tip)
    end subroutine improve_window
 
 end module twolevel_doubt

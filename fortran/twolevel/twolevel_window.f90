@@ -32,6 +32,10 @@ module twolevel_window
 
    public :: coarse_values_t, window_t
 
+   !> Size of elements where fractures meet, over that along them: the stress has a weak singularity
+   !! there, which pollutes K of tips nearby with an error of first order.
+   real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
+
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
 
@@ -101,6 +105,7 @@ contains
       spec%is_window = .true.
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
+      spec%joint_size = joint_share*spec%size_fracture
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
       do i = 1, size(self%serves, kind=ik)

@@ -33,20 +33,21 @@ module twolevel_windows
       procedure :: coarse_changed
       procedure :: intensity_of
       procedure :: is_asked
+      procedure :: make_anew
       procedure :: n_unknowns
    end type windows_t
 
 contains
 
    !> No window has been built.
-   subroutine begin(self, scene, tips)
+   subroutine begin(self, tips, is_body)
       class(windows_t), intent(out) :: self
-      type(scene_t), intent(in) :: scene
       type(tip_t), intent(in) :: tips(:)
+      logical, intent(in) :: is_body  !< it is one window for all tips
       integer(ik) :: i, n_windows
 
       n_windows = size(tips, kind=ik)
-      if (scene%discretization%window_is_body) n_windows = min(n_windows, 1_ik)
+      if (is_body) n_windows = min(n_windows, 1_ik)
       allocate (self%window(n_windows), self%window_of(size(tips)))
       allocate (self%tip(size(tips)), self%seen(2, size(tips)))
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
@@ -57,7 +58,7 @@ contains
          self%seen(:, i) = tips(i)%xy
       end do
       do i = 1, n_windows
-         self%window(i)%is_body = scene%discretization%window_is_body
+         self%window(i)%is_body = is_body
          self%window(i)%serves = numbers_of(self%window_of == i)
       end do
    end subroutine begin
@@ -198,18 +199,27 @@ contains
       end do
    end subroutine forget
 
+   !> The window of a tip must be meshed again, for it is to be a better one.
+   pure subroutine make_anew(self, tip)
+      class(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip
+
+      self%built(self%window_of(tip)) = .false.
+      call self%tip(tip)%forget_coarse_error()
+   end subroutine make_anew
+
    !> The network is another one now, not only at its tips.
    pure subroutine network_changed(self)
       class(windows_t), intent(inout) :: self
 
-      self%built = .false.
+      if (allocated(self%built)) self%built = .false.
    end subroutine network_changed
 
    !> The coarse mesh is another one now.
    pure subroutine coarse_changed(self)
       class(windows_t), intent(inout) :: self
 
-      self%projected = .false.
+      if (allocated(self%projected)) self%projected = .false.
    end subroutine coarse_changed
 
    !> Number of unknowns of all windows.
