@@ -73,7 +73,7 @@ def test_a_window_that_is_too_small_becomes_larger(tmp_path: Path) -> None:
 
 
 def test_the_error_of_a_small_window_is_stated(tmp_path: Path) -> None:
-    """Where the body says that no tip grows, windows stay as they are, and their errors are told."""
+    """Where the body says that no tip grows, windows stay as they are; their errors are told."""
     assert run(tmp_path, window=0.02, ratio=0.25) == (0, "")
     assert windows(tmp_path) == []
     tips = rows(tmp_path / "out" / "tips.csv")

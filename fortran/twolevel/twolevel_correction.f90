@@ -1,4 +1,4 @@
-!> What the coarse level would be if it agreed with the windows: a defect correction (Hackbusch 1984).
+!> The coarse level as if it agreed with the windows: a defect correction (Hackbusch 1984).
 !!
 !! Inside the windows, on the fractures and in the rock, these know better than the coarse level,
 !! which gets what they found, all windows at once. This costs one substitution in its factors.

@@ -3,7 +3,7 @@
 !! A window takes the displacement on its edge and the rock's pressure from the coarse level.
 !!   - What the edge makes wrong shows beside the whole body as one window for all tips, which takes
 !!     nothing on its edge: the difference of K, and the error of K there, which is that of its
-!!     elements alone. So no factor of safety is needed. The body costs about as much as the windows.
+!!     elements alone. So no factor of safety is needed. It costs about as much as the windows.
 !!   - The rock's pressure is linear in each cell. What K differs by with that of the cells' middles
 !!     counts by a quarter: slip presses and draws on the rock around a tip, and layers that are
 !!     thinner than a cell show there. At a fast well (C2 at 1e-6 m2/s, cells of 10 and 5 mm) the

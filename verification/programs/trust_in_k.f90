@@ -3,9 +3,10 @@
 !! same body without a fluid, with that pressure on its faces, has the same K, found there on
 !! adaptive meshes of the whole body without coarse level or windows.
 !!
-!! First argument: `fitted` for the arrangements below and as many that are drawn, with which a safety
-!! factor was chosen, `unseen` for others that were drawn after that. Second argument: `body` to hold
-!! the windows against the whole body, `edges` to do without, as in bodies with many fracture cells.
+!! First argument: `fitted` for the arrangements below and as many that are drawn, with which a
+!! safety factor was chosen, `unseen` for others that were drawn after that. Second argument:
+!! `body` to hold the windows against the whole body, `edges` to do without, as in bodies with many
+!! fracture cells.
 !!
 !! Writes values.csv, a row for each K_I and K_II that is not zero, and summary.csv.
 program trust_in_k
