@@ -115,8 +115,14 @@ contains
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) then
-         call self%windows%begin(self%tip, scene%discretization%window_is_body)
-         if (.not. scene%discretization%window_is_body) call self%reference%begin(self%tip, .true.)
+         associate (fine => scene%discretization)
+            call self%windows%begin(self%tip, fine%window_is_body, coarser=1.0_rk)
+            ! With elements as large as the coarse cells: at the tips, where it matters, they are
+            ! those of the windows.
+            if (.not. fine%window_is_body) then
+               call self%reference%begin(self%tip, .true., coarser=1.0_rk/fine%fine_ratio)
+            end if
+         end associate
       end if
       allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
       call self%rivals%begin(size(self%tip))

@@ -54,6 +54,7 @@ module twolevel_window
       integer(ik), allocatable :: serves(:)  !< the tips that it is for
       logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
+      real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
       integer :: times_larger = 0  !< than the scene says
       type(mesher_t) :: mesher
@@ -94,7 +95,7 @@ contains
       real(rk), allocatable :: piece(:, :)
       integer(ik) :: i, side
 
-      self%element_size = minval(tips(self%serves)%element_size(scene))
+      self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
       call place(self, scene, network, tips)
       spec%x_min = self%lower(1)
       spec%y_min = self%lower(2)

@@ -40,10 +40,11 @@ module twolevel_windows
 contains
 
    !> No window has been built.
-   subroutine begin(self, tips, is_body)
+   subroutine begin(self, tips, is_body, coarser)
       class(windows_t), intent(out) :: self
       type(tip_t), intent(in) :: tips(:)
       logical, intent(in) :: is_body  !< it is one window for all tips
+      real(rk), intent(in) :: coarser  !< elements along fractures, over what the scene says [-]
       integer(ik) :: i, n_windows
 
       n_windows = size(tips, kind=ik)
@@ -59,6 +60,7 @@ contains
       end do
       do i = 1, n_windows
          self%window(i)%is_body = is_body
+         self%window(i)%coarser = coarser
          self%window(i)%serves = numbers_of(self%window_of == i)
       end do
    end subroutine begin
