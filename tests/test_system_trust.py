@@ -84,6 +84,34 @@ def test_the_error_of_a_small_window_is_stated(tmp_path: Path) -> None:
         assert float(tip["k2_corrected_pa_sqrtm"]) == pytest.approx(K_II, rel=0.003)
 
 
+@pytest.mark.parametrize("window", [0.05, 0.1])
+def test_small_windows_beside_a_neighbour_say_so(tmp_path: Path, window: float) -> None:
+    """Two open fractures, 28 mm apart: K_I of the outer tips is 19 and 5 % off, and said to be."""
+    text = SCENE.format(
+        poisson=0.2, toughness=1.0e6, window=window, ratio=0.5, growth="intensities = .true."
+    )
+    text = text.replace("pressure = 6.8e6", "pressure = 24.0e6")
+    text += """\
+&fracture
+  name = 'f2'
+  x = 0.9448456710, 1.0155563491
+  y = 0.9844436509, 1.0551543290
+  friction = 0.5, aperture = 1.0e-3
+/
+"""
+    (tmp_path / "scene.nml").write_text(text)
+    assert (
+        call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot").returncode == 0
+    )
+    tips = rows(tmp_path / "out" / "tips.csv")
+    known = 1.863e6  # the same body without a fluid: verification/windows_in_networks
+    for tip in (tip for tip in tips if float(tip["time_s"]) == 0.0 and tip["tip"] in "14"):
+        excess = float(tip["k1_pa_sqrtm"]) - known
+        assert excess > 0.04 * known
+        assert excess < 1.02 * float(tip["k1_error_pa_sqrtm"]) < 1.3 * excess
+        assert float(tip["k1_corrected_pa_sqrtm"]) == pytest.approx(known, rel=0.005)
+
+
 def test_the_body_as_window(tmp_path: Path) -> None:
     """One window for both tips, without any part of the coarse level in its error."""
     assert run(tmp_path, window="'body'") == (0, "")
