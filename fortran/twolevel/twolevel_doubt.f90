@@ -54,10 +54,19 @@ contains
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
+      real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
+      logical :: is_finer
 
       associate (seen => self%windows%tip(tip), &
                  window => self%windows%window(self%windows%window_of(tip)))
-         if (seen%of_elements >= seen%of_edge) then
+         ! What cannot be done leaves the other, if that is worth it.
+         is_finer = seen%of_elements >= seen%of_edge
+         if (is_finer .and. .not. seen%can_be_finer()) then
+            is_finer = .not. seen%of_edge > worth_it*seen%of_elements
+         else if (.not. (is_finer .or. window%can_be_larger(self%scene))) then
+            is_finer = seen%of_elements > worth_it*seen%of_edge
+         end if
+         if (is_finer) then
             if (.not. seen%can_be_finer()) return
             seen%times_finer = seen%times_finer + 1
             what = "smaller elements at the tip"
