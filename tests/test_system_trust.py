@@ -55,17 +55,81 @@ def windows(place: Path) -> list[str]:
     return [event["detail"] for event in events if event["kind"] == "window"]
 
 
+GROWS = "enabled = .true., increment = 0.004, stop_gain = 1.0e-4"
+
+
 def test_a_window_that_is_too_small_becomes_larger(tmp_path: Path) -> None:
-    """It is smaller than the coarse cell at its tip; K would be a third too small in it."""
-    assert run(tmp_path, window=0.02, ratio=0.25) == (0, "")
+    """It is smaller than the coarse cell at its tip; K would be a quarter too small in it."""
+    assert run(tmp_path, window=0.02, ratio=0.25, toughness=4.05e5, growth=GROWS) == (0, "")
     assert len(windows(tmp_path)) == 2  # one for each tip
     assert all(detail.startswith("a window of 0.04 m: ") for detail in windows(tmp_path))
-    found = numbers(tmp_path / "out" / "tips.csv", "k2_pa_sqrtm")
-    assert found == pytest.approx([K_II] * len(found), rel=0.02)
+    tips = rows(tmp_path / "out" / "tips.csv")
+    found = [float(tip["k2_pa_sqrtm"]) for tip in tips if float(tip["time_s"]) == 0.0]
+    assert found == pytest.approx([K_II] * 2, rel=0.02)
     assert record(tmp_path / "out")["warnings"] == [
         "&fluid: compressibility is 0.001 1/Pa: water has 4e-10 1/Pa, a gas the inverse of its "
         "pressure"
     ]
+
+
+def test_the_error_of_a_small_window_is_stated(tmp_path: Path) -> None:
+    """Where the body says that no tip grows, windows stay as they are; their errors are told."""
+    assert run(tmp_path, window=0.02, ratio=0.25) == (0, "")
+    assert windows(tmp_path) == []
+    tips = rows(tmp_path / "out" / "tips.csv")
+    for tip in tips:
+        missing = K_II - float(tip["k2_pa_sqrtm"])
+        assert missing > 0.2 * K_II
+        assert float(tip["k2_error_pa_sqrtm"]) == pytest.approx(missing, rel=0.02)
+        assert float(tip["k2_corrected_pa_sqrtm"]) == pytest.approx(K_II, rel=0.003)
+
+
+@pytest.mark.parametrize("window", [0.05, 0.1])
+def test_small_windows_beside_a_neighbour_say_so(tmp_path: Path, window: float) -> None:
+    """Two open fractures, 28 mm apart: K_I of the outer tips is 19 and 5 % off, and said to be."""
+    text = SCENE.format(
+        poisson=0.2, toughness=1.0e6, window=window, ratio=0.5, growth="intensities = .true."
+    )
+    text = text.replace("pressure = 6.8e6", "pressure = 24.0e6")
+    text += """\
+&fracture
+  name = 'f2'
+  x = 0.9448456710, 1.0155563491
+  y = 0.9844436509, 1.0551543290
+  friction = 0.5, aperture = 1.0e-3
+/
+"""
+    (tmp_path / "scene.nml").write_text(text)
+    assert (
+        call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot").returncode == 0
+    )
+    tips = rows(tmp_path / "out" / "tips.csv")
+    known = 1.863e6  # the same body without a fluid: verification/windows_in_networks
+    for tip in (tip for tip in tips if float(tip["time_s"]) == 0.0 and tip["tip"] in "14"):
+        excess = float(tip["k1_pa_sqrtm"]) - known
+        assert excess > 0.04 * known
+        assert excess < 1.02 * float(tip["k1_error_pa_sqrtm"]) < 1.3 * excess
+        assert float(tip["k1_corrected_pa_sqrtm"]) == pytest.approx(known, rel=0.005)
+
+
+def test_the_body_as_window(tmp_path: Path) -> None:
+    """One window for both tips, without any part of the coarse level in its error."""
+    assert run(tmp_path, window="'body'") == (0, "")
+    assert windows(tmp_path) == []
+    found = numbers(tmp_path / "out" / "tips.csv", "k2_pa_sqrtm")
+    assert found == pytest.approx([K_II] * len(found), rel=0.003)
+    stated = numbers(tmp_path / "out" / "tips.csv", "k2_error_pa_sqrtm")
+    assert max(stated) < 0.003 * K_II
+    assert "windows_reference" not in record(tmp_path / "out")["dofs"]
+    assert "window = 'body'" in (tmp_path / "out" / "scene.nml").read_text()
+
+
+@pytest.mark.parametrize("word", ["'rock'", "body", "'body', 0.3", "''"])
+def test_other_words_are_refused(tmp_path: Path, word: str) -> None:
+    status, reason = run(tmp_path, window=word)
+    assert status == 2
+    assert "&fine: window " in reason
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_good_window_stays(tmp_path: Path) -> None:

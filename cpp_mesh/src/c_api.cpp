@@ -131,6 +131,7 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
         spec.rosette_radii.at_end = radii_at_ends(n_fractures, given->end_radius);
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
     spec.guides = guides_from(*given);
+    spec.joint_size = given->joint_size;
     return spec;
 }
 

@@ -23,6 +23,9 @@ bool is_for_elements(const Specification& spec) {
            (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
 }
 
+// Growth of cell sizes per distance from a joint.
+constexpr double growth_around_joints = 0.4;
+
 // The ends of guides on the boundary have the nodes from the given number on.
 void embed_guides(const GuideEdges& guides, int first_on_boundary, Region& region,
                   std::vector<Vec2>& xy) {
@@ -65,6 +68,9 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
     mesh.size.set_discs(rosette_discs(graph, plans, specification.rosette_sectors));
+    if (specification.joint_size > 0.0)
+        for (const Joint& joint : joints_of(graph))
+            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
     // Cells between fractures that meet must not be much longer than what is left for them.
     if (mesh.size.is_scale_free() || (!specification.is_window && !joints_of(graph).empty()))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);

@@ -22,6 +22,7 @@ struct Specification {
     RosetteRadii rosette_radii;
     std::vector<Vec2> fixed_points;        // become nodes
     std::vector<std::vector<Vec2>> guides; // lines that cells follow where there is room
+    double joint_size = 0.0;               // where fractures meet; 0: as along them
 };
 
 // How a remeshed mesh covers the one before.

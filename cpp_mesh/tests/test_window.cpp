@@ -158,6 +158,34 @@ void reduced_rosettes(Checks& checks) {
                     "half the distance to a joint");
 }
 
+// Cells at the places where fractures meet are as small as asked for and grow from there.
+void small_at_joints(Checks& checks) {
+    const TestNetwork network({{{0.2, 0.5}, {0.8, 0.5}}, {{0.4, 0.2}, {0.6, 0.8}}});
+    const Point joint = {0.5, 0.5};
+    for (const double joint_size : {0.0, 0.002}) {
+        cm_spec spec = window(0.0, 1.0, 0.0, 1.0, 0.05, 0.05);
+        spec.joint_size = joint_size;
+        ApiMesh mesh;
+        checks.is_true(mesh.create(spec, network), mesh.error);
+        double at_joint = 1.0, longest = 0.0;
+        for (int i = 0; i < mesh.counts.n_fracture_cells; ++i) {
+            const Point a = mesh.point(mesh.fcell_points[2 * i]);
+            const Point b = mesh.point(mesh.fcell_points[2 * i + 1]);
+            const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+            for (const Point& p : {a, b})
+                if (std::hypot(p[0] - joint[0], p[1] - joint[1]) < 1e-9)
+                    at_joint = std::min(at_joint, length);
+            longest = std::max(longest, length);
+        }
+        if (joint_size > 0.0)
+            checks.is_true(at_joint < 1.5 * joint_size, "joint: small cells");
+        else
+            checks.is_true(at_joint > 0.03, "joint: cells as elsewhere");
+        checks.is_true(longest > 0.03, "joint: cells as asked for farther away");
+        checks.is_close(mesh.total_area(), 1.0, 1e-12, "joint: area");
+    }
+}
+
 } // namespace
 
 int main() {
@@ -167,5 +195,6 @@ int main() {
     rosettes(checks);
     short_wings(checks);
     reduced_rosettes(checks);
+    small_at_joints(checks);
     return checks.finish();
 }

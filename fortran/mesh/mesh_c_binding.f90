@@ -35,6 +35,7 @@ module mesh_c_binding
       integer(c_int32_t) :: n_guides = 0
       type(c_ptr) :: guide_count = c_null_ptr
       type(c_ptr) :: guide_xy = c_null_ptr
+      real(c_double) :: joint_size = 0.0_c_double
    end type cm_spec_t
 
    !> Sizes of the arrays below.

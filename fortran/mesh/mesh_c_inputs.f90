@@ -31,6 +31,7 @@ module mesh_c_inputs
       integer(ik), allocatable :: guide_count(:)  !< points of each guide
       !> (2, n) lines that cells follow where there is room, one after the other [m]
       real(rk), allocatable :: guides(:, :)
+      real(rk) :: joint_size = 0.0_rk  !< cells where fractures meet [m]; 0: size_fracture
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -58,6 +59,7 @@ contains
       c_spec%is_window = merge(1_ik, 0_ik, spec%is_window)
       c_spec%rosette_sectors = spec%rosette_sectors
       c_spec%rosette_radius = spec%rosette_radius
+      c_spec%joint_size = spec%joint_size
       if (allocated(spec%corners)) then
          if (.not. allocated(spec%edge_side)) then
             call raise_error(error, "mesh_builder", "the edges of the polygon have no sides")

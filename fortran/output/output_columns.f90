@@ -230,6 +230,8 @@ module output_columns
       column_t("dofs.intersection_pressure", "-", with_joints, &
                "Pressure where fractures meet or end on a side with a pressure"), &
       column_t("dofs.windows", "-", with_fluid, "Displacement in the windows around the tips"), &
+      column_t("dofs.windows_reference", "-", with_fluid, &
+               "Displacement in the body as one window, against which these are held"), &
       column_t("used", "-", always, "Features that the run used, in words"), &
       column_t("left_out", "-", always, "Features that it did without, in words"), &
       column_t("timers_s", "s", always, "Processor time by phase"), &

@@ -184,6 +184,7 @@ contains
          return
       end if
       if (.not. scene%has_fluid()) return
+      if (scene%discretization%window_is_body) return
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
       if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
          call refuse(error, sheet, sheet%find("fine"), "window", "is "// &

@@ -117,6 +117,7 @@ contains
       select case (parameter%kind)
       case (kind_real)
          words = "number"
+         if (parameter%choices /= "") words = "number or text"
       case (kind_reals)
          words = "list of numbers"
       case (kind_integer)
@@ -157,21 +158,29 @@ contains
       end select
    end function default_words
 
-   pure function allowed_words(parameter) result(words)
+   !> The words that may be chosen.
+   pure function listed(parameter) result(words)
       type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: words
       character(len=*), parameter :: separator = "`, `"
       integer :: bar
 
+      words = trim(parameter%choices)
+      bar = index(words, "|")
+      do while (bar > 0)
+         words = words(1:bar - 1)//separator//words(bar + 1:)
+         bar = index(words, "|")
+      end do
+      words = "`"//words//"`"
+   end function listed
+
+   pure function allowed_words(parameter) result(words)
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: words
+
       select case (parameter%kind)
       case (kind_choice)
-         words = trim(parameter%choices)
-         bar = index(words, "|")
-         do while (bar > 0)
-            words = words(1:bar - 1)//separator//words(bar + 1:)
-            bar = index(words, "|")
-         end do
-         words = "`"//words//"`"
+         words = listed(parameter)
       case (kind_logical)
          words = "`.true.`, `.false.`"
       case (kind_name)
@@ -183,6 +192,7 @@ contains
             words = words//"at most "//trim(parameter%at_most)
          end if
          if (words == "") words = "any finite"
+         if (parameter%choices /= "") words = words//", or "//listed(parameter)
       case default
          words = "at most 256 bytes of UTF-8"
       end select

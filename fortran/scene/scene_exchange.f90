@@ -6,7 +6,7 @@ module scene_exchange
    use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
                                       exchange_side
    use scene_exchange_rock, only: exchange_material, exchange_region
-   use scene_exchange_values, only: exchange, radians, set_text, to_degrees
+   use scene_exchange_values, only: exchange, exchange_word, radians, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t
@@ -343,6 +343,7 @@ contains
          call exchange(record, "element", discretization%element, reading)
       case default  ! fine
          call exchange(record, "window", discretization%window, reading, nothing=0.0_rk)
+         call exchange_word(record, "window", "body", discretization%window_is_body, reading)
          call exchange(record, "size_ratio", discretization%fine_ratio, reading)
          call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
          call exchange(record, "face_condition", discretization%face_condition, reading)

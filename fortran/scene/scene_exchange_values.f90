@@ -6,7 +6,7 @@ module scene_exchange_values
    implicit none(type, external)
    private
 
-   public :: exchange, radians, set_text, to_degrees
+   public :: exchange, exchange_word, radians, set_text, to_degrees
 
    !> Copy one value: into the scene if `reading` and the sheet has it, else into the sheet.
    !> A component that equals `nothing` stays out of the sheet.
@@ -32,7 +32,7 @@ contains
 
       associate (value => record%values(parameter_index(record%group, name)))
          if (reading) then
-            if (value%is_set) component = value%reals(1)
+            if (value%is_set .and. .not. allocated(value%text)) component = value%reals(1)
          else
             value%is_set = .true.
             if (present(nothing)) value%is_set = .not. same_bits(component, nothing)
@@ -120,6 +120,22 @@ contains
          call set_text(record, name, trim(component))
       end if
    end subroutine exchange_text
+
+   !> Whether a word stands in the place of a number.
+   pure subroutine exchange_word(record, name, word, is_said, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name, word
+      logical, intent(inout) :: is_said
+      logical, intent(in) :: reading
+
+      associate (value => record%values(parameter_index(record%group, name)))
+         if (.not. reading) then
+            if (is_said) call set_text(record, name, word)
+         else if (value%is_set .and. allocated(value%text)) then
+            is_said = value%text == word
+         end if
+      end associate
+   end subroutine exchange_word
 
    pure subroutine set_text(record, name, text)
       type(record_t), intent(inout) :: record

@@ -67,7 +67,8 @@ module scene_parameters
       logical :: derived = .false.  !< then `absent` names the default, which follows from others
       type(interval_t) :: range = interval_t()
       integer :: scenes = in_all  !< which may give it
-      character(len=32) :: choices = ""  !< separated by `|`
+      !> Separated by `|`; of a single number: words that may stand in its place
+      character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
       ! Towards other names of its group:
       character(len=24) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
@@ -431,8 +432,9 @@ module scene_parameters
                  meaning="How the fractures' equations are solved: on a full matrix onto which "// &
                   "the rock is condensed, or without it; `auto` takes what is cheaper"), &
       parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
-                  absent="no fine level", &
-                  meaning="Edge l of the square window around a tip, more than 2 size_ratio dH"), &
+                  choices="body", absent="no fine level", &
+                 meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; "// &
+                  "or the whole body, one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &
                   meaning="Fine mesh size at the tip as a share eps_m of dH"), &
       parameter_t("fine", "rosette_sectors", kind_integer, default="12", range=rosette_range, &

@@ -63,7 +63,8 @@ module scene_plausible
       doubt_t("injection", "start", "s", "not before the end of &time", &
               "the well never runs"), &
       doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
-              "a window is cut out around each tip; a few times the fracture is usual"), &
+              "a window is cut out around each tip; a few times the fracture is usual, and "// &
+              "'body' is one window for all tips"), &
       doubt_t("output", "interval", "s", "below the step of &time", &
               "fields are written at most once per step"), &
       doubt_t("fluid", "compressibility", "1/Pa", &

@@ -161,7 +161,8 @@ module scene_types
    type :: discretization_t
       real(rk) :: size_fracture = 0.0_rk  !< dH: coarse cells at the fractures [m]
       real(rk) :: size_boundary = 0.0_rk  !< coarse cells far from them [m]
-      real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window [m]
+      real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window; 0 if it is the body [m]
+      logical :: window_is_body = .false.  !< all tips are in one window, the whole body
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
       integer(ik) :: rosette_sectors = 12  !< elements around a tip
       real(rk) :: rosette_radius = 0.0_rk  !< mechanics only [m]

@@ -142,6 +142,10 @@ contains
       number = 0.0_rk
       select case (parameter%kind)
       case (kind_real, kind_reals)
+         if (is_text .and. is_choice(parameter, unquoted(word))) then
+            value%text = unquoted(word)
+            return
+         end if
          good = .not. is_text
          if (good) call read_real(word, number, good)
          if (good .and. .not. abs(number) < huge(number)) then
@@ -226,8 +230,7 @@ contains
 
       select case (parameter%kind)
       case (kind_choice)
-         if (index("|"//trim(parameter%choices)//"|", "|"//text//"|") == 0 &
-             .or. index(text, "|") > 0) then
+         if (.not. is_choice(parameter, text)) then
             reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
          end if
       case (kind_name)
@@ -240,6 +243,15 @@ contains
          end if
       end select
    end subroutine check_text
+
+   !> One of the parameter's words.
+   pure logical function is_choice(parameter, text)
+      type(parameter_t), intent(in) :: parameter
+      character(len=*), intent(in) :: text
+
+      is_choice = index("|"//trim(parameter%choices)//"|", "|"//text//"|") > 0 .and. &
+                  index(text, "|") == 0 .and. parameter%choices /= ""
+   end function is_choice
 
    !> What a parameter takes, for messages.
    pure function wanted(parameter) result(words)
@@ -265,6 +277,7 @@ contains
             words = "a finite number "//in_words(parameter%range, whole=.false.)
          end if
          if (parameter%unit /= "-") words = words//" ["//trim(parameter%unit)//"]"
+         if (parameter%choices /= "") words = words//" or '"//with_or(trim(parameter%choices))//"'"
       end select
    end function wanted
 

@@ -100,7 +100,11 @@ contains
 
       select case (parameter%kind)
       case (kind_real)
-         text = real_text(value%reals(1))
+         if (allocated(value%text)) then  ! a word in its place
+            text = quoted(value%text)
+         else
+            text = real_text(value%reals(1))
+         end if
       case (kind_integer)
          text = integer_text(value%whole)
       case (kind_logical)

@@ -13,6 +13,9 @@ module simulation_doubt
 
    public :: doubtful, stop_on_doubt, uncertainty
 
+   !> K_eq changes by at most so much with an intensity: with K_II, where there is no K_I.
+   real(rk), parameter :: steepest = 2.0_rk/sqrt(3.0_rk)
+
 contains
 
    !> What the intensities of a tip may be off, over the toughness, or over K_eq where that is far
@@ -40,7 +43,7 @@ contains
 
       doubtful = .not. tip%arrested .and. &
                  judge(limit_k_to_grow, uncertainty(tip, toughness)) == verdict_stop
-      if (doubtful) doubtful = .not. tip%drive%intensity + error_of_k(tip) < toughness
+      if (doubtful) doubtful = .not. tip%drive%intensity + steepest*error_of_k(tip) < toughness
    end function doubtful
 
    !> A tip is doubtful and cannot be known better: a limit of the run is passed.

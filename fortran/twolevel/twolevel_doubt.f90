@@ -12,7 +12,6 @@ module twolevel_doubt
    use results_chronicle, only: event_window
    use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
-   use twolevel_window, only: window_t
    implicit none(type, external)
    private
 
@@ -32,10 +31,9 @@ contains
 
       any_improved = .false.
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), window => self%windows%window(i), &
-                    toughness => self%rules%toughness)
+         associate (tip => self%tip(i), toughness => self%rules%toughness)
             if (.not. doubtful(tip, toughness)) cycle
-            call improve_window(self, window, what)
+            call improve_window(self, i, what)
             if (.not. allocated(what)) then
                call stop_on_doubt(self%watch, tip, toughness, &
                                   self%scene%fractures(tip%fracture)%name, &
@@ -43,10 +41,6 @@ contains
                call self%heed_limits(error)
                return
             end if
-            self%windows%built(i) = .false.
-            window%lacking = 0.0_rk  ! nothing is known yet of the coarse level's part
-            window%uncertain = 0.0_rk
-            window%passing = 0.0_rk
             any_improved = .true.
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
@@ -56,23 +50,40 @@ contains
    end subroutine improve_windows
 
    !> Smaller elements or a larger window, next time it is meshed; in words, if that is possible.
-   subroutine improve_window(self, window, what)
-      class(two_levels_t), intent(in) :: self
-      type(window_t), intent(inout) :: window
+   subroutine improve_window(self, tip, what)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
+      real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
+      logical :: is_finer
 
-      if (max(window%found%k1_error, window%found%k2_error) >= maxval(window%uncertain)) then
-         if (.not. window%can_be_finer()) return
-         window%times_finer = window%times_finer + 1
-         what = "smaller elements at the tip"
-         if (window%times_finer > 1) then
-            what = "elements of "//brief_text(window%element_size(self%scene), 3)//" m"
+      associate (seen => self%windows%tip(tip), &
+                 window => self%windows%window(self%windows%window_of(tip)))
+         ! What cannot be done leaves the other, if that is worth it.
+         is_finer = seen%of_elements >= seen%of_edge
+         if (is_finer .and. .not. seen%can_be_finer()) then
+            is_finer = .not. seen%of_edge > worth_it*seen%of_elements
+         else if (.not. (is_finer .or. window%can_be_larger(self%scene))) then
+            is_finer = seen%of_elements > worth_it*seen%of_edge
          end if
-      else
-         if (.not. window%can_be_larger(self%scene)) return
-         window%times_larger = window%times_larger + 1
-         what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
-      end if
+         if (is_finer) then
+            if (.not. seen%can_be_finer()) return
+            seen%times_finer = seen%times_finer + 1
+            what = "smaller elements at the tip"
+            if (seen%times_finer > 1) then
+               what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
+            end if
+            if (.not. window%is_body) then
+               self%reference%tip(tip)%times_finer = seen%times_finer
+               call self%reference%make_anew(tip)
+            end if
+         else
+            if (.not. window%can_be_larger(self%scene)) return
+            window%times_larger = window%times_larger + 1
+            what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
+         end if
+      end associate
+      call self%windows%make_anew(tip)
    end subroutine improve_window
 
 end module twolevel_doubt

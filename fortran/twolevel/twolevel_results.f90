@@ -299,6 +299,9 @@ contains
       end associate
       if (simulation%scene%growth%intensities) then
          call summary%count_dofs("windows", simulation%windows%n_unknowns())
+         if (.not. simulation%scene%discretization%window_is_body) then
+            call summary%count_dofs("windows_reference", simulation%reference%n_unknowns())
+         end if
       end if
    end subroutine count_unknowns
 

@@ -195,7 +195,10 @@ contains
       logical :: is_last, is_too_short, is_unstable
       real(rk) :: wanted
 
-      if (self%scene%growth%intensities) call self%windows%accept()
+      if (self%scene%growth%intensities) then
+         call self%windows%accept()
+         call self%reference%accept()
+      end if
       self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
       wanted = self%dt
       self%is_after_switch = self%ends_at_switch

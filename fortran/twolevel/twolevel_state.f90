@@ -55,6 +55,8 @@ module twolevel_state
       type(state_t) :: before  !< the step that led there, on the same mesh
       type(trend_t) :: trend  !< rates of the last accepted step
       type(windows_t) :: windows
+      type(windows_t) :: reference  !< the body as one window, against which these are held
+      integer(ik) :: reference_most = 400  !< coarse fracture cells up to which they are
       type(coarse_values_t) :: coarse_values
       logical :: values_are_current = .false.
       logical :: undrained = .false.  !< the state is the undrained response to the load
@@ -112,7 +114,16 @@ contains
                        self%joint_share)
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
-      if (scene%growth%intensities) call self%windows%begin(self%tip)
+      if (scene%growth%intensities) then
+         associate (fine => scene%discretization)
+            call self%windows%begin(self%tip, fine%window_is_body, coarser=1.0_rk)
+            ! With elements as large as the coarse cells: at the tips, where it matters, they are
+            ! those of the windows.
+            if (.not. fine%window_is_body) then
+               call self%reference%begin(self%tip, .true., coarser=1.0_rk/fine%fine_ratio)
+            end if
+         end associate
+      end if
       allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
       call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
@@ -332,7 +343,10 @@ contains
          grew = size(centres, 2) > 0
          if (.not. grew) return
       end associate
-      if (is_straightened) call self%windows%network_changed()
+      if (is_straightened) then
+         call self%windows%network_changed()
+         call self%reference%network_changed()
+      end if
       call self%remesh_coarse(centres, timers, error)
    end subroutine grow_coarse
 
@@ -394,6 +408,7 @@ contains
       self%prefilled = self%prefilled + prefilled
       self%values_are_current = .false.
       call self%windows%coarse_changed()
+      call self%reference%coarse_changed()
    end subroutine transfer_levels
 
 end module twolevel_state

@@ -1,8 +1,9 @@
-!> A window around a tip: a piece of the network on a fine mesh, loaded by the coarse level.
+!> A window: a piece of the network on a fine mesh, loaded by the coarse level. It is a square
+!! around one tip, or the whole body with all tips.
 !!
 !! The edge takes the coarse displacement, or, where it lies on a side of the body, what the scene
-!! gives there; the rock takes the coarse pressure as initial stress, the fracture faces what
-!! twolevel_faces says.
+!! gives there (so the whole body takes nothing on its edge); the rock takes the coarse pressure as
+!! initial stress, the fracture faces what twolevel_faces says.
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,17 +23,18 @@ module twolevel_window
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: scene_t
-   use tips_intensity, only: complete_errors, tip_intensity
+   use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
    use twolevel_faces, only: face_map_t, match_faces
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
    public :: coarse_values_t, window_t
 
-   !> Times that the rosette is made smaller by a factor of 2; from the second time on the other
-   !! elements are, too.
-   integer, parameter :: finer_most = 4
+   !> Size of elements where fractures meet, over that along them: the stress has a weak singularity
+   !! there, which pollutes K of tips nearby with an error of first order.
+   real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
@@ -49,11 +51,12 @@ module twolevel_window
 
    !> One window.
    type :: window_t
-      integer(ik) :: fracture = 0  !< of the tip, in the network
-      integer(ik) :: end = 0  !< of the tip, 1 or 2
-      integer(ik) :: tip = 0  !< its number in the window's mesh
+      integer(ik), allocatable :: serves(:)  !< the tips that it is for
+      logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
-      integer :: times_finer = 0, times_larger = 0  !< than the scene says
+      real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
+      real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
+      integer :: times_larger = 0  !< than the scene says
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
@@ -66,64 +69,52 @@ module twolevel_window
       integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
       type(face_map_t) :: faces
-      type(intensity_t) :: found  !< in the last solution, without the coarse level's error
-      !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
-      !! last [Pa m^1/2]: what they lack by it, and how large it may be
-      real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
-      real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
    contains
       procedure :: build
       procedure :: edge_length
-      procedure :: element_size
-      procedure :: can_be_finer
       procedure :: can_be_larger
       procedure :: set_rock
       procedure :: project
-      procedure :: intensity
-      procedure :: intensity_with
+      procedure :: find_intensities
+      procedure :: intensities_with
       procedure :: curved_edge
-      procedure :: with_coarse_error
+      procedure :: holds
       procedure :: displacement_at
    end type window_t
 
 contains
 
-   !> Mesh a window around one end of a fracture.
-   subroutine build(self, scene, network, fracture, end, error)
+   !> Mesh the window.
+   subroutine build(self, scene, network, tips, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: fracture, end
+      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       real(rk), allocatable :: piece(:, :)
-      real(rk) :: tip(2), half
-      integer(ik) :: side
+      integer(ik) :: i, side
 
-      self%fracture = fracture
-      self%end = end
-      tip = network%xy(:, merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1))
-      half = 0.5_rk*self%edge_length(scene)
-      self%lower = tip - half
-      self%upper = tip + half
-      call clear_edges(network, 0.3_rk*self%element_size(scene), self%lower, self%upper)
-      self%lower = max(self%lower, [scene%domain%x_min, scene%domain%y_min])
-      self%upper = min(self%upper, [scene%domain%x_max, scene%domain%y_max])
+      self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
+      call place(self, scene, network, tips)
       spec%x_min = self%lower(1)
       spec%y_min = self%lower(2)
       spec%x_max = self%upper(1)
       spec%y_max = self%upper(2)
-      spec%size_fracture = self%element_size(scene)
+      spec%size_fracture = self%element_size
       spec%size_boundary = spec%size_fracture + grading*norm2(self%upper - self%lower)/2.0_rk
       spec%is_window = .true.
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
-      ! Two elements fit on the last straight piece of this tip, for the domain of the interaction
-      ! integral ends at a kink.
+      spec%joint_size = joint_share*spec%size_fracture
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
-      spec%end_radius(end, fracture) = 0.5_rk**self%times_finer &
-                                       *min(usual_size(scene), 0.5_rk*piece(end, fracture))
+      do i = 1, size(self%serves, kind=ik)
+         associate (tip => tips(self%serves(i)))
+            spec%end_radius(tip%end, tip%fracture) = &
+               tip%rosette_radius(scene, piece(tip%end, tip%fracture))
+         end associate
+      end do
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
@@ -131,8 +122,12 @@ contains
       if (allocated(error)) return
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
-      self%tip = findloc(self%mesh%fracture%tip_fracture == fracture .and. &
-                         self%mesh%fracture%tip_end == end, .true., dim=1)
+      do i = 1, size(self%serves, kind=ik)
+         associate (tip => tips(self%serves(i)), fracture => self%mesh%fracture)
+            tip%at = findloc(fracture%tip_fracture == tip%fracture .and. &
+                             fracture%tip_end == tip%end, .true., dim=1)
+         end associate
+      end do
       self%loads = no_loads(self%model%mesh)
       do side = 1, side_count
          if (on_body(self, scene, side)) then
@@ -150,26 +145,30 @@ contains
       edge_length = 2.0_rk**self%times_larger*scene%discretization%window
    end function edge_length
 
-   !> Of the elements at the fractures [m].
-   pure real(rk) function element_size(self, scene)
-      class(window_t), intent(in) :: self
+   !> The corners: those of the body, or of a square around the tip as far as the body reaches.
+   pure subroutine place(self, scene, network, tips)
+      class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(in) :: tips(:)
+      real(rk) :: half, xy(2)
 
-      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(scene)
-   end function element_size
-
-   !> What the scene says of it [m].
-   pure real(rk) function usual_size(scene)
-      type(scene_t), intent(in) :: scene
-
-      usual_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
-   end function usual_size
-
-   pure logical function can_be_finer(self)
-      class(window_t), intent(in) :: self
-
-      can_be_finer = self%times_finer < finer_most
-   end function can_be_finer
+      associate (domain => scene%domain)
+         self%lower = [domain%x_min, domain%y_min]
+         self%upper = [domain%x_max, domain%y_max]
+         if (self%is_body) return
+         associate (tip => tips(self%serves(1)), first => network%first)
+            xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, &
+                                     tip%end == 1))
+         end associate
+         half = 0.5_rk*self%edge_length(scene)
+         self%lower = xy - half
+         self%upper = xy + half
+         call clear_edges(network, 0.3_rk*self%element_size, self%lower, self%upper)
+         self%lower = max(self%lower, [domain%x_min, domain%y_min])
+         self%upper = min(self%upper, [domain%x_max, domain%y_max])
+      end associate
+   end subroutine place
 
    !> It is not the whole body yet.
    pure logical function can_be_larger(self, scene)
@@ -215,6 +214,27 @@ contains
          end do
       end do
    end function held_edge
+
+   !> Displacements that the scene gives on sides of the body, in the place of the coarse level's.
+   pure subroutine take_given(self, scene, edge)
+      class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(inout) :: edge(:, :)  !< (2, n_nodes) [m]
+      integer(ik) :: axis, face
+
+      associate (fine => self%model%mesh)
+         do face = 1, size(fine%boundary_sides, kind=ik)
+            associate (side => fine%boundary_sides(face), &
+                       nodes => [fine%boundary_faces(:, face), fine%boundary_middles(face)])
+               if (.not. on_body(self, scene, side)) cycle
+               do axis = 1, 2
+                  if (.not. scene%sides(side)%displacement_given(axis)) cycle
+                  edge(axis, nodes) = scene%sides(side)%displacement(axis)
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine take_given
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
    !! between.
@@ -295,17 +315,17 @@ contains
       self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
    end subroutine project
 
-   !> Load the window with the state of the coarse level, solve, and evaluate its tip.
-   subroutine intensity(self, scene, coarse, values, state, result, error)
+   !> Load the window with the state of the coarse level, solve, and evaluate its tips.
+   subroutine find_intensities(self, scene, coarse, values, state, tips, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
       type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
-      type(intensity_t), intent(out) :: result
+      type(window_tip_t), intent(inout) :: tips(:)
       type(error_t), allocatable, intent(out) :: error
       type(face_conditions_t) :: conditions
-      integer(ik) :: v
+      integer(ik) :: i, v
 
       associate (fine => self%model%mesh)
          do v = 1, fine%n_vertices
@@ -314,7 +334,7 @@ contains
             end associate
          end do
       end associate
-      self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
+      self%loads%boundary_displacement = self%curved_edge(scene, coarse, values%displacement, &
                                                           values%gradient)
       if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
       if (.not. allocated(self%contact) .or. allocated(self%contact_mesh)) then
@@ -331,14 +351,21 @@ contains
       end if
       call self%model%solve(self%loads, self%displacement, error, self%contact)
       if (allocated(error)) return
-      call tip_intensity(self%model, self%loads, self%displacement, self%tip, self%found, error)
-      if (.not. allocated(error)) result = self%with_coarse_error()
-   end subroutine intensity
+      do i = 1, size(self%serves, kind=ik)
+         associate (tip => tips(self%serves(i)))
+            if (tip%at == 0) cycle
+            call tip_intensity(self%model, self%loads, self%displacement, tip%at, tip%found, error)
+            if (allocated(error)) return
+         end associate
+      end do
+   end subroutine find_intensities
 
    !> The window's edge with displacements that are quadratic in each coarse cell: linear between
-   !! the nodes, and half of what the gradients there add. Zero at other nodes.
-   pure function curved_edge(self, coarse, displacement, gradient) result(edge)
+   !! the nodes, and half of what the gradients there add; on sides of the body those of the scene,
+   !! where it gives them. Zero at other nodes.
+   pure function curved_edge(self, scene, coarse, displacement, gradient) result(edge)
       class(window_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
       real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
       real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
@@ -359,13 +386,15 @@ contains
             end associate
          end do
       end associate
+      call take_given(self, scene, edge)
    end function curved_edge
 
    !> K_I and K_II under the last solution's loads with other displacements on the edge, or another
    !! pressure in the rock. Nothing is remembered of it.
-   subroutine intensity_with(self, k, error, edge, pressure)
+   subroutine intensities_with(self, tips, k, error, edge, pressure)
       class(window_t), intent(inout) :: self
-      real(rk), intent(out) :: k(2)  !< [Pa m^1/2]
+      type(window_tip_t), intent(in) :: tips(:)
+      real(rk), intent(inout) :: k(:, :)  !< (2, tips), where the window serves them [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
       real(rk), intent(in), optional :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
       real(rk), intent(in), optional :: pressure(:)  !< (coarse cells) that of the cell around [Pa]
@@ -373,8 +402,8 @@ contains
       type(contact_t) :: contact
       type(intensity_t) :: result
       real(rk), allocatable :: displacement(:, :)
+      integer(ik) :: i
 
-      k = 0.0_rk
       loads = self%loads
       if (present(edge)) loads%boundary_displacement = edge
       if (present(pressure)) then
@@ -384,23 +413,25 @@ contains
       contact = self%contact
       call self%model%solve(loads, displacement, error, contact)
       if (allocated(error)) return
-      call tip_intensity(self%model, loads, displacement, self%tip, result, error, quickly=.true.)
-      k = [result%k1, result%k2]
-   end subroutine intensity_with
+      do i = 1, size(self%serves, kind=ik)
+         associate (tip => self%serves(i))
+            if (tips(tip)%at == 0) cycle
+            call tip_intensity(self%model, loads, displacement, tips(tip)%at, result, error, &
+                               quickly=.true.)
+            if (allocated(error)) return
+            k(:, tip) = [result%k1, result%k2]
+         end associate
+      end do
+   end subroutine intensities_with
 
-   !> The intensities found last, with the coarse level's part of their errors as it was known last.
-   pure function with_coarse_error(self) result(intensity)
+   !> Points lie in the window, edges included.
+   pure logical function holds(self, points)
       class(window_t), intent(in) :: self
-      type(intensity_t) :: intensity
+      real(rk), intent(in) :: points(:, :)  !< (2, n) [m]
 
-      intensity = self%found
-      intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
-      intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
-      intensity%k1_error = intensity%k1_error + self%uncertain(1) + self%passing(1)
-      intensity%k2_error = intensity%k2_error + self%uncertain(2) + self%passing(2)
-      intensity%passing_error = maxval(self%passing)
-      call complete_errors(self%model%elasticity%crack_modulus(), intensity)
-   end function with_coarse_error
+      holds = all(minval(points, dim=2) >= self%lower) .and. &
+              all(maxval(points, dim=2) <= self%upper)
+   end function holds
 
    !> The displacement of the last solution at points of the window.
    subroutine displacement_at(self, xy, displacement, error)

@@ -1,6 +1,8 @@
 !> The windows of all tips: built where the network has changed, and asked for intensities.
+!!
+!! Each tip has a window of its own, or the body is one window for all of them.
 module twolevel_windows
-   use base_errors, only: error_t
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use growth_law, only: growth_drive
@@ -8,16 +10,20 @@ module twolevel_windows
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
+   use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
    public :: windows_t
 
-   !> A window for each tip, and whether it is that of the present network and coarse mesh.
+   !> The windows, and whether each is that of the present network and coarse mesh.
    type :: windows_t
       type(window_t), allocatable :: window(:)
-      logical, allocatable :: built(:), projected(:)
+      logical, allocatable :: built(:), projected(:)  !< (windows)
+      integer(ik), allocatable :: window_of(:)  !< (tips)
+      type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
       real(rk), allocatable :: seen(:, :)  !< (2, tips) places of the tips that were seen last [m]
    contains
       procedure :: begin
@@ -25,23 +31,48 @@ module twolevel_windows
       procedure :: accept
       procedure :: network_changed
       procedure :: coarse_changed
+      procedure :: intensity_of
+      procedure :: is_asked
+      procedure :: make_anew
       procedure :: n_unknowns
    end type windows_t
 
 contains
 
    !> No window has been built.
-   subroutine begin(self, tips)
+   subroutine begin(self, tips, is_body, coarser)
       class(windows_t), intent(out) :: self
       type(tip_t), intent(in) :: tips(:)
-      integer(ik) :: i
+      logical, intent(in) :: is_body  !< it is one window for all tips
+      real(rk), intent(in) :: coarser  !< elements along fractures, over what the scene says [-]
+      integer(ik) :: i, n_windows
 
-      allocate (self%window(size(tips)), self%seen(2, size(tips)))
-      allocate (self%built(size(tips)), self%projected(size(tips)), source=.false.)
+      n_windows = size(tips, kind=ik)
+      if (is_body) n_windows = min(n_windows, 1_ik)
+      allocate (self%window(n_windows), self%window_of(size(tips)))
+      allocate (self%tip(size(tips)), self%seen(2, size(tips)))
+      allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
       do i = 1, size(tips, kind=ik)
+         self%window_of(i) = min(i, n_windows)
+         self%tip(i)%fracture = tips(i)%fracture
+         self%tip(i)%end = tips(i)%end
          self%seen(:, i) = tips(i)%xy
       end do
+      do i = 1, n_windows
+         self%window(i)%is_body = is_body
+         self%window(i)%coarser = coarser
+         self%window(i)%serves = numbers_of(self%window_of == i)
+      end do
    end subroutine begin
+
+   !> Which are true.
+   pure function numbers_of(mask) result(numbers)
+      logical, intent(in) :: mask(:)
+      integer(ik), allocatable :: numbers(:)
+      integer(ik) :: i
+
+      numbers = pack([(i, i=1, size(mask, kind=ik))], mask)
+   end function numbers_of
 
    !> Intensities, drive and rosette radius of every tip, in the present state of the coarse level.
    subroutine evaluate(self, scene, network, tips, mesher, mesh, values, state, undrained, error)
@@ -55,38 +86,78 @@ contains
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: i
+      integer(ik) :: w
 
       call see_tips(self, tips)
-      do i = 1, size(tips, kind=ik)
-         associate (tip => tips(i), window => self%window(i))
-            if (.not. tip%is_free) then
-               self%built(i) = .false.
+      do w = 1, size(self%window, kind=ik)
+         associate (window => self%window(w))
+            if (.not. self%is_asked(w, tips)) then
+               self%built(w) = .false.
                cycle
             end if
-            if (.not. self%built(i)) then
-               call window%build(scene, network, tip%fracture, tip%end, error)
+            if (.not. self%built(w)) then
+               call window%build(scene, network, self%tip, error)
                if (allocated(error)) return
-               self%built(i) = .true.
-               self%projected(i) = .false.
+               if (any(tips(window%serves)%is_free .and. self%tip(window%serves)%at == 0)) then
+                  call raise_error(error, "evaluate", "a window has not the tip that it is for")
+                  return
+               end if
+               self%built(w) = .true.
+               self%projected(w) = .false.
             end if
-            if (.not. self%projected(i)) then
+            if (.not. self%projected(w)) then
                call window%project(mesher, mesh, values, error)
                if (allocated(error)) return
-               self%projected(i) = .true.
+               self%projected(w) = .true.
             end if
             if (window%undrained .neqv. undrained) then
                call window%set_rock(scene, undrained, error)
                if (allocated(error)) return
             end if
-            call window%intensity(scene, mesh, values, state, tip%intensity, error)
+            call window%find_intensities(scene, mesh, values, state, self%tip, error)
             if (allocated(error)) return
-            tip%rosette_radius = window%mesh%fracture%tip_radius(window%tip)
+            call tell(self, window, tips)
+         end associate
+      end do
+   end subroutine evaluate
+
+   !> What a window has found, to the free tips that it serves.
+   pure subroutine tell(self, window, tips)
+      class(windows_t), intent(in) :: self
+      type(window_t), intent(in) :: window
+      type(tip_t), intent(inout) :: tips(:)
+      integer(ik) :: i
+
+      do i = 1, size(window%serves, kind=ik)
+         associate (t => window%serves(i), tip => tips(window%serves(i)))
+            if (.not. tip%is_free) cycle
+            tip%intensity = self%intensity_of(t)
+            tip%rosette_radius = window%mesh%fracture%tip_radius(self%tip(t)%at)
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
                                      window%model%elasticity%crack_modulus())
          end associate
       end do
-   end subroutine evaluate
+   end subroutine tell
+
+   !> The intensities of a tip in the last solution of its window, with the errors of both levels.
+   pure function intensity_of(self, tip) result(intensity)
+      class(windows_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+      type(intensity_t) :: intensity
+
+      associate (window => self%window(self%window_of(tip)))
+         intensity = self%tip(tip)%with_coarse_error(window%model%elasticity%crack_modulus())
+      end associate
+   end function intensity_of
+
+   !> A window serves a tip that is free.
+   pure logical function is_asked(self, window, tips)
+      class(windows_t), intent(in) :: self
+      integer(ik), intent(in) :: window
+      type(tip_t), intent(in) :: tips(:)
+
+      is_asked = any(tips(self%window(window)%serves)%is_free)
+   end function is_asked
 
    !> The state that was evaluated last has become history: its slip is what the next one starts
    !! from.
@@ -130,18 +201,27 @@ contains
       end do
    end subroutine forget
 
+   !> The window of a tip must be meshed again, for it is to be a better one.
+   pure subroutine make_anew(self, tip)
+      class(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip
+
+      self%built(self%window_of(tip)) = .false.
+      call self%tip(tip)%forget_coarse_error()
+   end subroutine make_anew
+
    !> The network is another one now, not only at its tips.
    pure subroutine network_changed(self)
       class(windows_t), intent(inout) :: self
 
-      self%built = .false.
+      if (allocated(self%built)) self%built = .false.
    end subroutine network_changed
 
    !> The coarse mesh is another one now.
    pure subroutine coarse_changed(self)
       class(windows_t), intent(inout) :: self
 
-      self%projected = .false.
+      if (allocated(self%projected)) self%projected = .false.
    end subroutine coarse_changed
 
    !> Number of unknowns of all windows.

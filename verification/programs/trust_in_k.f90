@@ -3,8 +3,10 @@
 !! same body without a fluid, with that pressure on its faces, has the same K, found there on
 !! adaptive meshes of the whole body without coarse level or windows.
 !!
-!! Argument: `fitted` for the arrangements below and as many that are drawn, with which the safety
-!! factor was chosen, `unseen` for others that were drawn after that.
+!! First argument: `fitted` for the arrangements below and as many that are drawn, with which a
+!! safety factor was chosen, `unseen` for others that were drawn after that. Second argument:
+!! `body` to hold the windows against the whole body, `edges` to do without, as in bodies with many
+!! fracture cells.
 !!
 !! Writes values.csv, a row for each K_I and K_II that is not zero, and summary.csv.
 program trust_in_k
@@ -172,13 +174,14 @@ contains
       integer(ik) :: tip
 
       allocate (levels, body)
+      if (text_argument(2) == "edges") levels%reference_most = 0
       call write_scene("fluid.nml", arrangement, .true.)
       call run("fluid.nml", levels)
       call write_scene("solid.nml", arrangement, .false.)
       call run("solid.nml", body)
       do tip = 1, size(levels%tip, kind=ik)
          associate (found => levels%tip(tip)%intensity, known => body%tip(tip)%intensity, &
-                    window => levels%windows%window(tip)%found)
+                    window => levels%windows%tip(tip)%found)
             call note(tip, 1_ik, known%k1, found%k1, found%k1_corrected, found%k1_error, &
                       window%k1_error, hypot(known%k1, known%k2))
             call note(tip, 2_ik, known%k2, found%k2, found%k2_corrected, found%k2_error, &

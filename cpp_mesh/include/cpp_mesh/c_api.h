@@ -51,6 +51,7 @@ typedef struct {
     int32_t n_guides; /* lines that cells follow where there is room; the mesh is not cut there */
     const int32_t* guide_count; /* [n_guides] points of each, 2 or more */
     const double* guide_xy;     /* [sum of the counts][2] */
+    double joint_size; /* cells at the places where fractures meet; 0: as along fractures */
 } cm_spec;
 
 typedef struct {

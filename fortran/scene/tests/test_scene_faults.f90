@@ -97,7 +97,16 @@ contains
       call refuse(20, "&time end=0.0", &
                   ":20: &time: end is 0.0 but must be a finite number greater than 0.0 [s]"//doc)
       call refuse(24, "&fine window=0.0 /", &
-                  ":24: &fine: window is 0.0 but must be a finite number greater than 0.0 [m]"//doc)
+                  ":24: &fine: window is 0.0 but must be a finite number greater than 0.0 [m] "// &
+                  "or 'body'"//doc)
+      call refuse(24, "&fine window='rock' /", &
+                  ":24: &fine: window is 'rock' but must be a finite number greater than 0.0 "// &
+                  "[m] or 'body'"//doc)
+      call refuse(24, "&fine window=body /", &
+                  ":24: &fine: window is body but must be a finite number greater than 0.0 [m] "// &
+                  "or 'body'"//doc)
+      call refuse(24, "&fine window='body', 0.2 /", &
+                  ":24: &fine: window has 2 values but must be one number"//doc)
       call refuse(12, "  friction=-0.5 dilation_deg=1.0", &
                   ":12: &fracture: friction is -0.5 but must be a finite number at least 0.0"//doc)
       call refuse(12, "  friction=0.5 dilation_deg=46", ":12: &fracture: dilation_deg is 46 "// &

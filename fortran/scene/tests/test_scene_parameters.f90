@@ -44,8 +44,9 @@ contains
       call checks%is_true(item%meaning /= "", name//" has a meaning")
       call checks%is_true(len_trim(item%meaning) < len(item%meaning), name// &
                           ": its meaning is not cut off")
-      call checks%is_true((item%kind == kind_choice) .eqv. (item%choices /= ""), name// &
-                          " and its choices")
+      if (item%kind /= kind_real) call checks%is_true((item%kind == kind_choice) .eqv. &
+                                                      (item%choices /= ""), name// &
+                                                      " and its choices")
       if (any(item%kind == [kind_choice, kind_logical, kind_name, &
                             kind_text])) call checks%is_true(item%unit == "-" .and. &
                                                              in_words(item%range, &

@@ -22,6 +22,7 @@ program test_scene_write
    call round_trip(source_path("inputs/benchmarks/onset_2300.nml"))
    call check_odd_numbers()
    call check_bodies()
+   call check_word()
    call check_angles()
    call check_completeness()
    call delete_file(path)
@@ -95,6 +96,28 @@ contains
                             "&fe size_boundary=0.2 /"])
       call round_trip(path)
    end subroutine check_odd_numbers
+
+   !> A word in the place of a number. Nothing is measured with the number then.
+   subroutine check_word()
+      type(scene_t) :: scene
+
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
+                            "&material young=1e9 poisson=0.2 biot=0.5 porosity=0.1 "// &
+                            "permeability=1e-18 toughness=1e6 /", &
+                            "&fluid compressibility=1e-9 viscosity=1e-3 /", &
+                            "&fracture name='f' x=0.4 0.6 y=2*0.5 friction=0.1 aperture=1e-3 /", &
+                            "&side name='left' x_displacement=0 y_displacement=0 /", &
+                            "&time end=1 /", "&coarse size_fracture=0.05 size_boundary=0.1 /", &
+                            "&fine window = 'body' /", &
+                            "&growth enabled=.true. increment=0.3 /"])
+      call round_trip(path)
+      call read_scene(path, scene, error)
+      call checks%no_error(error, "a window that is the body")
+      if (allocated(error)) return
+      call checks%is_true(scene%discretization%window_is_body, "the window is the body")
+      call checks%is_close(scene%discretization%window, 0.0_rk, 0.0_rk, "it has no edge")
+      call checks%is_true(index(scene_text(scene), "window = 'body'") > 0, "written as a word")
+   end subroutine check_word
 
    !> Arcs of a disc, edges of a polygon given clockwise, gravity and a stress that grows downwards.
    subroutine check_bodies()

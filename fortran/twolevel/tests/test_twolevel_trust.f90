@@ -54,10 +54,10 @@ contains
       call estimate_coarse_errors(simulation, timers, error)
       call checks%no_error(error, "estimate")
       do i = 1, size(simulation%tip)
-         associate (window => simulation%windows%window(i), tip => simulation%tip(i))
+         associate (seen => simulation%windows%tip(i), tip => simulation%tip(i))
             ! A millionth of 10 MPa*sqrt(pi*0.2 m).
-            call checks%is_true(all(abs(window%lacking) <= 8.0_rk), "nothing is lacking")
-            call checks%is_true(all(window%uncertain <= 32.0_rk), "nothing is uncertain")
+            call checks%is_true(all(abs(seen%lacking) <= 8.0_rk), "nothing is lacking")
+            call checks%is_true(all(seen%uncertain <= 32.0_rk), "nothing is uncertain")
             call checks%is_true(max(tip%intensity%k1_error, tip%intensity%k2_error) <= 40.0_rk, &
                                 "a tip that sticks is certain")
          end associate
@@ -82,12 +82,12 @@ contains
       call estimate_coarse_errors(simulation, timers, error)
       call checks%no_error(error, "estimate")
       do i = 1, size(simulation%tip)
-         associate (window => simulation%windows%window(i), now => simulation%tip(i)%intensity)
-            call checks%is_true(window%uncertain(2) > 0.0_rk, "the coarse level has a part")
-            call checks%is_true(window%uncertain(2) < 0.05_rk*abs(now%k2), "a small one")
-            call checks%is_close(now%k2_error, window%found%k2_error + window%uncertain(2), &
+         associate (seen => simulation%windows%tip(i), now => simulation%tip(i)%intensity)
+            call checks%is_true(seen%uncertain(2) > 0.0_rk, "the coarse level has a part")
+            call checks%is_true(seen%uncertain(2) < 0.05_rk*abs(now%k2), "a small one")
+            call checks%is_close(now%k2_error, seen%found%k2_error + seen%uncertain(2), &
                                  1.0_rk, "both parts add up")
-            call checks%is_close(now%k2_corrected, now%k2 + window%lacking(2), 1.0_rk, &
+            call checks%is_close(now%k2_corrected, now%k2 + seen%lacking(2), 1.0_rk, &
                                  "what is lacking")
             call checks%is_close(now%k1_error, 0.0_rk, 1.0_rk, "closed faces have no K_I")
          end associate
@@ -95,7 +95,7 @@ contains
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "the same state again")
       call checks%is_true(all(simulation%tip%intensity%k2_error >= &
-                              simulation%windows%window%uncertain(2)), "the estimate stays")
+                              simulation%windows%tip%uncertain(2)), "the estimate stays")
    end subroutine test_balance
 
    !> A jump that is linear along the fracture is what the coarse level has at its third points, in
@@ -200,7 +200,7 @@ contains
                gradient(:, 2, v) = [-x, 4.0_rk*y - 3.0_rk*x + 1.0_rk]
             end associate
          end do
-         edge = window%curved_edge(mesh, values, gradient)
+         edge = window%curved_edge(simulation%scene, mesh, values, gradient)
          worst = 0.0_rk
          do v = 1, window%model%mesh%n_nodes
             if (.not. window%model%mesh%on_boundary(v)) cycle

@@ -15,7 +15,9 @@ program test_twolevel_window
    use scene_types, only: scene_t
    use tips_types, only: intensity_t
    use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_trust, only: estimate_coarse_errors
    use twolevel_window, only: window_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
 
    real(rk), parameter :: degree = 0.017453292519943295_rk  !< [rad]
@@ -31,6 +33,7 @@ program test_twolevel_window
    call test_uniform_stress()
    call test_conditions()
    call test_history()
+   call test_body()
    call checks%finish()
 
 contains
@@ -61,6 +64,7 @@ contains
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(window_t) :: window
+      type(window_tip_t) :: tips(1) = window_tip_t(fracture=1, end=2)
       type(error_t), allocatable :: error
       real(rk) :: drained, lame, shear, storage
 
@@ -68,7 +72,8 @@ contains
       scene%material%plane_stress = plane_stress
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
       call simulation%begin(scene, timers, error)
-      call window%build(scene, simulation%network, 1_ik, 2_ik, error)
+      window%serves = [1_ik]
+      call window%build(scene, simulation%network, tips, error)
       call checks%no_error(error, "window")
       associate (e => scene%material%young, nu => scene%material%poisson)
          shear = e/(2.0_rk*(1.0_rk + nu))
@@ -316,6 +321,42 @@ contains
       call checks%no_error(error, "a new mesh")
       call compare(simulation, before, 1.0e-5_rk, "a new mesh")
    end subroutine test_history
+
+   !> The body as one window: uniform stress is exact with the scene's conditions all around; where
+   !! the faces slip both tips have in one solution what each has in a window of its own that is as
+   !! large as the body, and the coarse level has no part in their errors.
+   subroutine test_body()
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: sticking, together, apart
+      type(error_t), allocatable :: error
+      integer :: w
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%window_is_body = .true.
+      call start(scene, 5.0_rk, 0.0_rk, sticking)
+      call checks%is_true(size(sticking%windows%window) == 1, "one window")
+      do w = 1, 2
+         call check_uniform(sticking%windows%window(1), undrained_strain(scene), &
+                            sticking%tip(w)%intensity, "the body")
+      end do
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%window_is_body = .true.
+      call start(scene, 0.1_rk, degree, together)
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%window = 10.0_rk
+      call start(scene, 0.1_rk, degree, apart)
+      call compare(together, apart%tip%intensity, 1.0e-3_rk, "the body")
+      call estimate_coarse_errors(together, timers, error)
+      call checks%no_error(error, "errors")
+      do w = 1, 2
+         associate (seen => together%windows%tip(w))
+            call checks%is_true(all(abs(seen%lacking) <= 0.0_rk) .and. &
+                                all(abs(seen%uncertain) <= 0.0_rk), "nothing comes over an edge")
+         end associate
+      end do
+      call checks%is_true(.not. allocated(together%reference%window), "nothing beside it")
+      call checks%is_true(allocated(apart%reference%window), "the body beside other windows")
+   end subroutine test_body
 
    !> Both tips have their earlier intensities.
    subroutine compare(simulation, before, tolerance, name)

@@ -1,0 +1,164 @@
+!> The coarse level as if it agreed with the windows: a defect correction (Hackbusch 1984).
+!!
+!! Inside the windows, on the fractures and in the rock, these know better than the coarse level,
+!! which gets what they found, all windows at once. This costs one substitution in its factors.
+module twolevel_correction
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use coarse_fields, only: corner_tractions, curved_displacement
+   use coarse_layout, only: block_count, end_block
+   use mesh_types, only: mesh_t
+   use twolevel_faces, only: coarse_jumps
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: improve
+
+contains
+
+   !> What the coarse displacement at the nodes would be if the coarse level agreed with the
+   !! windows inside of them: jumps on the fractures are theirs, and cells all of whose neighbours
+   !! lie in the same window get the forces that make the windows' displacements fulfil their
+   !! equations.
+   subroutine improve(self, displacement, gradient, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), intent(out) :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: difference(:, :), force(:, :), g(:), q(:), tractions(:)
+      real(rk), allocatable :: unknowns(:, :)
+      integer(ik), allocatable :: speaker(:)
+
+      associate (model => self%model)
+         speaker = speakers(self)
+         allocate (q(model%condensed%layout%count()), g(model%condensed%layout%count()))
+         call find_differences(self, speaker, difference, q, error)
+         if (allocated(error)) return
+         force = model%matrix%elastic_forces(difference)
+         force(3, :) = 0.0_rk
+         where (spread(.not. is_within(self, speaker), 1, 3)) force = 0.0_rk
+         call model%condensed%condense(force, g, error)
+         if (allocated(error)) return
+         allocate (unknowns, mold=force)
+         call model%condensed%expand(q, force, unknowns, error)
+         if (allocated(error)) return
+         unknowns = unknowns + self%state%unknowns
+         call corner_tractions(model%regions, unknowns, tractions)
+         call curved_displacement(self%mesh, model%rock, model%regions, unknowns, tractions, &
+                                  displacement, gradient)
+      end associate
+   end subroutine improve
+
+   !> The window that speaks for each block of the coarse level, 0 for none: that whose tip is
+   !! nearest, of those that hold the centre of the cell, or the whole fracture cell.
+   pure function speakers(self) result(speaker)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), allocatable :: speaker(:)  !< (blocks)
+      integer(ik) :: cell
+
+      associate (mesh => self%mesh, fracture => self%mesh%fracture)
+         allocate (speaker(block_count(mesh)))
+         do cell = 1, mesh%n_cells
+            speaker(cell) = nearest_window(self, spread(centre_of(mesh, cell), 2, 2))
+         end do
+         do cell = 1, fracture%n_cells
+            speaker(end_block(mesh, cell, [1_ik, 2_ik])) = &
+               nearest_window(self, fracture%point_xy(:, fracture%cell_points(:, cell)))
+         end do
+      end associate
+   end function speakers
+
+   pure function centre_of(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function centre_of
+
+   !> Of the windows that hold both points, the one whose tip is nearest, else 0.
+   pure function nearest_window(self, points) result(nearest)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: points(2, 2)  !< xy in columns [m]
+      integer(ik) :: nearest
+      real(rk) :: distance, shortest
+      integer(ik) :: i
+
+      nearest = 0
+      shortest = huge(1.0_rk)
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%is_free) cycle
+         associate (w => self%windows%window_of(i))
+            if (.not. self%windows%window(w)%holds(points)) cycle
+            distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(i)%xy)
+            if (distance >= shortest) cycle
+            shortest = distance
+            nearest = w
+         end associate
+      end do
+   end function nearest_window
+
+   !> Cells whose equations know nothing but what one window speaks for.
+   pure function is_within(self, speaker) result(within)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: speaker(:)  !< (blocks)
+      logical, allocatable :: within(:)  !< (blocks)
+      integer(ik) :: i, k
+
+      within = speaker > 0
+      within(self%mesh%n_cells + 1:) = .false.
+      associate (columns => self%model%matrix%columns)
+         do i = 1, size(speaker, kind=ik)
+            do k = columns%first(i), columns%last(i)
+               associate (j => columns%item(k))
+                  if (speaker(i) == speaker(j)) cycle
+                  within([i, j]) = .false.
+               end associate
+            end do
+         end do
+      end associate
+   end function is_within
+
+   !> What the windows find where they speak, less what the coarse level has there; no pressures.
+   subroutine find_differences(self, speaker, difference, q, error)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: speaker(:)  !< (blocks)
+      real(rk), allocatable, intent(out) :: difference(:, :)  !< (3, blocks) [m]
+      real(rk), intent(out) :: q(:)  !< that of the jumps, as in coarse_condensed [m]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: displacement(:, :), jump(:, :, :), xy(:, :)
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: cell, end, i, w
+
+      allocate (difference, mold=self%state%unknowns)
+      difference = 0.0_rk
+      q = 0.0_rk
+      associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
+         do w = 1, size(self%windows%window, kind=ik)
+            if (.not. self%windows%is_asked(w, self%tip)) cycle
+            associate (window => self%windows%window(w))
+               cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
+               xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
+               displacement = xy
+               call window%displacement_at(xy, displacement, error)
+               if (allocated(error)) return
+               difference(:2, cells) = displacement - state%unknowns(:2, cells)
+               jump = coarse_jumps(window%model%mesh, window%displacement, mesh)
+            end associate
+            do cell = 1, mesh%fracture%n_cells
+               do end = 1, 2
+                  associate (block => end_block(mesh, cell, end), n => condensed%normal(:, cell), &
+                             d => jump(:, end, cell) - state%jump(:, end, cell), &
+                             at => condensed%layout%at_jump(cell, end))
+                     if (speaker(block) /= w) cycle
+                     q(at:at + 1) = d
+                     difference(:2, block) = [n(1)*d(1) + n(2)*d(2), n(2)*d(1) - n(1)*d(2)]
+                  end associate
+               end do
+            end do
+         end do
+      end associate
+   end subroutine find_differences
+
+end module twolevel_correction

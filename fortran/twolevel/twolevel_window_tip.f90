@@ -1,0 +1,95 @@
+!> A tip as a window sees it: where it is in the window's mesh, its intensities, and how far they
+!! can be trusted.
+module twolevel_window_tip
+   use base_kinds, only: ik, rk
+   use scene_types, only: scene_t
+   use tips_intensity, only: complete_errors
+   use tips_types, only: intensity_t
+   implicit none(type, external)
+   private
+
+   public :: window_tip_t
+
+   !> Times that the rosette is made smaller by a factor of 2; from the second time on the other
+   !! elements are, too.
+   integer, parameter :: finer_most = 4
+
+   !> One tip of the network, free or not.
+   type :: window_tip_t
+      integer(ik) :: fracture = 0, end = 0  !< of the network
+      integer(ik) :: at = 0  !< its number in the window's mesh; 0: it is not free, nothing is seen
+      integer :: times_finer = 0  !< than the scene says
+      type(intensity_t) :: found  !< in the last solution, without the coarse level's error
+      !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
+      !! last [Pa m^1/2]: what they lack by it, and how large it may be
+      real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
+      real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
+      real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
+      real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
+   contains
+      procedure :: element_size
+      procedure :: rosette_radius
+      procedure :: can_be_finer
+      procedure :: forget_coarse_error
+      procedure :: with_coarse_error
+   end type window_tip_t
+
+contains
+
+   !> Of the elements at fractures that it asks for [m].
+   elemental real(rk) function element_size(self, scene)
+      class(window_tip_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+
+      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(scene)
+   end function element_size
+
+   !> Of the elements around it: two fit on its last straight piece, for the domain of the
+   !! interaction integral ends at a kink [m].
+   elemental real(rk) function rosette_radius(self, scene, piece)
+      class(window_tip_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: piece  !< its length [m]
+
+      rosette_radius = 0.5_rk**self%times_finer*min(usual_size(scene), 0.5_rk*piece)
+   end function rosette_radius
+
+   !> What the scene says [m].
+   elemental real(rk) function usual_size(scene)
+      type(scene_t), intent(in) :: scene
+
+      usual_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
+   end function usual_size
+
+   elemental logical function can_be_finer(self)
+      class(window_tip_t), intent(in) :: self
+
+      can_be_finer = self%times_finer < finer_most
+   end function can_be_finer
+
+   !> Nothing is known of the coarse level's part.
+   elemental subroutine forget_coarse_error(self)
+      class(window_tip_t), intent(inout) :: self
+
+      self%lacking = 0.0_rk
+      self%uncertain = 0.0_rk
+      self%of_edge = 0.0_rk
+      self%passing = 0.0_rk
+   end subroutine forget_coarse_error
+
+   !> The intensities found last, with the coarse level's part of their errors as it was known last.
+   pure function with_coarse_error(self, crack_modulus) result(intensity)
+      class(window_tip_t), intent(in) :: self
+      real(rk), intent(in) :: crack_modulus  !< E' [Pa]
+      type(intensity_t) :: intensity
+
+      intensity = self%found
+      intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
+      intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
+      intensity%k1_error = intensity%k1_error + self%uncertain(1) + self%passing(1)
+      intensity%k2_error = intensity%k2_error + self%uncertain(2) + self%passing(2)
+      intensity%passing_error = maxval(self%passing)
+      call complete_errors(crack_modulus, intensity)
+   end function with_coarse_error
+
+end module twolevel_window_tip
