@@ -127,7 +127,7 @@ contains
                ! The error in time is that up to the joint: what follows is a jump.
                if (.not. is_last) then
                   trial%goes_too_far = any(joins .and. has_begun)
-                  trial%arrival = minval(arrivals(self), mask=joins)
+                  trial%arrival = minval(arrivals(self, tip%drive%intensity), mask=joins)
                   trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
                                   *(self%before%time - last_switch(self%scene, self%before%time))
                   if (trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)) exit
@@ -154,9 +154,10 @@ contains
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
             if (trial%goes_too_far) exit
-            has_begun = has_begun .or. wants
             call begin_pieces(self, wants, timers, error)
             if (allocated(error)) exit
+            ! Not those that have come to something already: nothing lies between.
+            has_begun = has_begun .or. (wants .and. .not. self%segment%stays())
             lesson = lesson_t()  ! of other pieces
          end if
          self%state = self%before
@@ -289,15 +290,21 @@ contains
 
    !> Shares of the step after which tips at the ends of their pieces have probably come there, and
    !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
-   pure function arrivals(self) result(share)
+   !! Tips that have nothing left to go along exceed it when their intensity has risen so far.
+   pure function arrivals(self, before) result(share)
       class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
       real(rk) :: share(size(self%tip))
-      real(rk), dimension(size(self%tip)) :: beyond, room
+      real(rk), dimension(size(self%tip)) :: beyond, room, rise
 
       room = self%segment%length - self%segment%accepted
       beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
       share = room/max(room + beyond, tiny(1.0_rk))
       share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+      rise = (self%tip%drive%intensity - before)/self%rules%toughness
+      where (self%segment%stays() .and. rise > 0.0_rk)
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - 2.0_rk*tolerance)/rise))
+      end where
    end function arrivals
 
    !> Of K_eq over K_IC [-].
