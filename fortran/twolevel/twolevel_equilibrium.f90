@@ -20,7 +20,7 @@ module twolevel_equilibrium
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
-   use twolevel_pieces, only: begin_pieces, can_join, join_targets
+   use twolevel_pieces, only: begin_pieces, can_join, comes_to, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
@@ -214,16 +214,34 @@ contains
       integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
       logical, intent(in) :: is_coupled  !< the kinds move together
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
-      real(rk) :: excess(size(self%tip))
+      real(rk), dimension(size(self%tip)) :: alone, excess
       integer(ik) :: i
 
+      alone = shared_excesses(self)
       do i = 1, size(self%tip, kind=ik)
-         excess(i) = maxval(excesses(self), mask=kind == kind(i))
+         excess(i) = maxval(alone, mask=kind == kind(i))
       end do
       call move_kinds(self, kind, excess, is_coupled, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
+
+   !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
+   pure function shared_excesses(self) result(excess)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: excess(size(self%tip))
+      integer(ik) :: i, j
+
+      excess = excesses(self)
+      do j = 1, size(excess, kind=ik)
+         do i = 1, size(excess, kind=ik)
+            if (.not. comes_to(self, i, j)) cycle
+            excess(i) = max(excess(i), excess(j))
+            excess(j) = -1.0_rk
+            exit
+         end do
+      end do
+   end function shared_excesses
 
    !> Of tips that all exceed their toughness or may go back there are several kinds.
    pure logical function several_kinds(kind, in_play)

@@ -23,7 +23,7 @@ module twolevel_pieces
    implicit none(type, external)
    private
 
-   public :: begin_pieces, can_join, join_targets
+   public :: begin_pieces, can_join, comes_to, join_targets
 
    !> Share of the last piece that fails at once where the tip exceeds its toughness before it.
    real(rk), parameter :: rest = 0.05_rk
@@ -255,6 +255,20 @@ contains
          end associate
       end do
    end function can_join
+
+   !> A tip heads for another one that stands there. The rock between them is one: what breaks it
+   !! from either side lets the first one go on, for the other has no way of its own.
+   pure logical function comes_to(self, i, j)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i, j
+
+      comes_to = i /= j .and. all(self%tip([i, j])%is_free) .and. .not. self%segment(j)%is_open
+      if (.not. comes_to) return
+      ! Cells that an earlier try of the step has made count: they stay.
+      associate (same => same_place*self%rules%increment, at => joint_of(self, i))
+         comes_to = norm2(at - self%tip(j)%xy) <= same .and. norm2(at - self%tip(i)%xy) > same
+      end associate
+   end function comes_to
 
    !> The place that a tip heads for [m].
    pure function joint_of(self, i) result(xy)
