@@ -49,6 +49,10 @@ module twolevel_equilibrium
    !! the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
+   !> A tip with less than this share of its toughness in the first try of a step is not asked in
+   !! the others, but for the last one.
+   real(rk), parameter :: far = 0.7_rk
+
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
@@ -68,7 +72,7 @@ contains
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
       logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
       integer(ik) :: kind(size(self%tip))
-      logical :: has_measured, is_coupled
+      logical :: any_exceeds, has_measured, is_coupled
       type(lesson_t) :: lesson
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
@@ -111,6 +115,7 @@ contains
                                 self%tip%arrested .or. self%segment%gain > 0.0_rk)
             if (trial%onset < 1.0_rk) exit
          end if
+         if (k == 1) self%asked = are_asked(self)
          in_play = tips_in_play(self)
          call lesson%tell(self)
          call measure_rivals(self, in_play, dt, timers, has_measured, error)
@@ -139,6 +144,12 @@ contains
                cycle
             end if
             if (.not. any(wants)) then
+               call ask_others(self, any_exceeds, timers, error)
+               if (allocated(error)) exit
+               if (any_exceeds) then
+                  self%state = self%before
+                  cycle
+               end if
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
                if (.not. is_last .and. self%errs(trial%time_error)) exit
                call estimate_coarse_errors(self, timers, error)
@@ -163,6 +174,7 @@ contains
          self%state = self%before
       end do
       trial%goes_too_far = trial%goes_too_far .or. k > tries_max
+      if (allocated(self%asked)) deallocate (self%asked)
       ! The cells that segments were begun with stay, closed, for the next try.
       self%state = self%before
       self%tip = tip
@@ -177,6 +189,35 @@ contains
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine find_equilibrium
+
+   !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
+   !! from their toughness, known as well as that is.
+   pure function are_asked(self) result(asked)
+      class(two_levels_t), intent(in) :: self
+      logical :: asked(size(self%tip))
+
+      associate (k => self%tip%intensity)
+         asked = self%segment%is_open .or. self%tip%drive%intensity &
+                 + max(k%k1_error, k%k2_error) > far*self%rules%toughness
+      end associate
+   end function are_asked
+
+   !> Evaluate the tips that the tries of a step have not asked for. From now on all are asked.
+   subroutine ask_others(self, any_exceeds, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(out) :: any_exceeds  !< its toughness
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: others(size(self%tip))
+
+      any_exceeds = .false.
+      if (.not. allocated(self%asked)) return
+      others = .not. self%asked .and. self%tip%is_free
+      self%asked = others
+      if (any(others)) call self%evaluate(timers, error)
+      deallocate (self%asked)
+      if (.not. allocated(error)) any_exceeds = any(others .and. excesses(self) > tolerance)
+   end subroutine ask_others
 
    !> The tried state is accepted.
    subroutine accept_equilibrium(self)

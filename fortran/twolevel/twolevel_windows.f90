@@ -43,12 +43,15 @@ contains
       end do
    end subroutine begin
 
-   !> Intensities, drive and rosette radius of every tip, in the present state of the coarse level.
-   subroutine evaluate(self, scene, network, tips, mesher, mesh, values, state, undrained, error)
+   !> Intensities, drive and rosette radius of every tip that is asked for, in the present state of
+   !! the coarse level.
+   subroutine evaluate(self, scene, network, tips, asked, mesher, mesh, values, state, undrained, &
+                       error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
+      logical, intent(in) :: asked(:)  !< (tips)
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: mesh  !< the coarse one
       type(coarse_values_t), intent(in) :: values
@@ -64,6 +67,7 @@ contains
                self%built(i) = .false.
                cycle
             end if
+            if (.not. asked(i)) cycle
             if (.not. self%built(i)) then
                call window%build(scene, network, tip%fracture, tip%end, error)
                if (allocated(error)) return
