@@ -250,7 +250,7 @@ contains
       do f = 1, size(network%first, kind=ik) - 1
          do v = network%first(f), network%first(f + 1) - 2
             associate (a => network%xy(:, v), b => network%xy(:, v + 1))
-               is_cut_aslant = is_cut_aslant .or. ((a(axis) - edge)*(b(axis) - edge) < 0.0_rk .and. &
+              is_cut_aslant = is_cut_aslant .or. ((a(axis) - edge)*(b(axis) - edge) < 0.0_rk .and. &
                                                    abs(b(axis) - a(axis)) < shallow &
                                                    *abs(b(3 - axis) - a(3 - axis)))
             end associate
