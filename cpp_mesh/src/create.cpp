@@ -65,8 +65,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
     mesh.size.set_discs(rosette_discs(graph, plans, specification.rosette_sectors));
-    // Cells between fractures that meet, or almost do, must not be much longer than what is left for
-    // them.
+    // Cells between fractures that meet, or almost do, must not be much longer than what is left
+    // for them.
     if (mesh.size.is_scale_free() ||
         (!specification.is_window &&
          (!joints_of(graph).empty() || has_near_ends(graph, domain, mesh.size))))

@@ -20,7 +20,7 @@ module twolevel_equilibrium
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
-   use twolevel_pieces, only: begin_pieces, can_join, comes_to, join_targets
+   use twolevel_pieces, only: begin_pieces, can_join, comes_to, have_come, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
@@ -262,6 +262,9 @@ contains
       do i = 1, size(self%tip, kind=ik)
          excess(i) = maxval(alone, mask=kind == kind(i))
       end do
+      ! Nothing but a rest before them: it fails as soon as they are at the toughness, before others
+      ! go on, for which they would wait else where all are at it alike.
+      where (have_come(self)) excess = excess + 2.0_rk*tolerance
       call move_kinds(self, kind, excess, is_coupled, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()

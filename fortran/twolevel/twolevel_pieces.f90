@@ -23,7 +23,7 @@ module twolevel_pieces
    implicit none(type, external)
    private
 
-   public :: begin_pieces, can_join, comes_to, join_targets
+   public :: begin_pieces, can_join, comes_to, have_come, join_targets
 
    !> Share of the last piece that fails at once where the tip exceeds its toughness before it.
    real(rk), parameter :: rest = 0.05_rk
@@ -107,6 +107,23 @@ contains
                          self%rules%increment, kink)
       direction = turned(tip%direction, kink)
    end function way_ahead
+
+   !> Tips with nothing but the rest of a piece before them.
+   pure function have_come(self)
+      class(two_levels_t), intent(in) :: self
+      logical :: have_come(size(self%tip))
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), segment => self%segment(i))
+            have_come(i) = segment%stays()
+            if (have_come(i) .or. .not. tip%is_free .or. segment%is_open .or. &
+                tip%heads_for /= target_none) cycle
+            if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
+            have_come(i) = has_come(self, i, tip%xy, way_ahead(self, tip))
+         end associate
+      end do
+   end function have_come
 
    !> What a tip that goes straight on comes to is no farther than the rest of a piece.
    pure logical function has_come(self, i, from, direction)

@@ -55,7 +55,7 @@ module twolevel_state
       type(state_t) :: before  !< the step that led there, on the same mesh
       type(trend_t) :: trend  !< rates of the last accepted step
       type(windows_t) :: windows
-      !> (tips) those that are evaluated; unallocated: all. Tries of a step need not know the others.
+      !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
       logical, allocatable :: asked(:)
       type(coarse_values_t) :: coarse_values
       logical :: values_are_current = .false.

@@ -23,8 +23,8 @@ program test_twolevel_pieces
 
 contains
 
-   !> Rock that no fluid enters and nothing presses much, and a well in the first fracture. Fractures
-   !! that stick are no part of its elastic answer.
+   !> Rock that no fluid enters and nothing presses much, and a well in the first fracture.
+   !! Fractures that stick are no part of its elastic answer.
    function injected_body() result(scene)
       type(scene_t) :: scene
 
@@ -71,15 +71,14 @@ contains
                            name//": fluid is conserved")
    end subroutine march
 
-   !> Between two fractures that stick, both tips are alike: they join in one step, when the pressure
-   !! is what K_I = s sqrt(pi a) = K_IC asks for in an infinite body (here 2 m wide: K is up to 1 %
-   !! larger), at most 1.5 % of K_IC later.
+   !> Between two fractures that stick, both tips are alike: they join in one step, and the fluid
+   !! that the others take lets the pressure fall below that of the onset, 2 MPa + K_IC/sqrt(pi a).
    subroutine test_two_bars(gap)
       real(rk), intent(in) :: gap  !< [m]
       real(rk), parameter :: half = 0.2_rk, pi = acos(-1.0_rk)
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
-      real(rk) :: before, s
+      real(rk) :: s
       integer :: states
 
       scene = injected_body()
@@ -97,13 +96,8 @@ contains
       call checks%is_close(maxval(abs(end_place(simulation%network, 1_ik, 2_ik) &
                                       - [1.2_rk, 1.0_rk])), 0.0_rk, 0.1_rk*gap, "right joint")
       call checks%is_close(simulation%tip(1)%advance, gap, 1.0e-3_rk*gap, "over the gap")
-      ! The fluid of the step before has driven it there; now the bars take some of it.
       s = scene%material%toughness/sqrt(pi*(half - gap))
-      before = simulation%injected
-     print "(a,es9.2,a,f8.4)", "gap", gap, " m: pressure after the joint over that of the onset ", &
-         simulation%well_pressure()/(2.0e6_rk + s)
-      call checks%is_true(simulation%well_pressure() < 2.0e6_rk + s .and. before > 0.0_rk, &
-                          "the pressure falls")
+      call checks%is_true(simulation%well_pressure() < 2.0e6_rk + s, "the pressure falls")
    end subroutine test_two_bars
 
    !> End to end: one joins the other, which is a tip no more.
