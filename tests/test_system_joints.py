@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -71,6 +72,70 @@ def test_the_law_of_advances_joins_too(tmp_path: Path) -> None:
     mass_error = record(out)["mass_error_relative"]
     assert isinstance(mass_error, float)
     assert mass_error < 1.0e-9
+
+
+def test_ends_that_almost_touch_join_at_once(tmp_path: Path) -> None:
+    """At K_IC, over 0.2 mm with cells of 100 mm; the run says beforehand that they will.
+
+    K_I = s sqrt(pi a) of the stem alone, whatever lies beside it, as it is pressed along itself so
+    much that the bars do not open ahead of its tips.
+    """
+    other = BAR.replace("'bar'", "'other'").replace("x = 0.8, 0.8", "x = -0.8, -0.8")
+    out = run(
+        tmp_path,
+        changed(
+            (BAR, BAR + other),
+            ("x = -0.65, 0.65", "x = -0.7998, 0.7998"),
+            ("x_traction = -4.0e6", "x_traction = -1.0e8"),
+            ("size_fracture = 0.05", "size_fracture = 0.1"),
+            ("increment = 0.05", "increment = 0.1"),
+            ("end = 80.0", "end = 85.0"),
+        ),
+    )
+    warnings = record(out)["warnings"]
+    assert isinstance(warnings, list)
+    for name in ("bar", "other"):
+        assert any(f"&fracture 'stem' to '{name}': gap is 2.0e-4 m" in text for text in warnings)
+    left, right = joints(out)
+    assert {left["detail"], right["detail"]} == {"joins fracture bar", "joins fracture other"}
+    onset = 1.0e6 / math.sqrt(math.pi * 0.7998)
+    volume = 2.0 * math.pi * 0.7998**2 / 3.2e10 * onset
+    time = volume * (1.0 + 4.0e-9 * (2.0e6 + onset)) / 1.0e-6
+    # K to 0.5 %, the step to 0.5 % of the time, and the equilibrium to twice 0.5 % of K.
+    assert float(left["time_s"]) == pytest.approx(time, rel=0.02)
+    assert left["time_s"] == right["time_s"]
+    history = rows(out / "history.csv")
+    assert [history[0]["n_tips"], history[-1]["n_tips"]] == ["6", "4"]
+    mass_error = record(out)["mass_error_relative"]
+    assert isinstance(mass_error, float)
+    assert mass_error < 1.0e-9
+
+
+def test_a_stub_is_a_tip_of_its_own(tmp_path: Path) -> None:
+    """The stem goes 1 mm past the bar: it is warned of, and runs to the end."""
+    out = run(tmp_path, changed(("x = -0.65, 0.65", "x = -0.65, 0.801")))
+    warnings = record(out)["warnings"]
+    assert isinstance(warnings, list)
+    assert any("&fracture 'stem' past 'bar': stub is 0.001 m" in text for text in warnings)
+    assert rows(out / "history.csv")[-1]["n_intersections"] == "1"
+
+
+def test_many_cells_make_no_difference(tmp_path: Path) -> None:
+    """Growth and a joint on the sparse equations of many fracture cells, beside the full ones.
+
+    States agree to 1e-9; where the tries of a step end, within 0.5 % of K_IC, is not as certain.
+    """
+    ways = []
+    for way in ("full", "sparse"):
+        folder = tmp_path / way
+        folder.mkdir()
+        given = ("size_fracture = 0.05", f"condensation = '{way}', size_fracture = 0.05")
+        ways.append(run(folder, changed(given)))
+    times = [joints(out)[0]["time_s"] for out in ways]
+    assert float(times[0]) == pytest.approx(float(times[1]), rel=1.0e-3)
+    for column in ("well_pressure_pa", "fracture_length_m"):
+        full, sparse = (numbers(out / "history.csv", column)[-1] for out in ways)
+        assert full == pytest.approx(sparse, rel=1.0e-3)
 
 
 def test_nothing_is_joined_from_afar(tmp_path: Path) -> None:

@@ -71,8 +71,11 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     if (specification.joint_size > 0.0)
         for (const Joint& joint : joints_of(graph))
             mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
-    // Cells between fractures that meet must not be much longer than what is left for them.
-    if (mesh.size.is_scale_free() || (!specification.is_window && !joints_of(graph).empty()))
+    // Cells between fractures that meet, or almost do, must not be much longer than what is left
+    // for them.
+    if (mesh.size.is_scale_free() ||
+        (!specification.is_window &&
+         (!joints_of(graph).empty() || has_near_ends(graph, domain, mesh.size))))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);
 
     const std::size_t n_given = graph.points.size();

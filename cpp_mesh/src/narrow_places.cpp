@@ -12,6 +12,21 @@ constexpr double narrow_share = 0.6;
 // Growth of cell sizes per distance from a narrow place: as fast as good shapes allow.
 constexpr double growth = 0.6;
 
+// Below this share of the wanted size the distance of an end is too small for good shapes.
+constexpr double near_share = 0.2;
+
+// Distance of a point of the graph from what does not end there, or the gap given if that is less.
+double room_at(const Graph& graph, const Domain& domain, int point, double gap) {
+    const Vec2 place = graph.points[point].xy;
+    for (const GraphEdge& edge : graph.edges)
+        if (edge.point[0] != point && edge.point[1] != point)
+            gap = std::min(gap, distance_to_segment(place, graph.points[edge.point[0]].xy,
+                                                    graph.points[edge.point[1]].xy));
+    if (!graph.points[point].on_boundary && !domain.is_deeper(place, gap))
+        gap = std::min(gap, domain.depth(place));
+    return gap;
+}
+
 } // namespace
 
 void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, SizeField& size) {
@@ -27,18 +42,27 @@ void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, Size
     for (int p : points) {
         const Vec2 place = graph.points[p].xy;
         const double wanted = size(place);
-        double gap = wanted;
-        for (const GraphEdge& edge : graph.edges)
-            if (edge.point[0] != p && edge.point[1] != p)
-                gap = std::min(gap, distance_to_segment(place, graph.points[edge.point[0]].xy,
-                                                        graph.points[edge.point[1]].xy));
-        if (!graph.points[p].on_boundary && !domain.is_deeper(place, gap))
-            gap = std::min(gap, domain.depth(place));
+        const double gap = room_at(graph, domain, p, wanted);
         if (gap < narrow_share * wanted)
             discs.push_back({place, gap, gap, growth});
     }
     for (const SizeDisc& disc : discs)
         size.add(disc);
+}
+
+bool has_near_ends(const Graph& graph, const Domain& domain, const SizeField& size) {
+    std::vector<int> n_edges(graph.points.size(), 0);
+    for (const GraphEdge& edge : graph.edges)
+        for (int p : edge.point)
+            ++n_edges[p];
+    for (int p = 0; p < static_cast<int>(n_edges.size()); ++p) {
+        if (n_edges[p] != 1 || graph.points[p].on_boundary)
+            continue;
+        const double nearest = near_share * size(graph.points[p].xy);
+        if (room_at(graph, domain, p, nearest) < nearest)
+            return true;
+    }
+    return false;
 }
 
 } // namespace cpp_mesh

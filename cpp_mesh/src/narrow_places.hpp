@@ -12,6 +12,10 @@ namespace cpp_mesh {
 // the distance of a point from an edge or the boundary that is so near, and grow from there.
 void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, SizeField& size);
 
+// A fracture ends so near to another one, or to the boundary, that cells of the size wanted there
+// would have angles below 12 degrees.
+bool has_near_ends(const Graph& graph, const Domain& domain, const SizeField& size);
+
 } // namespace cpp_mesh
 
 #endif

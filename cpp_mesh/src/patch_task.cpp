@@ -4,9 +4,9 @@
 
 namespace cpp_mesh {
 
-PatchTask::PatchTask(const Mesh& given, const Network& network, double size)
+PatchTask::PatchTask(const Mesh& given, const Network& network, const Tolerances& allowed)
     : old_mesh(given), edges(given.plane.cells, static_cast<int>(given.plane.xy.size())),
-      tolerances(tolerances_for(given.specification.domain.box(), size)), xy(given.plane.xy) {
+      tolerances(allowed), xy(given.plane.xy) {
     made.specification = given.specification;
     made.network = network;
     made.size = given.size;

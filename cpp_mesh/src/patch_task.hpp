@@ -9,8 +9,7 @@
 namespace cpp_mesh {
 
 struct PatchTask {
-    // Tolerances are those of cells of the given size [m].
-    PatchTask(const Mesh& old_mesh, const Network& network, double size);
+    PatchTask(const Mesh& old_mesh, const Network& network, const Tolerances& tolerances);
 
     // To be called once the graph is known: its points get the old nodes where there are any, and
     // new nodes elsewhere.

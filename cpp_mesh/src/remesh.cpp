@@ -30,6 +30,10 @@ void check_request(const Mesh& old_mesh, double radius, double size) {
 // the parts of a divided cell would have neighbours too long for them.
 constexpr double smallest_part = 0.35;
 
+// What has grown may come nearer to nodes of cells than what is given may come to fractures: where
+// an end almost touches another fracture, cells are no longer than what lies between.
+constexpr double nearer = 0.1;
+
 // The node between two cells of a fracture that go on straight, and through which no other goes, is
 // moved to a place on one of them. False if there is no such node near the place.
 bool move_node(Vec2 place, const Tolerances& tolerances, std::vector<Segment>& cells) {
@@ -100,7 +104,9 @@ bool has_joints(const Graph& graph) {
 Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,
             double radius, double size) {
     check_request(old_mesh, radius, size);
-    PatchTask task(old_mesh, network, size);
+    Tolerances tolerances = tolerances_for(old_mesh.specification.domain.box(), size);
+    tolerances.near_miss *= nearer;
+    PatchTask task(old_mesh, network, tolerances);
     task.graph = grown_graph(old_mesh, network, task.tolerances);
     task.find_nodes_of_points();
     PatchRequest request;
@@ -116,8 +122,9 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
     }
     // As in a new mesh: a joint leaves parts of cells of any length, and narrow sectors.
     const bool meets = has_joints(task.graph);
-    if (meets)
-        limit_sizes_in_narrow_places(task.graph, old_mesh.specification.domain, task.made.size);
+    const Domain& domain = old_mesh.specification.domain;
+    if (meets || has_near_ends(task.graph, domain, task.made.size))
+        limit_sizes_in_narrow_places(task.graph, domain, task.made.size);
     request.size = task.made.size;
     Patch patch = choose_patch(request, task);
     PatchStyle style;

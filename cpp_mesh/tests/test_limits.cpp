@@ -134,6 +134,29 @@ void narrow_places(Checks& checks) {
                            std::to_string(free.counts.n_cells));
 }
 
+// Coarse cells have good shapes, and stay few, where fractures almost touch each other or the
+// boundary.
+void near_ends(Checks& checks) {
+    const auto mesh_of = [&](double end, ApiMesh& mesh, const std::string& name) {
+        const TestNetwork network({{{0.2, 0.5}, {0.6 - end, 0.5}},
+                                   {{0.6, 0.3}, {0.6, 0.7}},
+                                   {{0.9, 0.6}, {1.0 - end, 0.63}}});
+        checks.is_true(mesh.create(rectangle_spec(1.0, 1.0, 0.05, 0.2), network),
+                       name + ": " + mesh.error);
+    };
+    ApiMesh apart;
+    mesh_of(0.02, apart, "ends apart");
+    for (const double gap : {9e-3, 2e-3, 2e-4, 6e-5}) {
+        ApiMesh mesh;
+        const std::string name = "ends within " + std::to_string(gap) + " m";
+        mesh_of(gap, mesh, name);
+        check_quality(checks, mesh, 15.0, name);
+        checks.is_true(mesh.counts.n_cells < apart.counts.n_cells * (2.0 - 0.5 * std::log10(gap)),
+                       name + ": number of cells, " + std::to_string(mesh.counts.n_cells) +
+                           " for " + std::to_string(apart.counts.n_cells));
+    }
+}
+
 // Rosettes far smaller than their body: fracture cells grow away from them as cells around do, by
 // about 0.3 of their length, so that a factor of ten takes some eight cells at each end.
 void tiny_rosettes(Checks& checks) {
@@ -159,6 +182,7 @@ int main() {
     flat_angles(checks);
     sharp_kinks(checks);
     narrow_places(checks);
+    near_ends(checks);
     tiny_rosettes(checks);
     return checks.finish();
 }

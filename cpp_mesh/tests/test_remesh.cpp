@@ -330,7 +330,7 @@ void refused(Checks& checks) {
         checks.says(after.error, words, "refused");
     };
     TestNetwork changed = network;
-    grow_end(changed, 0, {0.559995, 0.5});
+    grow_end(changed, 0, {0.5599995, 0.5});
     refuse(changed, 0.02, "fractures 1 and 2 come within");
     changed = network;
     grow_end(changed, 0, {0.4, 0.5});

@@ -73,6 +73,7 @@ contains
       self%factorizations = self%factorizations + 1
       n_blocks = merge(matrix%n_blocks, matrix%n_cells, self%is_full)
       if (.not. self%analysed) then
+         if (allocated(self%rock)) deallocate (self%rock)  ! of another mesh
          self%n = mesh%fracture%n_cells
          self%layout = condensed_layout(self%n)
          self%at_fractures = at_component(matrix%n_cells + 1, 1)

@@ -9,6 +9,7 @@ module growth_segment
    !> A piece of a path. The tip goes from its start to its end; then the next one begins.
    type :: segment_t
       logical :: is_open = .false.  !< the tip is on its way along it
+      logical, private :: is_rest = .false.  !< the tip does not go along it by itself
       real(rk) :: start(2) = 0.0_rk  !< [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector
       real(rk) :: length = 0.0_rk  !< [m]
@@ -23,6 +24,8 @@ module growth_segment
    contains
       procedure :: open_segment
       procedure :: leave_rest
+      procedure :: stay_at_start
+      procedure :: stays
       procedure :: finish
       procedure :: place
       procedure :: is_complete
@@ -50,6 +53,7 @@ contains
       real(rk), intent(in) :: length  !< [m]
 
       self%is_open = .true.
+      self%is_rest = .false.
       self%start = start
       self%direction = direction
       self%length = length
@@ -67,6 +71,23 @@ contains
       self%reached = least*self%length
    end subroutine leave_rest
 
+   !> The tip does not go along the piece at all by itself.
+   elemental subroutine stay_at_start(self)
+      class(segment_t), intent(inout) :: self
+
+      self%is_open = .false.
+      self%is_rest = .true.
+      self%reached = 0.0_rk
+      self%slope = 0.0_rk
+   end subroutine stay_at_start
+
+   !> The tip is at the start of a piece that it does not go along.
+   elemental logical function stays(self)
+      class(segment_t), intent(in) :: self
+
+      stays = self%is_rest
+   end function stays
+
    !> The tip is where the piece ends, and will not go on from there.
    pure subroutine finish(self, end)
       class(segment_t), intent(inout) :: self
@@ -75,6 +96,7 @@ contains
       self%length = norm2(end - self%start)
       self%reached = self%length
       self%is_open = .false.
+      self%is_rest = .false.
    end subroutine finish
 
    !> Where the tip is [m].

@@ -7,7 +7,7 @@ module growth_targets
    implicit none(type, external)
    private
 
-   public :: find_ahead, find_target, target_boundary, target_none
+   public :: find_ahead, find_beside, find_target, target_boundary, target_none
 
    integer(ik), parameter :: target_none = 0
    integer(ik), parameter :: target_boundary = -1
@@ -52,7 +52,8 @@ contains
    end subroutine find_target
 
    !> What a tip that goes straight on comes to first, within a reach. Nothing beside its way is
-   !! captured, but ends and kinks that it passes nearer than a mesh can hold.
+   !! captured, but ends and kinks that it passes nearer than a mesh can hold. A joint that would be
+   !! as near to another one is put there.
    pure subroutine find_ahead(network, corners, fracture, from, way, near, target, at)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
@@ -81,7 +82,99 @@ contains
          call look_at(from, way, corners(:, [k, mod(k, n) + 1]), near, target_boundary, best, &
                       target, at)
       end do
+      if (target /= target_none) call put_on_joint(network, from, near, at)
    end subroutine find_ahead
+
+   !> What a tip comes beside where nothing lies ahead of it, nearer than a mesh can hold: it has
+   !! come to that.
+   pure subroutine find_beside(network, corners, fracture, from, to, near, target, at)
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
+      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
+      real(rk), intent(in) :: near  !< how near is too near [m]
+      integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
+      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk) :: least
+      integer(ik) :: f, k, n, v
+
+      target = target_none
+      at = to
+      least = near
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (ends => network%xy(:, v:v + 1))
+               if (f == fracture .and. &
+                   point_distance(from, ends) <= same_place*norm2(to - from)) cycle
+               call keep_nearest(to, ends, f, least, target, at)
+            end associate
+         end do
+      end do
+      n = size(corners, 2, kind=ik)
+      do k = 1, n
+         call keep_nearest(to, corners(:, [k, mod(k, n) + 1]), target_boundary, least, target, at)
+      end do
+      if (target /= target_none) call put_on_joint(network, from, near, at)
+   end subroutine find_beside
+
+   !> Keep a segment if a place is nearer to it than to others.
+   pure subroutine keep_nearest(to, ends, candidate, least, target, at)
+      real(rk), intent(in) :: to(2), ends(2, 2)  !< [m]
+      integer(ik), intent(in) :: candidate
+      real(rk), intent(inout) :: least  !< distance so far [m]
+      integer(ik), intent(inout) :: target
+      real(rk), intent(inout) :: at(2)  !< [m]
+
+      if (.not. point_distance(to, ends) < least) return
+      least = point_distance(to, ends)
+      target = candidate
+      at = nearest_place(to, ends)
+   end subroutine keep_nearest
+
+   !> A joint nearer than that to a vertex or to a crossing of the network is there.
+   pure subroutine put_on_joint(network, from, near, at)
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: from(2)  !< where the tip is, which is no place for its joint [m]
+      real(rk), intent(in) :: near  !< [m]
+      real(rk), intent(inout) :: at(2)  !< [m]
+      integer(ik), allocatable :: around(:)
+      real(rk) :: least, place(2), share(2)
+      integer(ik) :: f, i, k, v
+
+      least = near
+      place = at
+      allocate (around(0))
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 1
+            associate (vertex => network%xy(:, v))
+               if (norm2(vertex - at) < least .and. norm2(vertex - from) > near) then
+                  least = norm2(vertex - at)
+                  place = vertex
+               end if
+            end associate
+            if (v == network%first(f + 1) - 1) exit
+            if (point_distance(at, network%xy(:, v:v + 1)) < near) around = [around, v]
+         end do
+      end do
+      if (.not. least < near) then
+         do i = 1, size(around, kind=ik)
+            do k = 1, i - 1
+               associate (a => network%xy(:, around(i):around(i) + 1), &
+                          b => network%xy(:, around(k):around(k) + 1))
+                  share = meeting(a, b)
+                  if (.not. all(share >= 0.0_rk .and. share <= 1.0_rk)) cycle
+                  associate (crossing => a(:, 1) + share(1)*(a(:, 2) - a(:, 1)))
+                     if (.not. (norm2(crossing - at) < least .and. &
+                                norm2(crossing - from) > near)) cycle
+                     least = norm2(crossing - at)
+                     place = crossing
+                  end associate
+               end associate
+            end do
+         end do
+      end if
+      at = place
+   end subroutine put_on_joint
 
    !> Keep a segment if the way comes to it before others. A way that meets it at too small an angle
    !! goes to its nearest place instead.

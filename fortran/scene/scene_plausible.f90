@@ -6,6 +6,7 @@ module scene_plausible
    use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
+   use scene_near_ends, only: near_end_t, near_ends
    use scene_region_outline, only: body_part
    use scene_storage, only: skempton
    use scene_types, only: fracture_t, scene_t
@@ -29,7 +30,8 @@ module scene_plausible
                          of_permeability = 5, of_toughness = 6, of_compressibility = 7, &
                          of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
                          of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
-                         of_stiff_fluid = 16, of_region = 17, of_width = 18
+                         of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
+                         of_stub = 20
 
    ! The table keeps its own layout.
    !&<
@@ -74,8 +76,21 @@ module scene_plausible
               "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("region", "width", "m", "below size_boundary: twice its area over its outline", &
               "cells may be wider and mix its permeability with that around it; make "// &
-              "size_boundary smaller")]
+              "size_boundary smaller"), &
+      doubt_t("fracture", "gap", "m", &
+              "of an end below 0.05 increments, with growth and &fluid", &
+             "the rock between fails as soon as the tip exceeds its toughness; let them touch, "// &
+              "or move them apart, if that is not meant"), &
+      doubt_t("fracture", "stub", "m", &
+              "past a fracture that it crosses below 0.05 increments, likewise", &
+              "its end is a tip of its own, in cells as small as the stub; let it end on the "// &
+              "other one if that is meant")]
    !&>
+
+   !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
+   real(rk), parameter :: near_end = 0.05_rk
+
+   character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
 contains
 
@@ -90,6 +105,7 @@ contains
       call doubt_material(scene, has_fluid, list)
       call doubt_fractures(scene%fractures, has_fluid, list)
       if (has_fluid) call doubt_flow(scene, list)
+      if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
       if (allocated(scene%regions)) call doubt_regions(scene, list)
    end function doubts_of_scene
 
@@ -134,6 +150,29 @@ contains
       end do
    end subroutine doubt_fractures
 
+   !> Ends that almost touch something, or lie just past it.
+   pure subroutine doubt_ends(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      type(near_end_t), allocatable :: found(:)
+      character(len=:), allocatable :: other
+      integer :: i
+
+      found = near_ends(scene%fractures, scene%domain, near_end*scene%growth%increment)
+      do i = 1, size(found)
+         associate (this => found(i))
+            if (this%other > 0) then
+               other = " '"//trim(scene%fractures(this%other)%name)//"'"
+            else
+               other = " the side"//trim(sides(this%side))
+            end if
+            call add(list, .true., merge(of_stub, of_gap, this%is_past), this%distance, " '"// &
+                     trim(scene%fractures(this%fracture)%name)//"'"// &
+                     trim(merge(" past", " to  ", this%is_past))//other)
+         end associate
+      end do
+   end subroutine doubt_ends
+
    !> Regions that the cells may miss, and their permeability.
    pure subroutine doubt_regions(scene, list)
       type(scene_t), intent(in) :: scene
@@ -162,7 +201,6 @@ contains
    pure subroutine doubt_flow(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
-      character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
       real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
       integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
       real(rk) :: across

@@ -20,7 +20,7 @@ module twolevel_equilibrium
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
-   use twolevel_pieces, only: begin_pieces, can_join, join_targets
+   use twolevel_pieces, only: begin_pieces, can_join, comes_to, have_come, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
@@ -49,6 +49,10 @@ module twolevel_equilibrium
    !! the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
+   !> A tip with less than this share of its toughness in the first try of a step is not asked in
+   !! the others, but for the last one.
+   real(rk), parameter :: far = 0.7_rk
+
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
@@ -68,7 +72,7 @@ contains
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
       logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
       integer(ik) :: kind(size(self%tip))
-      logical :: has_measured, is_coupled
+      logical :: any_exceeds, has_measured, is_coupled
       type(lesson_t) :: lesson
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
@@ -111,6 +115,7 @@ contains
                                 self%tip%arrested .or. self%segment%gain > 0.0_rk)
             if (trial%onset < 1.0_rk) exit
          end if
+         if (k == 1) self%asked = are_asked(self)
          in_play = tips_in_play(self)
          call lesson%tell(self)
          call measure_rivals(self, in_play, dt, timers, has_measured, error)
@@ -127,7 +132,7 @@ contains
                ! The error in time is that up to the joint: what follows is a jump.
                if (.not. is_last) then
                   trial%goes_too_far = any(joins .and. has_begun)
-                  trial%arrival = minval(arrivals(self), mask=joins)
+                  trial%arrival = minval(arrivals(self, tip%drive%intensity), mask=joins)
                   trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
                                   *(self%before%time - last_switch(self%scene, self%before%time))
                   if (trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)) exit
@@ -139,6 +144,12 @@ contains
                cycle
             end if
             if (.not. any(wants)) then
+               call ask_others(self, any_exceeds, timers, error)
+               if (allocated(error)) exit
+               if (any_exceeds) then
+                  self%state = self%before
+                  cycle
+               end if
                trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
                if (.not. is_last .and. self%errs(trial%time_error)) exit
                call estimate_coarse_errors(self, timers, error)
@@ -154,14 +165,16 @@ contains
             trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
                              self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
             if (trial%goes_too_far) exit
-            has_begun = has_begun .or. wants
             call begin_pieces(self, wants, timers, error)
             if (allocated(error)) exit
+            ! Not those that have come to something already: nothing lies between.
+            has_begun = has_begun .or. (wants .and. .not. self%segment%stays())
             lesson = lesson_t()  ! of other pieces
          end if
          self%state = self%before
       end do
       trial%goes_too_far = trial%goes_too_far .or. k > tries_max
+      if (allocated(self%asked)) deallocate (self%asked)
       ! The cells that segments were begun with stay, closed, for the next try.
       self%state = self%before
       self%tip = tip
@@ -176,6 +189,35 @@ contains
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine find_equilibrium
+
+   !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
+   !! from their toughness, known as well as that is.
+   pure function are_asked(self) result(asked)
+      class(two_levels_t), intent(in) :: self
+      logical :: asked(size(self%tip))
+
+      associate (k => self%tip%intensity)
+         asked = self%segment%is_open .or. self%tip%drive%intensity &
+                 + max(k%k1_error, k%k2_error) > far*self%rules%toughness
+      end associate
+   end function are_asked
+
+   !> Evaluate the tips that the tries of a step have not asked for. From now on all are asked.
+   subroutine ask_others(self, any_exceeds, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(out) :: any_exceeds  !< its toughness
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: others(size(self%tip))
+
+      any_exceeds = .false.
+      if (.not. allocated(self%asked)) return
+      others = .not. self%asked .and. self%tip%is_free
+      self%asked = others
+      if (any(others)) call self%evaluate(timers, error)
+      deallocate (self%asked)
+      if (.not. allocated(error)) any_exceeds = any(others .and. excesses(self) > tolerance)
+   end subroutine ask_others
 
    !> The tried state is accepted.
    subroutine accept_equilibrium(self)
@@ -213,16 +255,37 @@ contains
       integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
       logical, intent(in) :: is_coupled  !< the kinds move together
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
-      real(rk) :: excess(size(self%tip))
+      real(rk), dimension(size(self%tip)) :: alone, excess
       integer(ik) :: i
 
+      alone = shared_excesses(self)
       do i = 1, size(self%tip, kind=ik)
-         excess(i) = maxval(excesses(self), mask=kind == kind(i))
+         excess(i) = maxval(alone, mask=kind == kind(i))
       end do
+      ! Nothing but a rest before them: it fails as soon as they are at the toughness, before others
+      ! go on, for which they would wait else where all are at it alike.
+      where (have_come(self)) excess = excess + 2.0_rk*tolerance
       call move_kinds(self, kind, excess, is_coupled, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
+
+   !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
+   pure function shared_excesses(self) result(excess)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: excess(size(self%tip))
+      integer(ik) :: i, j
+
+      excess = excesses(self)
+      do j = 1, size(excess, kind=ik)
+         do i = 1, size(excess, kind=ik)
+            if (.not. comes_to(self, i, j)) cycle
+            excess(i) = max(excess(i), excess(j))
+            excess(j) = -1.0_rk
+            exit
+         end do
+      end do
+   end function shared_excesses
 
    !> Of tips that all exceed their toughness or may go back there are several kinds.
    pure logical function several_kinds(kind, in_play)
@@ -289,15 +352,21 @@ contains
 
    !> Shares of the step after which tips at the ends of their pieces have probably come there, and
    !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
-   pure function arrivals(self) result(share)
+   !! Tips that have nothing left to go along exceed it when their intensity has risen so far.
+   pure function arrivals(self, before) result(share)
       class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
       real(rk) :: share(size(self%tip))
-      real(rk), dimension(size(self%tip)) :: beyond, room
+      real(rk), dimension(size(self%tip)) :: beyond, room, rise
 
       room = self%segment%length - self%segment%accepted
       beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
       share = room/max(room + beyond, tiny(1.0_rk))
       share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+      rise = (self%tip%drive%intensity - before)/self%rules%toughness
+      where (self%segment%stays() .and. rise > 0.0_rk)
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - 2.0_rk*tolerance)/rise))
+      end where
    end function arrivals
 
    !> Of K_eq over K_IC [-].

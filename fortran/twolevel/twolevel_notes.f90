@@ -40,6 +40,7 @@ contains
       class(notes_t), intent(inout) :: self
       class(two_levels_t), intent(inout) :: levels
       real(rk) :: error, onset
+      character(len=:), allocatable :: how_well
       integer(ik) :: i
 
       do i = 1, size(levels%tip, kind=ik)
@@ -50,9 +51,10 @@ contains
             if (approach%is_over) then
                error = approach%uncertainty(tolerance*toughness)
                onset = approach%onset_before(levels%state%time, toughness)
-               call levels%chronicle%add_event(onset, event_growth_onset, "known to " &
-                                               //brief_text(error, 3)//" s", tip%fracture, &
-                                               tip%origin)
+               how_well = "known to "//brief_text(error, 3)//" s"
+               if (.not. error < huge(1.0_rk)) how_well = "K_eq was not rising: not known when"
+               call levels%chronicle%add_event(onset, event_growth_onset, how_well, &
+                                               tip%fracture, tip%origin)
             else
                call approach%follow(levels%state%time, tip%drive%intensity, &
                                     norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &

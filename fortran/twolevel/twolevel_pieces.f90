@@ -7,19 +7,23 @@
 !! piece, which shrinks with the increments, is left. Where K_eq exceeds the toughness there still,
 !! the rest fails: the crack joins what it has come to, at once, and fluid flows there. So a joint
 !! is made where and when the rock in between has failed, wherever the nodes of the mesh are.
+!!
+!! A piece that would be no longer than such a rest is nothing but that: the tip stays where it is,
+!! and joins what lies so near ahead of it once it exceeds its toughness.
 module twolevel_pieces
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_plane, only: point_distance
+   use base_plane, only: point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use growth_network, only: end_place, extend, move_end
-   use growth_targets, only: target_boundary, target_none
+   use growth_network, only: end_place, extend, move_end, straighten_end
+   use growth_targets, only: find_beside, target_boundary, target_none
+   use growth_tip, only: tip_t
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
-   public :: begin_pieces, can_join, join_targets
+   public :: begin_pieces, can_join, comes_to, have_come, join_targets
 
    !> Share of the last piece that fails at once where the tip exceeds its toughness before it.
    real(rk), parameter :: rest = 0.05_rk
@@ -34,32 +38,54 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: centres(:, :)
-      real(rk) :: to(2)
-      logical :: any_grew, is_new(size(self%tip))
+      real(rk) :: ahead(2, size(self%tip)), to(2)
+      type(tip_t) :: tip(size(self%tip))
+      logical, dimension(size(self%tip)) :: is_new, is_near
+      logical :: any_grew
       integer(ik) :: i
 
       self%segment%is_open = self%segment%is_open .and. .not. wants
       is_new = wants
+      is_near = .false.
       do i = 1, size(self%tip, kind=ik)
          if (.not. wants(i)) cycle
-         associate (tip => self%tip(i))
-            to = end_place(self%coarse_network, tip%fracture, tip%end)
-            is_new(i) = .not. norm2(to - tip%xy) > same_place*self%rules%increment
-            if (is_new(i)) cycle
-            ! An earlier try of this step has begun it, and its path has learned from that.
-            tip = self%begun(i)
-            call extend(self%network, tip%fracture, tip%end, to)
-            call open_piece(self, i, to)
+         to = end_place(self%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
+         is_new(i) = .not. norm2(to - self%tip(i)%xy) > same_place*self%rules%increment
+         if (is_new(i)) then
+            ahead(:, i) = way_ahead(self, self%tip(i))
+            is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
+            cycle
+         end if
+         ! An earlier try of this step has begun it, and its path has learned from that.
+         self%tip(i) = self%begun(i)
+         associate (begun => self%tip(i))
+            if (norm2(to - begun%origin) > rest*self%rules%increment) then
+               call extend(self%network, begun%fracture, begun%end, begun%xy)
+               call open_piece(self, i, to)
+            else
+               call stay_before(self, i, to)
+            end if
          end associate
       end do
       if (.not. any(is_new)) then
          self%state = self%before
          return
       end if
-      call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new), any_grew, timers, error)
+      tip = self%tip
+      call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new .and. .not. is_near), any_grew, &
+                        timers, error)
       if (allocated(error)) return
-      is_new = is_new .and. self%tip%advance > 0.0_rk
-      call end_pieces(self, is_new, centres)
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. is_new(i)) cycle
+         if (is_near(i)) then
+            self%tip(i)%origin = self%tip(i)%xy
+         else if (self%tip(i)%advance > 0.0_rk) then
+            ahead(:, i) = self%tip(i)%direction
+         else
+            is_new(i) = .false.
+         end if
+      end do
+      call end_pieces(self, tip, ahead, is_new, centres)
       self%state = self%before
       if (size(centres, 2) == 0) return
       call self%remesh_coarse(centres, timers, error)
@@ -67,11 +93,58 @@ contains
       self%has_new_mesh = .true.
    end subroutine begin_pieces
 
+   !> Where a tip goes, by the criterion in the present state, before the direction of a new piece
+   !! is corrected.
+   pure function way_ahead(self, tip) result(direction)
+      class(two_levels_t), intent(in) :: self
+      type(tip_t), intent(in) :: tip
+      real(rk) :: direction(2)  !< unit vector
+      type(tip_t) :: ahead
+      real(rk) :: kink
+
+      ahead = tip
+      call ahead%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, &
+                         self%rules%increment, kink)
+      direction = turned(tip%direction, kink)
+   end function way_ahead
+
+   !> Tips with nothing but the rest of a piece before them.
+   pure function have_come(self)
+      class(two_levels_t), intent(in) :: self
+      logical :: have_come(size(self%tip))
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), segment => self%segment(i))
+            have_come(i) = segment%stays()
+            if (have_come(i) .or. .not. tip%is_free .or. segment%is_open .or. &
+                tip%heads_for /= target_none) cycle
+            if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
+            have_come(i) = has_come(self, i, tip%xy, way_ahead(self, tip))
+         end associate
+      end do
+   end function have_come
+
+   !> What a tip that goes straight on comes to is no farther than the rest of a piece.
+   pure logical function has_come(self, i, from, direction)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(in) :: direction(2)  !< unit vector
+      real(rk) :: at(2)
+      integer(ik) :: target
+
+      call self%look_ahead(self%coarse_network, self%tip(i)%fracture, from, direction, target, at)
+      has_come = target /= target_none .and. norm2(at - from) <= rest*self%rules%increment
+   end function has_come
+
    !> Where new pieces end, in the directions that have been found. Tips that head for each other
-   !! meet half way.
-   subroutine end_pieces(self, is_new, centres)
+   !! meet half way, or where one of them is if they are that near.
+   subroutine end_pieces(self, before, ahead, is_new, centres)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(in) :: is_new(:)  !< (tips)
+      type(tip_t), intent(in) :: before(:)  !< the tips as they were before their new pieces
+      real(rk), intent(in) :: ahead(:, :)  !< (2, tips) directions of the pieces, unit vectors
+      logical, intent(inout) :: is_new(:)  !< (tips)
       real(rk), allocatable, intent(out) :: centres(:, :)  !< (2, n) where the network changes [m]
       logical :: has_end(size(self%tip))
       real(rk) :: to(2, size(self%tip))
@@ -80,25 +153,42 @@ contains
       allocate (centres(2, 0))
       has_end = .false.
       do i = 1, size(self%tip, kind=ik)
-         if (is_new(i)) call find_end(self, i, target(i), to(:, i))
+         if (is_new(i)) call find_end(self, i, ahead(:, i), target(i), to(:, i))
       end do
       do i = 1, size(self%tip, kind=ik)
          do j = 1, i - 1
             if (.not. (is_new(i) .and. is_new(j))) cycle
-            if (norm2(to(:, i) - self%tip(j)%origin) > self%rules%near .or. &
-                norm2(to(:, j) - self%tip(i)%origin) > self%rules%near) cycle
-            to(:, i) = 0.5_rk*(self%tip(i)%origin + self%tip(j)%origin)
-            to(:, j) = to(:, i)
-            has_end([i, j]) = .true.
+            associate (a => self%tip(i)%origin, b => self%tip(j)%origin)
+               if (norm2(to(:, i) - b) > self%rules%near .or. &
+                   norm2(to(:, j) - a) > self%rules%near) cycle
+               if (norm2(a - b) <= rest*self%rules%increment) then
+                  to(:, i) = b
+                  is_new(j) = .false.
+                  call take_back(self, before(j), j)
+               else
+                  to(:, i) = 0.5_rk*(a + b)
+                  to(:, j) = to(:, i)
+                  has_end(j) = .true.
+               end if
+               has_end(i) = .true.
+            end associate
          end do
       end do
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_new(i)) cycle
          ! Pieces that have just been made may lie ahead of it.
-         if (.not. has_end(i)) call find_end(self, i, target(i), to(:, i))
-         associate (tip => self%tip(i))
-            tip%heads_for = target(i)
+         if (.not. has_end(i)) call find_end(self, i, ahead(:, i), target(i), to(:, i))
+         if (target(i) /= target_none .and. &
+             norm2(to(:, i) - self%tip(i)%origin) <= rest*self%rules%increment) then
+            call take_back(self, before(i), i)
+            self%tip(i)%heads_for = target(i)
+            self%tip(i)%origin = self%tip(i)%xy
+            call stay_before(self, i, to(:, i))
+         else
+            self%tip(i)%heads_for = target(i)
             call open_piece(self, i, to(:, i))
+         end if
+         associate (tip => self%tip(i))
             self%begun(i) = tip
             call extend(self%coarse_network, tip%fracture, tip%end, to(:, i))
          end associate
@@ -106,19 +196,49 @@ contains
       end do
    end subroutine end_pieces
 
+   !> A tip has no new piece after all.
+   subroutine take_back(self, before, i)
+      class(two_levels_t), intent(inout) :: self
+      type(tip_t), intent(in) :: before  !< it, as it was without
+      integer(ik), intent(in) :: i  !< tip
+
+      associate (tip => self%tip(i), network => self%network)
+         if (norm2(tip%xy - before%xy) > 0.0_rk) then
+            call move_end(network, tip%fracture, tip%end, before%xy)
+            call straighten_end(network, tip%fracture, tip%end, 1_ik)
+         end if
+         tip = before
+      end associate
+   end subroutine take_back
+
    !> Where the last piece of a tip ends, and on what.
-   pure subroutine find_end(self, i, target, to)
+   pure subroutine find_end(self, i, direction, target, to)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: direction(2)  !< unit vector
       integer(ik), intent(out) :: target
       real(rk), intent(out) :: to(2)  !< [m]
 
       associate (tip => self%tip(i))
-         call self%look_ahead(self%coarse_network, tip%fracture, tip%origin, tip%direction, &
-                              target, to)
-         if (target == target_none) to = tip%xy
+         call self%look_ahead(self%coarse_network, tip%fracture, tip%origin, direction, target, to)
+         if (target /= target_none) return
+       call find_beside(self%coarse_network, self%rules%outline, tip%fracture, tip%origin, tip%xy, &
+                          self%rules%near, target, to)
       end associate
    end subroutine find_end
+
+   !> All that is left of the way to what a tip heads for is the rest that fails at once.
+   subroutine stay_before(self, i, to)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: to(2)  !< the place that it heads for [m]
+
+      associate (tip => self%tip(i))
+         call self%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
+                                           norm2(to - tip%xy))
+         call self%segment(i)%stay_at_start()
+      end associate
+   end subroutine stay_before
 
    !> Let a tip go along a piece from where its last one has ended.
    pure subroutine open_piece(self, i, to)
@@ -152,6 +272,20 @@ contains
          end associate
       end do
    end function can_join
+
+   !> A tip heads for another one that stands there. The rock between them is one: what breaks it
+   !! from either side lets the first one go on, for the other has no way of its own.
+   pure logical function comes_to(self, i, j)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i, j
+
+      comes_to = i /= j .and. all(self%tip([i, j])%is_free) .and. .not. self%segment(j)%is_open
+      if (.not. comes_to) return
+      ! Cells that an earlier try of the step has made count: they stay.
+      associate (same => same_place*self%rules%increment, at => joint_of(self, i))
+         comes_to = norm2(at - self%tip(j)%xy) <= same .and. norm2(at - self%tip(i)%xy) > same
+      end associate
+   end function comes_to
 
    !> The place that a tip heads for [m].
    pure function joint_of(self, i) result(xy)
@@ -202,7 +336,11 @@ contains
          do j = 1, size(joins, kind=ik)
             associate (tip => self%tip(j))
                if (j == i .or. meet(self, i, j)) then
-                  call move_end(self%network, tip%fracture, tip%end, xy)
+                  if (norm2(tip%xy - self%segment(j)%start) > 0.0_rk) then
+                     call move_end(self%network, tip%fracture, tip%end, xy)
+                  else
+                     call extend(self%network, tip%fracture, tip%end, xy)
+                  end if
                   call self%segment(j)%finish(xy)
                   tip%xy = xy
                   tip%target = tip%heads_for

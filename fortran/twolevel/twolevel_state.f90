@@ -57,6 +57,8 @@ module twolevel_state
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, against which these are held
       integer(ik) :: reference_most = 400  !< coarse fracture cells up to which they are
+      !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
+      logical, allocatable :: asked(:)
       type(coarse_values_t) :: coarse_values
       logical :: values_are_current = .false.
       logical :: undrained = .false.  !< the state is the undrained response to the load
@@ -315,16 +317,19 @@ contains
       self%values_are_current = .true.
    end subroutine update_values
 
-   !> Stress intensity factors of all tips, in windows on the present network.
+   !> Stress intensity factors of the tips asked for, in windows on the present network.
    subroutine evaluate(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      logical :: asked(size(self%tip))
 
+      asked = .true.
+      if (allocated(self%asked)) asked = self%asked
       call timers%start(phase_tips)
       call self%update_values()
-      call self%windows%evaluate(self%scene, self%network, self%tip, self%mesher, self%mesh, &
-                                 self%coarse_values, self%state, self%undrained, error)
+      call self%windows%evaluate(self%scene, self%network, self%tip, asked, self%mesher, &
+                                 self%mesh, self%coarse_values, self%state, self%undrained, error)
       call timers%stop(phase_tips)
    end subroutine evaluate
 

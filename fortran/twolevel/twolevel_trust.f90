@@ -85,8 +85,9 @@ contains
       integer(ik) :: i
 
       tips = self%tip
-      call self%reference%evaluate(self%scene, self%network, tips, self%mesher, self%mesh, &
-                                   self%coarse_values, self%state, self%undrained, error)
+      call self%reference%evaluate(self%scene, self%network, tips, tips%is_free, self%mesher, &
+                                   self%mesh, self%coarse_values, self%state, self%undrained, &
+                                   error)
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
          if (tips(i)%is_free) call judge_beside(self%reference%tip(i), self%windows%tip(i))

@@ -237,7 +237,7 @@ contains
    end subroutine take_given
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
-   !! between.
+   !! between, or that a fracture crosses at an angle at which none does.
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
@@ -246,15 +246,37 @@ contains
 
       do axis = 1, 2
          associate (at => network%xy(axis, :))
-            do while (any(abs(at - lower(axis)) < clearance))
+            do while (any(abs(at - lower(axis)) < clearance) .or. &
+                      is_cut_aslant(network, axis, lower(axis)))
                lower(axis) = lower(axis) - clearance
             end do
-            do while (any(abs(at - upper(axis)) < clearance))
+            do while (any(abs(at - upper(axis)) < clearance) .or. &
+                      is_cut_aslant(network, axis, upper(axis)))
                upper(axis) = upper(axis) + clearance
             end do
          end associate
       end do
    end subroutine clear_edges
+
+   !> A segment of a fracture crosses an edge's line at a small angle.
+   pure logical function is_cut_aslant(network, axis, edge)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), parameter :: shallow = tan(5.0_rk*acos(-1.0_rk)/180.0_rk)
+      integer(ik) :: f, v
+
+      is_cut_aslant = .false.
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
+              is_cut_aslant = is_cut_aslant .or. ((a(axis) - edge)*(b(axis) - edge) < 0.0_rk .and. &
+                                                   abs(b(axis) - a(axis)) < shallow &
+                                                   *abs(b(3 - axis) - a(3 - axis)))
+            end associate
+         end do
+      end do
+   end function is_cut_aslant
 
    !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves.
    !! There the pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the

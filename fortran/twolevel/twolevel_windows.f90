@@ -74,12 +74,15 @@ contains
       numbers = pack([(i, i=1, size(mask, kind=ik))], mask)
    end function numbers_of
 
-   !> Intensities, drive and rosette radius of every tip, in the present state of the coarse level.
-   subroutine evaluate(self, scene, network, tips, mesher, mesh, values, state, undrained, error)
+   !> Intensities, drive and rosette radius of every tip that is asked for, in the present state of
+   !! the coarse level.
+   subroutine evaluate(self, scene, network, tips, asked, mesher, mesh, values, state, undrained, &
+                       error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
+      logical, intent(in) :: asked(:)  !< (tips)
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: mesh  !< the coarse one
       type(coarse_values_t), intent(in) :: values
@@ -95,6 +98,7 @@ contains
                self%built(w) = .false.
                cycle
             end if
+            if (.not. any(asked(window%serves))) cycle
             if (.not. self%built(w)) then
                call window%build(scene, network, self%tip, error)
                if (allocated(error)) return

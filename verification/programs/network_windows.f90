@@ -134,7 +134,7 @@ contains
       do while (n < 3)
          centre = [between(0.8_rk, 1.2_rk), between(0.8_rk, 1.2_rk)]
          ends(:, n + 1) = along(centre, between(0.1_rk, 0.25_rk), between(20.0_rk, 70.0_rk))
-         if (nearest(ends(:, :n), ends(:, n + 1)) > 0.02_rk) n = n + 1
+         if (least_distance(ends(:, :n), ends(:, n + 1)) > 0.02_rk) n = n + 1
       end do
       network = network_t(ends, pressure, 0.35_rk)
    end function drawn
@@ -161,20 +161,20 @@ contains
    end function along
 
    !> Distance of a fracture to others, from points along them [m].
-   pure real(rk) function nearest(others, one)
+   pure real(rk) function least_distance(others, one)
       real(rk), intent(in) :: others(:, :), one(:)  !< (4, n), (4) ends [m]
       integer, parameter :: n = 40
       integer :: a, b, k
 
-      nearest = huge(1.0_rk)
+      least_distance = huge(1.0_rk)
       do k = 1, size(others, 2)
          do a = 0, n
             do b = 0, n
-               nearest = min(nearest, norm2(point(one, a) - point(others(:, k), b)))
+               least_distance = min(least_distance, norm2(point(one, a) - point(others(:, k), b)))
             end do
          end do
       end do
-   end function nearest
+   end function least_distance
 
    pure function point(ends, place)
       real(rk), intent(in) :: ends(4)  !< [m]

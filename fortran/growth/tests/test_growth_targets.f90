@@ -2,7 +2,7 @@
 program test_growth_targets
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_targets, only: find_ahead, find_target, target_boundary, target_none
+   use growth_targets, only: find_ahead, find_beside, find_target, target_boundary, target_none
    use mesh_types, only: network_t
    implicit none(type, external)
    real(rk), parameter :: reach = 0.1_rk, round_off = 1.0e-14_rk
@@ -46,9 +46,51 @@ program test_growth_targets
               "near the segment before the last, which it leaves")
 
    call look_ahead()
+   call look_beside()
+   call joints_nearby()
    call checks%finish()
 
 contains
+
+   !> A tip that runs along fracture 2, 0.005 away from it, has come to it; 0.015 away it has not.
+   subroutine look_beside()
+      real(rk) :: at(2)
+      integer(ik) :: target
+
+      network%first = [1_ik, 3_ik, 5_ik]
+      network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 0.5_rk, 0.105_rk, 3.0_rk, 0.105_rk], &
+                           [2, 4])
+      network%s_start = [0.0_rk, 0.0_rk]
+      call find_beside(network, corners, 1_ik, [1.0_rk, 0.0_rk], [1.5_rk, 0.1_rk], 0.01_rk, &
+                       target, at)
+      call checks%is_true(target == 2, "beside it")
+      call checks%is_close(norm2(at - [1.5_rk, 0.105_rk]), 0.0_rk, round_off, "its nearest place")
+      call find_beside(network, corners, 1_ik, [1.0_rk, 0.0_rk], [1.5_rk, 0.09_rk], 0.01_rk, &
+                       target, at)
+      call checks%is_true(target == target_none, "not beside it")
+      call find_beside(network, corners, 1_ik, [3.0_rk, 0.0_rk], [3.995_rk, -1.0_rk], 0.01_rk, &
+                       target, at)
+      call checks%is_true(target == target_boundary, "beside a side")
+   end subroutine look_beside
+
+   !> A joint that would be 0.004 away from where fractures 2 and 3 cross is put there, and one as
+   !! near to where fracture 4 ends on fracture 2, there.
+   subroutine joints_nearby()
+      real(rk) :: at(2)
+      integer(ik) :: target
+
+      network%first = [1_ik, 3_ik, 5_ik, 7_ik, 9_ik]
+      network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 2.0_rk, 1.0_rk, &
+                            1.9_rk, 0.1_rk, 2.2_rk, 0.4_rk, 2.0_rk, -0.5_rk, 2.5_rk, -0.5_rk], &
+                           [2, 8])
+      network%s_start = spread(0.0_rk, 1, 4)
+      call sees([1.0_rk, 0.196_rk], [1.5_rk, 0.0_rk], 3_ik, [2.0_rk, 0.2_rk], "a crossing nearby")
+      ! Which of the two it is, as far away as each other, rounding decides.
+      call find_ahead(network, corners, 1_ik, [1.0_rk, -0.496_rk], [1.5_rk, 0.0_rk], 0.03_rk, &
+                      target, at)
+      call checks%is_close(norm2(at - [2.0_rk, -0.5_rk]), 0.0_rk, round_off, "a T nearby")
+      call sees([1.0_rk, -0.3_rk], [1.5_rk, 0.0_rk], 2_ik, [2.0_rk, -0.3_rk], "no joint nearby")
+   end subroutine joints_nearby
 
    !> Straight ahead only: fracture 2 is the polyline (2, -1), (2, 1), (3, 1), fracture 3 goes from
    !! (-2, 0) on to the left.
