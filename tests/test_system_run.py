@@ -392,7 +392,7 @@ def test_a_scene_is_checked_without_running(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["small.nml"]
 
 
-@pytest.mark.parametrize("rows_of_fractures", [1, 3])
+@pytest.mark.parametrize("rows_of_fractures", [2, 4])
 def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> None:
     """Its estimate knows where fractures are only on average: within a quarter of the mesh."""
     tool = TOP / "tools" / "many_fractures.py"

@@ -74,8 +74,7 @@ void check_shapes(const PlaneMesh& old_mesh, const Patch& patch, const PlaneMesh
 Mesh grow_within(double margin_in_cells, const Mesh& old_mesh, const Network& network,
                  const RosetteRadii& radii) {
     const Specification& spec = old_mesh.specification;
-    PatchTask task(old_mesh, network,
-                   tolerances_for(spec.domain.box(), spec.size_fracture));
+    PatchTask task(old_mesh, network, tolerances_for(spec.domain.box(), spec.size_fracture));
     task.made.specification.rosette_radii = radii;
     const std::vector<Segment> grown = grown_segments(old_mesh.network, network);
     task.graph =

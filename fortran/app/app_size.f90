@@ -121,7 +121,7 @@ contains
       associate (body => scene%domain, far => scene%discretization%size_boundary, &
                  near => scene%discretization%size_fracture)
          n = cells_per_square*area/far**2
-         if (.not. (length > 0.0_rk .and. near < far)) return
+         if (.not. (length > 0.0_rk .and. near < far .and. area > 0.0_rk)) return
          n_fractures = real(size(scene%fractures), rk)
          ! 2 L d + n pi d**2 = covered*area, in a form that one long fracture does not cancel
          farthest = covered*area/(length + sqrt(length**2 + covered*area*n_fractures*pi))

@@ -59,12 +59,13 @@ contains
 
       associate (seen => self%windows%tip(tip), &
                  window => self%windows%window(self%windows%window_of(tip)))
-         ! What cannot be done leaves the other, if that is worth it.
+         ! What cannot be done leaves the other, if that is worth it. Where the window holds the
+         ! body, it differs from that by the elements alone.
          is_finer = seen%of_elements >= seen%of_edge
          if (is_finer .and. .not. seen%can_be_finer()) then
             is_finer = .not. seen%of_edge > worth_it*seen%of_elements
-         else if (.not. (is_finer .or. window%can_be_larger(self%scene))) then
-            is_finer = seen%of_elements > worth_it*seen%of_edge
+         else if (.not. window%can_be_larger(self%scene)) then
+            is_finer = .true.
          end if
          if (is_finer) then
             if (.not. seen%can_be_finer()) return

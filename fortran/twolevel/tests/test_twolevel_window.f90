@@ -64,10 +64,11 @@ contains
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(window_t) :: window
-      type(window_tip_t) :: tips(1) = window_tip_t(fracture=1, end=2)
+      type(window_tip_t) :: tips(1)
       type(error_t), allocatable :: error
       real(rk) :: drained, lame, shear, storage
 
+      tips = window_tip_t(fracture=1, end=2)
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       scene%material%plane_stress = plane_stress
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
