@@ -199,12 +199,13 @@ contains
       lowest = max(self%accepted, least*self%length)
    end function lowest
 
-   !> Be as far along as another one, and know of the excess what that knows.
+   !> Be as far along as another one, but never behind the last accepted state, and know of the
+   !! excess what that knows.
    elemental subroutine keep_up_with(self, other)
       class(segment_t), intent(inout) :: self
       type(segment_t), intent(in) :: other
 
-      self%reached = self%length*(other%reached/other%length)
+      self%reached = max(self%lowest(), self%length*(other%reached/other%length))
       self%tried = self%length*(other%tried/other%length)
       self%excess = other%excess
       self%tries = other%tries

@@ -85,6 +85,10 @@ contains
       call twin%keep_up_with(segment)
       call checks%is_close(twin%reached, 2.0_rk*segment%reached, 0.0_rk, "as far along")
       call checks%is_true(twin%is_complete(), "and at its end as well")
+      call twin%accept()
+      twin%is_open = .true.
+      call twin%keep_up_with(segment_t(is_open=.true., length=1.0_rk, reached=0.2_rk))
+      call checks%is_close(twin%reached, twin%length, 0.0_rk, "never back")
       call segment%accept()
       call checks%is_true(.not. segment%is_open, "over")
       call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")

@@ -22,6 +22,7 @@ program test_twolevel_trust
    call test_linear_jump()
    call test_root_jump()
    call test_curved_edge()
+   call test_pressure_in_cells()
    call checks%finish()
 
 contains
@@ -216,5 +217,49 @@ contains
 
       u = [xy(1)**2 - xy(1)*xy(2), 2.0_rk*xy(2)**2 - 3.0_rk*xy(1)*xy(2) + xy(2)]
    end function quadratic
+
+   !> What the rock's pressure may hide in the cells: nothing where it is uniform; else K answers it
+   !! linearly while all of the fracture slips, and changes twice as much for twice as much of it.
+   subroutine test_pressure_in_cells()
+      real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e6_rk  ! [Pa], [Pa/m]
+      type(twolevel_simulation_t) :: simulation
+      real(rk) :: once(2, 2), twice(2, 2), none(2, 2), k(2)
+
+      call start(0.1_rk, simulation)
+      none = passing_of(simulation, uniform, 0.0_rk)
+      k = [simulation%tip(1)%intensity%k2, simulation%tip(2)%intensity%k2]
+      call checks%is_close(maxval(abs(none)), 0.0_rk, 1.0e-6_rk*maxval(abs(k)), "uniform pressure")
+      once = passing_of(simulation, uniform, gradient)
+      twice = passing_of(simulation, uniform, 2.0_rk*gradient)
+      call checks%is_true(minval(once(2, :)) > 1.0e-4_rk*maxval(abs(k)), "a gradient is seen")
+      call checks%is_close(maxval(abs(twice - 2.0_rk*once)), 0.0_rk, 0.02_rk*maxval(twice), &
+                           "twice the gradient")
+   end subroutine test_pressure_in_cells
+
+   !> That part of the stated errors with a pressure in the rock that grows linearly along x.
+   function passing_of(simulation, uniform, gradient) result(passing)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: uniform  !< at x = 1 m [Pa]
+      real(rk), intent(in) :: gradient  !< [Pa/m]
+      real(rk) :: passing(2, 2)  !< of K_I and K_II, (2, tips) [Pa m^1/2]
+      type(error_t), allocatable :: error
+      integer :: c, i
+
+      associate (mesh => simulation%mesh, pressure => simulation%state%unknowns(3, :))
+         pressure = uniform
+         do c = 1, mesh%n_cells
+            pressure(c) = uniform + gradient*(sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk - 1.0_rk)
+         end do
+      end associate
+      simulation%undrained = .false.
+      simulation%values_are_current = .false.
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "tips")
+      call estimate_coarse_errors(simulation, timers, error)
+      call checks%no_error(error, "estimate")
+      do i = 1, 2
+         passing(:, i) = simulation%windows%tip(i)%passing
+      end do
+   end function passing_of
 
 end program test_twolevel_trust
