@@ -243,12 +243,14 @@ contains
       real(rk), intent(in) :: gradient  !< [Pa/m]
       real(rk) :: passing(2, 2)  !< of K_I and K_II, (2, tips) [Pa m^1/2]
       type(error_t), allocatable :: error
+      real(rk) :: x
       integer :: c, i
 
       associate (mesh => simulation%mesh, pressure => simulation%state%unknowns(3, :))
          pressure = uniform
          do c = 1, mesh%n_cells
-            pressure(c) = uniform + gradient*(sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk - 1.0_rk)
+            x = sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk
+            pressure(c) = uniform + gradient*(x - 1.0_rk)
          end do
       end associate
       simulation%undrained = .false.
