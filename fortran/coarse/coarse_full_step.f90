@@ -1,27 +1,17 @@
 !> The linear step of the fractures' equations where the body is condensed onto them as a full
 !! matrix.
 !!
-!! Some jumps need no elimination in that matrix: those of an end that sticks do not move, and an
-!! end that slips opens with its slip alone. Their equations hold no force (coarse_slopes), are
-!! solved for one end at a time, and leave the full matrix to the other unknowns.
+!! The jumps of ends whose equations hold no force (coarse_slopes) are left out of that matrix
+!! (contact_ties).
 module coarse_full_step
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
-   use contact_dense, only: solve_full
    use contact_newton, only: step_quality_t
+   use contact_ties, only: new_ties, ties_t
    implicit none(type, external)
    private
 
    public :: find_full_step, full_slopes
-
-   !> The step of each unknown: of its own, or
-   !!   step = rest + share * step of the partner
-   type :: ties_t
-      logical, allocatable :: is_tied(:)
-      integer(ik), allocatable :: partner(:)  !< 0: none
-      real(rk), allocatable :: share(:)  !< [-]
-      real(rk), allocatable :: rest(:)  !< [Pa]
-   end type ties_t
 
 contains
 
@@ -39,65 +29,40 @@ contains
       type(step_quality_t), intent(out) :: quality
       type(ties_t) :: ties
       integer(ik), allocatable :: kept(:), local(:), first(:)
-      real(rk), allocatable :: matrix(:, :), rest(:), solution(:)
+      real(rk), allocatable :: matrix(:, :), rest(:)
       real(rk) :: row(size(step))
-      integer(ik) :: i, k
+      integer(ik) :: k
 
       call slopes%by_row(first, local)
-      call find_ties(slopes, first, local, jumps, residual, ties)
-      kept = pack([(i, i=1, slopes%n)],.not. ties%is_tied)
-      allocate (matrix(size(kept), size(kept)), rest(size(kept)), solution(size(kept)))
+      ties = found_ties(slopes, first, local, jumps, residual)
+      kept = ties%kept()
+      allocate (matrix(size(kept), size(kept)), rest(size(kept)))
       do k = 1, size(kept, kind=ik)
          call fill_row(stiffness, slopes, first, local, x_of_q, q_per_x, kept(k), row)
          rest(k) = residual(kept(k))
-         do i = 1, size(ties%is_tied, kind=ik)
-            if (.not. ties%is_tied(i)) cycle
-            rest(k) = rest(k) + row(i)*ties%rest(i)
-            if (ties%partner(i) == 0) cycle
-            row(ties%partner(i)) = row(ties%partner(i)) + row(i)*ties%share(i)
-         end do
+         call ties%reduce(row, rest(k))
          matrix(:, k) = row(kept)
       end do
-      call solve_full(matrix, rest, with_condition, solution, quality)
-      if (quality%is_singular) return
-      step = ties%rest
-      step(kept) = solution
-      do i = 1, size(ties%is_tied, kind=ik)
-         if (ties%partner(i) > 0) step(i) = step(i) + ties%share(i)*step(ties%partner(i))
-      end do
+      call ties%find_step(matrix, rest, with_condition, step, quality)
    end subroutine find_full_step
 
    !> Ends whose equations hold their own jumps alone.
-   pure subroutine find_ties(slopes, first, local, jumps, residual, ties)
+   pure function found_ties(slopes, first, local, jumps, residual) result(ties)
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: first(:), local(:)  !< entries of each row
       integer(ik), intent(in) :: jumps(:)  !< the numbers of [u]_n in x
       real(rk), intent(in) :: residual(:)  !< [Pa]
-      type(ties_t), intent(out) :: ties
-      real(rk) :: own(2, 2), determinant
+      type(ties_t) :: ties
+      real(rk) :: own(2, 2)
       integer(ik) :: at, i
       logical :: is_own(2)
 
-      allocate (ties%is_tied(slopes%n), source=.false.)
-      allocate (ties%partner(slopes%n), source=0_ik)
-      allocate (ties%share(slopes%n), ties%rest(slopes%n), source=0.0_rk)
+      ties = new_ties(slopes%n)
       do i = 1, size(jumps, kind=ik)
          at = jumps(i)
          call look_at(at, own(1, :), is_own(1))
          call look_at(at + 1, own(2, :), is_own(2))
-         if (.not. is_own(1) .or. .not. abs(own(1, 1)) > 0.0_rk) cycle
-         if (is_own(2)) then
-            determinant = own(1, 1)*own(2, 2) - own(1, 2)*own(2, 1)
-            if (.not. abs(determinant) > 0.0_rk) cycle
-            ties%is_tied(at:at + 1) = .true.
-            ties%rest(at) = (own(1, 2)*residual(at + 1) - own(2, 2)*residual(at))/determinant
-            ties%rest(at + 1) = (own(2, 1)*residual(at) - own(1, 1)*residual(at + 1))/determinant
-         else
-            ties%is_tied(at) = .true.
-            ties%partner(at) = at + 1
-            ties%share(at) = -own(1, 2)/own(1, 1)
-            ties%rest(at) = -residual(at)/own(1, 1)
-         end if
+         call ties%tie(at, own, is_own, residual(at:at + 1))
       end do
 
    contains
@@ -123,7 +88,7 @@ contains
          end do
       end subroutine look_at
 
-   end subroutine find_ties
+   end function found_ties
 
    !> All derivatives of an equation.
    pure subroutine fill_row(stiffness, slopes, first, local, x_of_q, q_per_x, row, derivatives)

@@ -1,33 +1,15 @@
-!> Contact systems whose derivatives are a full matrix, as they are for a body that is condensed
-!! onto its fractures: the linear step by Gauss elimination.
+!> The linear step of contact systems whose derivatives are a full matrix, as they are for a body
+!! that is condensed onto its fractures: by Gauss elimination.
 module contact_dense
    use algebra_lapack, only: dgecon, dgetrf, dgetrs
    use base_kinds, only: ik, rk
-   use contact_newton, only: contact_system_t, step_quality_t
+   use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
 
-   public :: dense_system_t, solve_full
-
-   !> `evaluate` fills the matrix along with the residuals.
-   type, abstract, extends(contact_system_t) :: dense_system_t
-      real(rk), allocatable :: jacobian(:, :)  !< (n, n) an equation per column [-]
-   contains
-      procedure :: find_step
-      procedure :: size_of_terms
-   end type dense_system_t
+   public :: solve_full
 
 contains
-
-   !> The step of a system that is kept as a full matrix.
-   subroutine find_step(self, with_condition, step, quality)
-      class(dense_system_t), intent(inout) :: self
-      logical, intent(in) :: with_condition
-      real(rk), intent(out) :: step(:)  !< (n) [Pa]
-      type(step_quality_t), intent(out) :: quality
-
-      call solve_full(self%jacobian, self%residual, with_condition, step, quality)
-   end subroutine find_step
 
    !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
    !! that of the scaled matrix in the 1-norm of its transpose. Matrix and residual are used up.
@@ -43,6 +25,7 @@ contains
       integer(ik), allocatable :: iwork(:)
 
       n = size(step, kind=ik)
+      if (n == 0) return
       norm = 0.0_rk
       do row = 1, n
          scale = maxval(abs(jacobian(:, row)))
@@ -63,15 +46,5 @@ contains
       call dgecon("1", n, jacobian, n, norm, inverse_condition, work, iwork, info)
       quality%condition = 1.0_rk/max(inverse_condition, tiny(1.0_rk))
    end subroutine solve_full
-
-   !> The sum of the sizes of a residual's terms.
-   pure function size_of_terms(self, x, row) result(total)
-      class(dense_system_t), intent(in) :: self
-      real(rk), intent(in) :: x(:)  !< (n) [Pa]
-      integer(ik), intent(in) :: row  !< number of the residual
-      real(rk) :: total  !< [Pa]
-
-      total = dot_product(abs(self%jacobian(:, row)), abs(x))
-   end function size_of_terms
 
 end module contact_dense

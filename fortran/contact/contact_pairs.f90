@@ -5,16 +5,17 @@
 !! contact at every pair closes the system.
 module contact_pairs
    use base_kinds, only: ik, rk
-   use contact_dense, only: dense_system_t
    use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_newton, only: contact_system_t, step_quality_t
    use contact_pivoting, only: pivot_to_solution
+   use contact_ties, only: new_ties, ties_t
    implicit none(type, external)
    private
 
    public :: contact_pairs_t
 
    !> The pairs, their history and their load.
-   type, extends(dense_system_t) :: contact_pairs_t
+   type, extends(contact_system_t) :: contact_pairs_t
       integer(ik) :: n = 0  !< pairs in contact
       real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
       real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
@@ -25,11 +26,16 @@ module contact_pairs
       real(rk), allocatable :: slip_before(:)  !< (n) [u]_tau when last accepted [m]
       real(rk), allocatable :: given(:)  !< (n) [u]_tau where it is given [m]
       real(rk), allocatable :: traction(:, :)  !< f (n tau, n) where last evaluated [Pa]
+      ! Derivatives of the law's equations, (equation, n tau, n) where last evaluated.
+      real(rk), allocatable :: by_traction(:, :, :)  !< [-]
+      real(rk), allocatable :: by_jump(:, :, :)  !< [Pa/m]
       !> Added to S in the derivatives, after a restart: a part that only contact holds, and that no
       !! load moves, stays where it is [Pa]
       real(rk) :: spring = 0.0_rk
    contains
       procedure :: evaluate
+      procedure :: find_step
+      procedure :: size_of_terms
       procedure :: law_residual
       procedure :: obeys_law
       procedure :: restart
@@ -43,9 +49,12 @@ contains
    subroutine evaluate(self, x)
       class(contact_pairs_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
-      real(rk) :: force(2*self%n), jump(2*self%n), by_traction(2, 2), by_jump(2, 2)
-      integer(ik) :: i, k, m, row
+      real(rk) :: force(2*self%n), jump(2*self%n)
+      integer(ik) :: i, row
 
+      if (.not. allocated(self%by_jump)) then
+         allocate (self%by_traction(2, 2, self%n), self%by_jump(2, 2, self%n))
+      end if
       jump = x/self%stiffness
       force = matmul(jump, self%condensed) - self%load
       self%stress_scale = 0.0_rk
@@ -54,32 +63,81 @@ contains
          self%traction(:, i) = -force(row:row + 1)/self%length(i)
          call contact_equations(self%law(i), self%stiffness, self%traction(:, i), &
                                 jump(row:row + 1), self%slip_before(i), self%way(i), &
-                                self%state(i), self%residual(row:row + 1), by_traction, by_jump)
+                                self%state(i), self%residual(row:row + 1), &
+                                self%by_traction(:, :, i), self%by_jump(:, :, i))
          if (self%slip_given(i)) then
             self%residual(row + 1) = self%stiffness*(jump(row + 1) - self%given(i))
-            by_traction(2, :) = 0.0_rk
-            by_jump(2, :) = [0.0_rk, self%stiffness]
+            self%by_traction(2, :, i) = 0.0_rk
+            self%by_jump(2, :, i) = [0.0_rk, self%stiffness]
          end if
-         do k = 1, 2
-            associate (slope => self%jacobian(:, row + k - 1))
-               slope = 0.0_rk
-               do m = 1, 2
-                  if (.not. abs(by_traction(k, m)) > 0.0_rk) cycle
-                  slope = slope - by_traction(k, m)/(self%length(i)*self%stiffness) &
-                          *self%condensed(:, row + m - 1)
-                  slope(row + m - 1) = slope(row + m - 1) &
-                                       - by_traction(k, m)/(self%length(i)*self%stiffness) &
-                                       *self%spring
-               end do
-               slope(row:row + 1) = slope(row:row + 1) + by_jump(k, :)/self%stiffness
-            end associate
-         end do
          self%stress_scale = max(self%stress_scale, maxval(abs(self%traction(:, i))), &
                                  maxval(abs(self%load(row:row + 1)))/self%length(i), &
                                  self%stiffness*abs(self%slip_before(i)), &
                                  self%stiffness*abs(self%given(i)))
       end do
    end subroutine evaluate
+
+   !> The step, with only those jumps as unknowns of a matrix that forces decide.
+   subroutine find_step(self, with_condition, step, quality)
+      class(contact_pairs_t), intent(inout) :: self
+      logical, intent(in) :: with_condition
+      real(rk), intent(out) :: step(:)  !< (2 n) [Pa]
+      type(step_quality_t), intent(out) :: quality
+      type(ties_t) :: ties
+      integer(ik), allocatable :: kept(:)
+      real(rk), allocatable :: matrix(:, :), rest(:)
+      real(rk) :: slope(2*self%n)
+      integer(ik) :: i, k
+
+      ties = new_ties(2*self%n)
+      do i = 1, self%n
+         call ties%tie(2*i - 1, self%by_jump(:, :, i)/self%stiffness, &
+                       .not. any(abs(self%by_traction(:, :, i)) > 0.0_rk, dim=2), &
+                       self%residual(2*i - 1:2*i))
+      end do
+      kept = ties%kept()
+      allocate (matrix(size(kept), size(kept)), rest(size(kept)))
+      do k = 1, size(kept, kind=ik)
+         call fill_row(self, kept(k), slope)
+         rest(k) = self%residual(kept(k))
+         call ties%reduce(slope, rest(k))
+         matrix(:, k) = slope(kept)
+      end do
+      call ties%find_step(matrix, rest, with_condition, step, quality)
+   end subroutine find_step
+
+   !> The derivatives of an equation, where last evaluated.
+   pure subroutine fill_row(self, equation, slope)
+      class(contact_pairs_t), intent(in) :: self
+      integer(ik), intent(in) :: equation  !< n, tau pair by pair
+      real(rk), intent(out) :: slope(:)  !< (2 n) [-]
+      real(rk) :: share
+      integer(ik) :: i, k, m, row
+
+      i = (equation + 1)/2
+      row = 2*i - 1
+      k = equation - row + 1
+      slope = 0.0_rk
+      do m = 1, 2
+         share = self%by_traction(k, m, i)/(self%length(i)*self%stiffness)
+         if (.not. abs(share) > 0.0_rk) cycle
+         slope = slope - share*self%condensed(:, row + m - 1)
+         slope(row + m - 1) = slope(row + m - 1) - share*self%spring
+      end do
+      slope(row:row + 1) = slope(row:row + 1) + self%by_jump(k, :, i)/self%stiffness
+   end subroutine fill_row
+
+   !> The sum of the sizes of a residual's terms.
+   pure function size_of_terms(self, x, row) result(total)
+      class(contact_pairs_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
+      integer(ik), intent(in) :: row  !< number of the residual
+      real(rk) :: total  !< [Pa]
+      real(rk) :: slope(2*self%n)
+
+      call fill_row(self, row, slope)
+      total = dot_product(abs(slope), abs(x))
+   end function size_of_terms
 
    !> How far the pairs are from the law itself where last evaluated, over the stress scale [-].
    pure real(rk) function law_residual(self, x) result(worst)

@@ -98,7 +98,7 @@ contains
       allocate (problem%place(3, fine%fracture%n_cells), source=0_ik)
       problem%slip_given = .false.
       allocate (problem%load(2*problem%n), problem%residual(2*problem%n))
-      allocate (problem%jacobian(2*problem%n, 2*problem%n), problem%traction(2, problem%n))
+      allocate (problem%traction(2, problem%n))
       allocate (problem%slip_before(problem%n), problem%given(problem%n))
       allocate (problem%way(problem%n), problem%state(problem%n))
       do cell = 1, fine%fracture%n_cells

@@ -1,90 +1,100 @@
-!> A small system with equations of very different sizes.
-module two_equations
-   use base_kinds, only: rk
-   use contact_dense, only: dense_system_t
-   implicit none(type, external)
-   private
-
-   public :: two_equations_t
-
-   !> x_1 + 3 x_2 = -4 and 1e12 (x_2 - x_1) = 4e12, or the second without x_1 and x_2.
-   type, extends(dense_system_t) :: two_equations_t
-      logical :: is_singular = .false.
-   contains
-      procedure :: evaluate
-   end type two_equations_t
-
-contains
-
-   subroutine evaluate(self, x)
-      class(two_equations_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      real(rk), parameter :: large = 1.0e12_rk
-
-      self%jacobian = reshape([1.0_rk, 3.0_rk, -large, large], [2, 2])  ! an equation per column
-      self%residual = [x(1) + 3.0_rk*x(2) + 4.0_rk, large*(x(2) - x(1) - 4.0_rk)]
-      if (.not. self%is_singular) return
-      self%jacobian(:, 2) = 0.0_rk
-      self%residual(2) = 1.0_rk
-   end subroutine evaluate
-
-end module two_equations
-
-!> The linear step of a system with a full matrix: equations of very different sizes, the condition
-!! of a matrix that is known, one that is singular; the sizes of terms.
+!> The linear step of a full matrix: equations of very different sizes, the condition of a matrix
+!! that is known, one that is singular, and none at all; and what a step leaves out of its matrix.
 program test_contact_dense
    use testing_checks, only: checks_t
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
+   use contact_dense, only: solve_full
    use contact_newton, only: step_quality_t
-   use two_equations, only: two_equations_t
+   use contact_ties, only: new_ties, ties_t
    implicit none(type, external)
 
    type(checks_t) :: checks
 
    call finds_step()
    call notices_singular_matrix()
-   call adds_sizes_of_terms()
+   call has_nothing_to_solve()
+   call leaves_out_ties()
    call checks%finish()
 
 contains
 
-   !> From (1, 1) to the solution (-4, 0). Scaled, the matrix is (1/3 1; -1 1) and its inverse
-   !! (3 -3; 3 1)/4: the largest row sums 2 and 3/2 give the condition 3.
+   !> x_1 + 3 x_2 = -8 and 1e12 (x_2 - x_1) = 4e12. Scaled, the matrix is (1/3 1; -1 1) and its
+   !! inverse (3 -3; 3 1)/4: the largest row sums 2 and 3/2 give the condition 3.
    subroutine finds_step()
-      type(two_equations_t) :: system
+      real(rk), parameter :: large = 1.0e12_rk
+      real(rk), parameter :: equations(2, 2) = reshape([1.0_rk, 3.0_rk, -large, large], [2, 2])
       type(step_quality_t) :: quality
-      real(rk) :: step(2)
+      real(rk) :: matrix(2, 2), residual(2), step(2)
 
-      call system%evaluate([1.0_rk, 1.0_rk])
-      call system%find_step(.false., step, quality)
+      matrix = equations
+      residual = [8.0_rk, -4.0_rk*large]
+      call solve_full(matrix, residual, .false., step, quality)
       call checks%is_true(.not. quality%is_singular, "regular")
       call checks%is_close(step(1), -5.0_rk, 1.0e-14_rk, "first component of the step")
       call checks%is_close(step(2), -1.0_rk, 1.0e-14_rk, "second component of the step")
       call checks%is_close(quality%condition, 0.0_rk, 0.0_rk, "no condition unless asked for")
-      call system%evaluate([1.0_rk, 1.0_rk])
-      call system%find_step(.true., step, quality)
+      matrix = equations
+      residual = [8.0_rk, -4.0_rk*large]
+      call solve_full(matrix, residual, .true., step, quality)
       call checks%is_close(step(1), -5.0_rk, 1.0e-14_rk, "the same step with the condition")
       call checks%is_close(quality%condition, 3.0_rk, 1.0e-14_rk, "condition of two equations")
    end subroutine finds_step
 
    subroutine notices_singular_matrix()
-      type(two_equations_t) :: system
       type(step_quality_t) :: quality
-      real(rk) :: step(2)
+      real(rk) :: matrix(2, 2), residual(2), step(2)
 
-      system%is_singular = .true.
-      call system%evaluate([1.0_rk, 1.0_rk])
-      call system%find_step(.true., step, quality)
+      matrix = reshape([1.0_rk, 3.0_rk, 0.0_rk, 0.0_rk], [2, 2])
+      residual = 1.0_rk
+      call solve_full(matrix, residual, .true., step, quality)
       call checks%is_true(quality%is_singular, "an equation without unknowns")
    end subroutine notices_singular_matrix
 
-   subroutine adds_sizes_of_terms()
-      type(two_equations_t) :: system
-      real(rk), parameter :: x(2) = [2.0_rk, -5.0_rk]
+   !> Where all points stick.
+   subroutine has_nothing_to_solve()
+      type(step_quality_t) :: quality
+      real(rk) :: matrix(0, 0), residual(0), step(0)
 
-      call system%evaluate(x)
-      call checks%is_close(system%size_of_terms(x, 1), 17.0_rk, 0.0_rk, "2 + 15")
-      call checks%is_close(system%size_of_terms(x, 2), 7.0e12_rk, 0.0_rk, "1e12 (2 + 5)")
-   end subroutine adds_sizes_of_terms
+      call solve_full(matrix, residual, .true., step, quality)
+      call checks%is_true(.not. quality%is_singular, "no equation is not singular")
+   end subroutine has_nothing_to_solve
+
+   !> Three points: one sticks, one opens with its slip, one is open. The step is that of the whole
+   !! matrix.
+   subroutine leaves_out_ties()
+      real(rk), parameter :: residual(6) = [1.0_rk, -2.0_rk, 3.0_rk, 4.0_rk, -5.0_rk, 6.0_rk]
+      type(step_quality_t) :: quality
+      type(ties_t) :: ties
+      real(rk) :: matrix(6, 6), own(2, 2), rest(6), row(6), step(6), whole(6)
+      real(rk), allocatable :: small(:, :), left(:)
+      integer(ik), allocatable :: kept(:)
+      integer(ik) :: i, k, m
+
+      do k = 1, 6  ! an equation per column
+         do m = 1, 6
+            matrix(m, k) = 1.0_rk/(m + 2*k) + merge(3.0_rk, 0.0_rk, m == k)
+         end do
+      end do
+      matrix(3:, :2) = 0.0_rk  ! the first point's equations hold its own jumps
+      matrix([1, 2, 5, 6], 3) = 0.0_rk  ! the second's opening follows its slip
+      ties = new_ties(6)
+      do i = 1, 5, 2
+         own = transpose(matrix(i:i + 1, i:i + 1))
+         call ties%tie(i, own, [i < 5, i == 1], residual(i:i + 1))
+      end do
+      kept = ties%kept()
+      call checks%is_true(all(kept == [4, 5, 6]), "slip of one point and jumps of another are left")
+      allocate (small(3, 3), left(3))
+      do k = 1, 3
+         row = matrix(:, kept(k))
+         left(k) = residual(kept(k))
+         call ties%reduce(row, left(k))
+         small(:, k) = row(kept)
+      end do
+      call ties%find_step(small, left, .false., step, quality)
+      rest = residual
+      call solve_full(matrix, rest, .false., whole, quality)
+      call checks%is_close(maxval(abs(step - whole)), 0.0_rk, 1.0e-14_rk, "the whole matrix's step")
+   end subroutine leaves_out_ties
 
 end program test_contact_dense

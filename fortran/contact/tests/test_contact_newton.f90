@@ -83,7 +83,7 @@ contains
       end if
       pairs%condensed = 0.01_rk*stiffness*pairs%condensed
       allocate (pairs%law(n), pairs%slip_given(n), pairs%way(n), pairs%state(n))
-      allocate (pairs%load(2*n), pairs%residual(2*n), pairs%jacobian(2*n, 2*n))
+      allocate (pairs%load(2*n), pairs%residual(2*n))
       allocate (pairs%traction(2, n), pairs%slip_before(n), pairs%given(n))
       pairs%slip_given = .false.
       pairs%slip_before = 0.0_rk
