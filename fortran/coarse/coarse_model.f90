@@ -15,6 +15,7 @@ module coarse_model
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fractures, only: newton_settings_t
+   use coarse_guess, only: guess_t
    use coarse_joints, only: find_joints, joints_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
@@ -39,6 +40,7 @@ module coarse_model
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
       type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
+      type(guess_t) :: guess  !< what the next step will probably lead to
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
@@ -92,6 +94,7 @@ contains
       self%ends = free_ends(mesh%fracture)
       call self%condensed%solver%release()
       call self%factors%release()
+      call self%guess%forget()
       self%condensed%analysed = .false.
       self%condensed%is_full = is_full(mesh, scene%discretization%condensation)
       self%condensed%dt = -1.0_rk
@@ -225,8 +228,9 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%condensed, self%factors, self%cells, self%connections, &
-                              self%joints, self%settings, dt, g, state, q, report)
+         call solve_fractures(self%condensed, self%factors, self%guess, self%cells, &
+                              self%connections, self%joints, self%settings, dt, g, state, q, &
+                              report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
       end if

@@ -4,6 +4,7 @@ module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_equations, only: equations_t
+   use coarse_guess, only: guess_t
    use coarse_joints, only: joints_t
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_sparse_step, only: sparse_step_t
@@ -22,10 +23,11 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, factors, cells, connections, joints, settings, dt, g, &
-                              state, q, report)
+   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, settings, dt, &
+                              g, state, q, report)
       type(condensed_t), intent(inout), target :: condensed
       type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
+      type(guess_t), intent(inout) :: guess  !< from earlier solutions
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
@@ -37,15 +39,33 @@ contains
       type(step_report_t), intent(out) :: report
       type(equations_t) :: eq
       type(iteration_report_t) :: found
-      real(rk), allocatable :: x(:)
+      type(iteration_settings_t) :: how
+      real(rk), allocatable :: start(:), x(:)
+      integer(ik) :: spent
 
       call prepare(condensed, cells, connections, joints, settings, dt, g, state, eq)
       eq%factors => factors
-      call first_guess(eq, state, x)
-      call iterate(eq, x, iteration_settings_t(tolerance=settings%tolerance, &
-                                               iterations_max=settings%iterations_max, &
-                                               with_condition=.true., &
-                                               allows_rounding=.true.), found)
+      how = iteration_settings_t(tolerance=settings%tolerance, &
+                                 iterations_max=settings%iterations_max, with_condition=.true., &
+                                 allows_rounding=.true.)
+      call find_start(eq, state, start)
+      x = start
+      spent = 0
+      if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
+         x = guess%from(start, dt)
+         call iterate(eq, x, how, found)
+         if (found%outcome /= outcome_converged) then
+            spent = found%iterations
+            x = start
+            eq%state = reshape(state%contact, [size(eq%state)])
+            eq%way = 0
+         end if
+      end if
+      if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
+      found%iterations = found%iterations + spent
+      if (found%outcome == outcome_converged .and. .not. settings%equilibrate) then
+         call guess%remember(dt, start, x)
+      end if
       q = eq%q
       report%stress_scale = eq%stress_scale
       report%iterations = found%iterations
@@ -65,7 +85,7 @@ contains
    end subroutine solve_fractures
 
    !> The state before, the rock at the fractures having their pressure, without flow.
-   pure subroutine first_guess(eq, state, x)
+   pure subroutine find_start(eq, state, x)
       type(equations_t), intent(in) :: eq
       type(state_t), intent(in) :: state
       real(rk), allocatable, intent(out) :: x(:)  !< [Pa]
@@ -83,7 +103,7 @@ contains
       do i = 1, eq%layout%n_joints
          x(eq%layout%at_joint(i)) = eq%joints%mean_pressure(i, state%pressure)
       end do
-   end subroutine first_guess
+   end subroutine find_start
 
    !> Check the solution against the law itself and make it the state.
    subroutine accept(condensed, cells, dt, eq, x, state, report)

@@ -204,7 +204,7 @@ contains
          end if
          report%outcome = outcome_stuck
          is_small = worst <= settings%tolerance*system%stress_scale
-         if (all(system%state == before)) then
+         if (all(system%state == before) .and. k > 0) then
             if (is_small) then
                is_end = was_small
                if (.not. is_end) is_end = left*report%condition <= well_solved &
