@@ -174,7 +174,7 @@ contains
    end subroutine bulk_load
 
    !> An entry of D's diagonal.
-   pure real(rk) function diagonal(self, row)
+   elemental real(rk) function diagonal(self, row)
       class(coupling_t), intent(in) :: self
       integer(ik), intent(in) :: row
       integer(ik) :: k

@@ -14,7 +14,7 @@
 !! share of a cell.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t
+   use coarse_fractures, only: cell_fluid_t, fracture_system_t, most_of_rock
    implicit none(type, external)
    private
 
@@ -31,7 +31,6 @@ contains
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk), parameter :: most = 0.8_rk  ! of the rock's own resistance, at a tip
       real(rk) :: aperture, conductance, resistance, slope, volume
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, end, jumps(2), row, side
@@ -49,7 +48,7 @@ contains
          volume = eq%force(at)
          resistance = 1.0_rk/conductance &
                       + max(eq%cells%leak_resistance(i)/(eq%settings%mobility*eq%dt), &
-                            -most/abs(eq%volume_slope(side, i)))
+                            -most_of_rock/abs(eq%volume_slope(side, i)))
          eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
          call eq%slopes%add_force(row, at, resistance)
          do end = 1, 2

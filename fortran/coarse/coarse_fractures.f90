@@ -17,7 +17,7 @@ module coarse_fractures
    implicit none(type, external)
    private
 
-   public :: cell_fluid_t, fracture_system_t, newton_settings_t, prepare
+   public :: cell_fluid_t, fracture_system_t, most_of_rock, newton_settings_t, prepare
 
    !> What the iteration needs to know.
    type :: newton_settings_t
@@ -77,6 +77,9 @@ module coarse_fractures
       real(rk) :: void = 0.0_rk  !< [m]
       real(rk) :: void_slope = 0.0_rk  !< by the unknown [m/Pa]
    end type cell_fluid_t
+
+   !> The resistance to leak-off at a tip takes this much of the rock's own away, and no more [-].
+   real(rk), parameter :: most_of_rock = 0.8_rk
 
 contains
 
@@ -138,37 +141,46 @@ contains
 
    !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
    !! state everywhere, but as a unit of the equations only.
+   !!
+   !! The pressure of one face alone, all other unknowns fixed, moves more fluid than it does where
+   !! the rock answers. That is known at once, and where it bounds nothing, nothing does.
    subroutine find_volume_slopes(eq)
       class(fracture_system_t), intent(inout) :: eq
       type(error_t), allocatable :: error
-      integer(ik), allocatable :: at(:), tips(:)
+      integer(ik), allocatable :: cells(:)
       real(rk), allocatable :: slope(:)
       integer(ik) :: i, side
 
-      allocate (eq%volume_slope(2, eq%condensed%n), source=huge(1.0_rk))
-      associate (condensed => eq%condensed)
-         if (eq%settings%equilibrate .and. .not. condensed%is_full) then
-            do i = 1, condensed%n
-               do side = 1, 2
-                  eq%volume_slope(side, i) = condensed%coupling%diagonal( &
-                                             condensed%layout%at_face_pressure(i, side))
-               end do
-            end do
-         else
-            tips = [(i, i=1, condensed%n)]
-            if (.not. condensed%is_full) then
-               tips = pack(tips, eq%cells%leak_resistance < 0.0_rk)
-            end if
-            allocate (slope(size(tips)))
-            do side = 1, 2
-               at = condensed%layout%at_face_pressure(tips, side)
-               call condensed%find_volume_slopes(at, slope, error)
-               eq%has_failed = eq%has_failed .or. allocated(error)
-               eq%volume_slope(side, tips) = slope
-            end do
-         end if
+      allocate (eq%volume_slope(2, eq%condensed%n))
+      associate (condensed => eq%condensed, slopes => eq%volume_slope)
+         do side = 1, 2
+            cells = [(i, i=1, condensed%n)]
+            associate (at => condensed%layout%at_face_pressure(cells, side))
+               if (.not. condensed%is_full) then
+                  slopes(side, :) = condensed%coupling%diagonal(at)
+                  if (eq%settings%equilibrate) cycle
+                  cells = pack(cells, is_beyond(eq%cells%leak_resistance, &
+                                               eq%settings%mobility*eq%dt, slopes(side, :)))
+               end if
+            end associate
+            allocate (slope(size(cells)))
+            call condensed%find_volume_slopes(condensed%layout%at_face_pressure(cells, side), &
+                                              slope, error)
+            eq%has_failed = eq%has_failed .or. allocated(error)
+            slopes(side, cells) = slope
+            deallocate (slope)
+         end do
       end associate
    end subroutine find_volume_slopes
+
+   !> The resistance to leak-off at a tip would be less than minus the most of the rock's own.
+   elemental logical function is_beyond(leak_resistance, rock, slope)
+      real(rk), intent(in) :: leak_resistance  !< times the rock's mobility [-]
+      real(rk), intent(in) :: rock  !< mobility times the step [m2/Pa]
+      real(rk), intent(in) :: slope  !< of the rock's volume by the pressure [m2/Pa]
+
+      is_beyond = leak_resistance*abs(slope) < -most_of_rock*rock
+   end function is_beyond
 
    !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
    !! without fluid carry none, and yet rounding errors are relative to what has been released

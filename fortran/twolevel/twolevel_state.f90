@@ -56,7 +56,7 @@ module twolevel_state
       type(trend_t) :: trend  !< rates of the last accepted step
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, against which these are held
-      integer(ik) :: reference_most = 400  !< coarse fracture cells up to which they are
+      integer(ik) :: reference_most = 800  !< coarse fracture cells up to which they are
       !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
       logical, allocatable :: asked(:)
       type(coarse_values_t) :: coarse_values
