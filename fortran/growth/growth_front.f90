@@ -150,8 +150,9 @@ contains
             if (self%rules%heads) then
                call stop_half_way(self, tip%fracture, tip%xy, advance(i), to)
                if (self%rules%joins .and. &
-                   norm2(to - tip%xy) < half_way*no_room*self%rules%increment) &
+                   norm2(to - tip%xy) < half_way*no_room*self%rules%increment) then
                   call join_ahead(self, i, (tip%xy), advance(i), to)
+               end if
             else
                call meet_target(self%rules, self%network, tip, (tip%xy), to)
             end if
