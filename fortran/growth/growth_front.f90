@@ -28,8 +28,9 @@ module growth_front
       real(rk) :: together = 0.0_rk
       real(rk) :: reach = 0.0_rk  !< distance within which a tip has come to something [m]
       logical :: joins = .false.  !< what it comes to; else it stops before that
-      !> The path ends on what lies straight ahead, however near. With `joins` the tip does so at
-      !! once, in its increment; else it is left to the caller how it comes there.
+      !> The path ends on what lies straight ahead, however near: the direction of its last piece is
+      !! found half way to that. With `joins` the tip comes there in the same increment; else it is
+      !! left to the caller how.
       logical :: heads = .false.
       real(rk) :: near = 0.0_rk  !< ends and kinks that near to its way lie on it [m]
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
@@ -54,6 +55,9 @@ module growth_front
 
    !> Share of the way to what lies ahead where the direction of the last piece is found.
    real(rk), parameter :: half_way = 0.5_rk
+
+   !> What is nearer to a tip than this, in increments, leaves no room for a try half way.
+   real(rk), parameter :: no_room = 0.1_rk
 
    abstract interface
       !> Intensities, drives and rosette radii of all tips of the present network.
@@ -107,7 +111,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: corrections = 8
-      logical :: any_turned
+      logical :: any_joined, any_turned
       integer(ik) :: i, k
 
       call advance_tips(self, advance, any_grew)
@@ -119,9 +123,12 @@ contains
          if (.not. any_turned) exit
          call self%evaluate(timers, error)
       end do
+      if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          call self%tip(i)%settle(-self%tip(i)%intensity%k2)
       end do
+      call join_tips(self, advance, any_joined)
+      if (any_joined) call self%evaluate(timers, error)
    end subroutine grow_by
 
    !> Move the tips to where their increments will probably end.
@@ -140,10 +147,12 @@ contains
             call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
-            if (self%rules%heads .and. self%rules%joins) then
-               call join_ahead(self, i, (tip%xy), to)
-            else if (self%rules%heads) then
+            if (self%rules%heads) then
                call stop_half_way(self, tip%fracture, tip%xy, advance(i), to)
+               if (self%rules%joins .and. &
+                   norm2(to - tip%xy) < half_way*no_room*self%rules%increment) then
+                  call join_ahead(self, i, (tip%xy), advance(i), to)
+               end if
             else
                call meet_target(self%rules, self%network, tip, (tip%xy), to)
             end if
@@ -172,9 +181,7 @@ contains
             call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             to = tip%xy
-            if (self%rules%heads .and. self%rules%joins) then
-               call join_ahead(self, i, (tip%origin), to)
-            else if (self%rules%heads) then
+            if (self%rules%heads) then
                call stop_half_way(self, tip%fracture, tip%origin, advance(i), to)
             else if (self%rules%joins) then
                call meet_target(self%rules, self%network, tip, (tip%origin), to)
@@ -220,13 +227,38 @@ contains
       if (abs(room - norm2(to - from)) > same_value*advance) to = from + room*direction
    end subroutine stop_half_way
 
+   !> The tips whose directions have been found half way go the rest of it, straight on.
+   subroutine join_tips(self, advance, any_joined)
+      class(front_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
+      logical, intent(out) :: any_joined
+      real(rk) :: to(2)
+      integer(ik) :: i
+
+      any_joined = .false.
+      if (.not. (self%rules%heads .and. self%rules%joins)) return
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            if (.not. tip%advance > 0.0_rk .or. tip%arrested) cycle
+            to = tip%xy
+            call join_ahead(self, i, (tip%origin), advance(i), to)
+            if (.not. tip%joined) cycle
+            tip%xy = to
+            tip%advance = norm2(to - tip%origin)
+            call move_end(self%network, tip%fracture, tip%end, to)
+            any_joined = .true.
+         end associate
+      end do
+   end subroutine join_tips
+
    !> A tip that would come to what lies ahead of it within half an increment from where it goes
    !! joins it at once: it, or both if that is another one, is no tip any more.
-   subroutine join_ahead(self, i, from, to)
+   subroutine join_ahead(self, i, from, advance, to)
       class(front_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
       real(rk), intent(in) :: from(2)  !< [m]
-      real(rk), intent(inout) :: to(2)  !< [m]
+      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
+      real(rk), intent(inout) :: to(2)  !< in that direction [m]
       real(rk) :: at(2)
       integer(ik) :: target
       integer :: k
@@ -234,7 +266,7 @@ contains
       call self%look_ahead(self%network, self%tip(i)%fracture, from, (to - from)/norm2(to - from), &
                            target, at)
       if (target == target_none) return
-      if (norm2(at - from) > norm2(to - from) + (foresight - 1.0_rk)*self%rules%increment) return
+      if (norm2(at - from) > advance + (foresight - 1.0_rk)*self%rules%increment) return
       to = at
       self%tip(i)%target = target
       self%tip(i)%joined = .true.

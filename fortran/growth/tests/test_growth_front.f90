@@ -29,6 +29,7 @@ program test_growth_front
    call test_join()
    call test_path()
    call test_half_way()
+   call test_joins_ahead()
    call checks%finish()
 
 contains
@@ -134,6 +135,45 @@ contains
          call checks%is_true(.not. front%tip(1)%arrested, "it is on its way")
       end do
    end subroutine test_half_way
+
+   !> A tip that joins what lies ahead has its direction found half way to that, by tries there, and
+   !! then goes straight on: no target is captured from the side, and no leap is on a direction of
+   !! before. The criterion follows circles around the origin.
+   subroutine test_joins_ahead()
+      type(sample_t) :: front
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: gap = 0.035_rk
+      real(rk) :: along(2), middle(2)
+      logical :: any_grew
+      integer :: k
+
+      do k = 1, 2
+         call start(front, .true.)
+         front%rules%heads = .true.
+         front%turns = .true.
+         front%tip%has_wing = .true.
+         ! Upright, 1.3 or 2.6 increments ahead of tip 1 along the circle.
+         front%network%xy(1, 3:4) = lines(1, 1, 1) - merge(gap, 2.0_rk*gap, k == 1)
+         front%network%xy(2, 3:4) = [0.5_rk, 1.5_rk]
+         front%tip(1)%direction = [-0.9_rk, 0.1_rk]/norm2([-0.9_rk, 0.1_rk])
+         call timers%begin()
+         call front%evaluate(timers, error)
+         call front%grow_by([increment, 0.0_rk], any_grew, timers, error)
+         call checks%no_error(error, "growth")
+         call checks%is_true(front%tip(1)%joined .eqv. (k == 1), "it joins what is that near")
+         if (k == 2) cycle
+         call checks%is_close(front%tip(1)%xy(1), lines(1, 1, 1) - gap, 1.0e-12_rk, &
+                              "on fracture 2")
+         ! The direction is that of the circle half way, within what growth_path asks for.
+         middle = 0.5_rk*(front%tip(1)%origin + front%tip(1)%xy)
+         along = [-middle(2), middle(1)]/norm2(middle)
+         call checks%is_close(dot_product(front%tip(1)%direction, along), 1.0_rk, 1.0e-3_rk, &
+                              "in the direction that is right half way")
+         call checks%is_true(front%tip(1)%arrested, "no tip any more")
+         call is_at(front%network%xy(:, 1), front%tip(1)%xy, "the network's end")
+      end do
+   end subroutine test_joins_ahead
 
    subroutine is_at(xy, expected, name)
       real(rk), intent(in) :: xy(2), expected(2)
