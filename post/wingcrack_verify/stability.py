@@ -20,6 +20,8 @@ from wingcrack_verify.selection import read_selection, select
 from wingcrack_verify.sweep import Defaults, read_tables
 
 TIME_LIMIT_S = 20.0  # unless the file says otherwise: some hundred times what a trial takes
+# In words of a trial; a run that crashed, or took too long, is neither.
+_STATUS = {"finished": "converged", "failed": "stopped", "refused": "refused"}
 EXPECTED = ("converged", "refused", "stopped", "settled")
 # Every accepted state with all its fields, for `recompute`; `check` doubts such an interval.
 ALL_FIELDS = {"output.vtu": True, "output.interval": 1.0e-30, "output.growth_states": 100000}
@@ -271,12 +273,16 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     if outcome.status == "invalid":
         return _report(trial, outcome, ERROR, outcome.reason, {})
     numbers: dict[str, float | None] = {}
-    if outcome.status == "finished":
-        try:
-            numbers = _numbers(Path(outcome.folder) / "output")
-        except CaseError as broken:
-            return _report(trial, outcome, ERROR, str(broken), numbers)
-    reason = _complaint(found, trial, outcome, numbers)
+    wrong = ""
+    output = Path(outcome.folder) / "output"
+    try:
+        if outcome.status == "finished":
+            numbers = _numbers(output)
+        if found.from_files and outcome.status in ("finished", "failed"):
+            wrong = _wrong_in_files(output)
+    except (CaseError, OSError, ValueError, KeyError) as broken:
+        return _report(trial, outcome, ERROR, f"files that cannot be judged: {broken}", numbers)
+    reason = _complaint(found, trial, outcome, numbers) or wrong
     verdict = FAILED if reason else PASSED
     if trial.known_gap is not None:
         verdict = GAP
@@ -284,15 +290,37 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     return _report(trial, outcome, verdict, reason, numbers)
 
 
+def _wrong_in_files(output: Path) -> str:
+    """What is wrong in any state of a run, by its files alone; empty if nothing is."""
+    # Here, because the library that reads VTU files is slow to load, and few calls need it.
+    from wingcrack_verify import recompute, recompute_growth
+
+    faults = [*recompute.judge(output).wrong, *recompute_growth.judge_growth(output).wrong]
+    if not faults:
+        return ""
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    return f"wrong in the files: {faults[0]}{more}"
+
+
 def _complaint(
     found: Stability, trial: Trial, outcome: Outcome, numbers: Mapping[str, float | None]
 ) -> str:
-    if trial.expect == "refused":
-        if outcome.status in ("failed", "refused") and outcome.reason:
-            return ""
-        return f"the run {outcome.status}, and a refusal with a reason is expected"
-    if outcome.status != "finished":
-        return f"the run {outcome.status}: {outcome.reason}"
+    """Why a trial did not end as expected; empty if it did."""
+    status = _STATUS.get(outcome.status, outcome.status)
+    if trial.expect == "converged" or (trial.expect == "settled" and status == "converged"):
+        if status != "converged":
+            return f"the run {outcome.status}: {outcome.reason}"
+        return _beyond_limits(found, numbers)
+    # A trial of fluid-free scenes need not tell before the run that it cannot be done.
+    wanted = ("stopped",) if trial.expect == "stopped" else ("stopped", "refused")
+    if status not in wanted or not outcome.reason:
+        return f"the run {outcome.status}, and is to be {trial.expect} with a reason"
+    if trial.causes and not any(cause in outcome.reason for cause in trial.causes):
+        return f"the run {outcome.status} for another reason: {outcome.reason}"
+    return ""
+
+
+def _beyond_limits(found: Stability, numbers: Mapping[str, float | None]) -> str:
     for name, limit in (
         ("mass_error_relative", found.mass_error_limit),
         ("contact_residual", found.contact_residual_limit),
@@ -334,7 +362,7 @@ def _report(
     reason: str,
     numbers: Mapping[str, float | None],
 ) -> TrialReport:
-    status = "converged" if outcome.status == "finished" else outcome.status
+    status = _STATUS.get(outcome.status, outcome.status)
     return TrialReport(
         trial,
         verdict,
