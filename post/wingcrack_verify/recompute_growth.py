@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,7 +16,7 @@ import f90nml
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack_verify.recompute import Findings, Table, groups, read_table
+from wingcrack_verify.recompute import Findings, Table, read_table
 
 Points: TypeAlias = npt.NDArray[np.float64]
 
@@ -96,7 +96,7 @@ def check_lengths(files: GrowthFiles, place: float, findings: Findings) -> None:
         for fracture in step["fractures"]:
             error = abs(length_of(fracture) - fracture["length_m"])
             findings.see("length of a polyline over its bound", error / place, "", 1.0)
-    for before, after in zip(steps, steps[1:], strict=False):
+    for before, after in pairwise(steps):
         for old, new in zip(before["fractures"], after["fractures"], strict=True):
             if length_of(new) < length_of(old) - place:
                 shorter = length_of(old) - length_of(new)
@@ -143,8 +143,8 @@ def distance(point: Points, line: Points) -> float:
 def crossings(one: Points, other: Points) -> list[Points]:
     """Points where two polylines cross, both with their inside."""
     found = []
-    for a, b in zip(one, one[1:], strict=False):
-        for c, d in zip(other, other[1:], strict=False):
+    for a, b in pairwise(one):
+        for c, d in pairwise(other):
             first, second, gap = b - a, d - c, c - a
             area = first[0] * second[1] - first[1] * second[0]
             if area == 0.0:
@@ -217,5 +217,3 @@ def check_stated_errors(files: GrowthFiles, findings: Findings) -> None:
         if (loaded & (both <= 0.0)).any():
             findings.wrong.append("a tip is loaded and has no error")
             return
-
-
