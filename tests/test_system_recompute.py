@@ -37,8 +37,8 @@ def out(files: Path, tmp_path: Path) -> Path:
 
 
 def wrong(out: Path) -> list[str]:
-    """All that is found."""
-    return recompute.judge(out).wrong + recompute_growth.judge_growth(out).wrong
+    """What is found, by what reads only tables first: fields take long."""
+    return recompute_growth.judge_growth(out).wrong or recompute.judge(out).wrong
 
 
 def test_a_run_with_growth_and_joints_is_right(out: Path) -> None:

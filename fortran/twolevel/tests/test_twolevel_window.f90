@@ -103,8 +103,8 @@ contains
       call checks%is_true(window%undrained, "undrained on record")
    end subroutine test_undrained_constants
 
-   !> An edge that would pass just beside the point where two fractures cross at a small angle, where
-   !! no element fits between them, moves outwards; one that passes farther away stays.
+   !> An edge that would pass just beside the point where two fractures cross at a small angle,
+   !! where no element fits between them, moves outwards; one that passes farther away stays.
    subroutine test_edge_beside_crossing(beside, moves)
       real(rk), intent(in) :: beside  !< of the crossing, from the edge [m]
       logical, intent(in) :: moves  !< the edge does
