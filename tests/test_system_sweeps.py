@@ -8,11 +8,12 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
-import fluid_checker
 import fluid_sweeps
 import mutated_scenes
 import pytest
 from system_scene import TOP, call
+
+from wingcrack_verify import recompute
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -107,10 +108,10 @@ def test_the_checker_finds_what_is_wrong(
     sweep_files: Callable[[int], Path],
 ) -> None:
     out = sweep_files(number)
-    assert fluid_checker.judge(out).wrong == []
+    assert recompute.judge(out).wrong == []
     text = (out / table).read_text()
     spoil(out, table, column, change)
-    wrong = fluid_checker.judge(out).wrong
+    wrong = recompute.judge(out).wrong
     (out / table).write_text(text)
     assert any(found in fault for fault in wrong), wrong
 
@@ -119,7 +120,7 @@ def test_the_checker_knows_which_way_friction_acts(sweep_files: Callable[[int], 
     out = sweep_files(SLIPS)
     text = (out / "fractures.csv").read_text()
     spoil(out, "fractures.csv", "traction_t_pa", lambda x: -x, always=True)
-    wrong = fluid_checker.judge(out).wrong
+    wrong = recompute.judge(out).wrong
     (out / "fractures.csv").write_text(text)
     assert wrong
     assert all(fault.startswith("slip against friction") for fault in wrong)
@@ -127,11 +128,11 @@ def test_the_checker_knows_which_way_friction_acts(sweep_files: Callable[[int], 
 
 def test_the_checker_misses_a_warning(sweep_files: Callable[[int], Path]) -> None:
     out = sweep_files(25)
-    assert fluid_checker.judge(out).wrong == []
+    assert recompute.judge(out).wrong == []
     record = json.loads((out / "run.json").read_text())
     record["warnings"] = []
     (out / "run.json").write_text(json.dumps(record))
-    (fault,) = fluid_checker.judge(out).wrong
+    (fault,) = recompute.judge(out).wrong
     assert fault.startswith("no warning of pressure over Young's modulus")
 
 

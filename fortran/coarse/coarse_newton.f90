@@ -53,7 +53,9 @@ contains
       spent = 0
       if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
          x = guess%from(start, dt)
+         how%perseveres = .false.
          call iterate(eq, x, how, found)
+         how%perseveres = .true.
          if (found%outcome /= outcome_converged) then
             spent = found%iterations
             x = start

@@ -11,6 +11,10 @@
 !! 2003). A cycle, a singular matrix or too many iterations make it ask the system for another
 !! start, once; a system may know a slower way that always leads to a solution (contact_pairs). If
 !! that is one of many, as for a piece that floats, the system counts as singular.
+!!
+!! What still cycles is iterated with shortened steps. Where states change the residuals keep their
+!! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
+!! continuous function, and a step is halved until it falls.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
@@ -59,6 +63,8 @@ module contact_newton
       !> Residuals as large as the rounding of their terms are small too. Only where no part can
       !! move freely: one that flies off has terms of any size.
       logical :: allows_rounding = .false.
+      !> What cycles is tried in slower ways; else the owner has a better start.
+      logical :: perseveres = .true.
    end type iteration_settings_t
 
    type :: iteration_report_t
@@ -68,6 +74,15 @@ module contact_newton
       real(rk) :: condition = 0.0_rk  !< of the last matrix, see step_quality_t [-]
       real(rk) :: error_bound = 0.0_rk  !< what it gives for the solution's relative error [-]
    end type iteration_report_t
+
+   !> Where an iteration is.
+   type :: course_t
+      integer(ik), allocatable :: before(:)  !< states one iteration ago
+      real(rk) :: worst = 0.0_rk  !< residual now [Pa]
+      real(rk) :: left = 0.0_rk  !< what the last step left of its equations [-]
+      logical :: was_small = .false.  !< the residual, one iteration ago
+      logical :: has_begun = .false.  !< a step has been made
+   end type course_t
 
    abstract interface
       !> Residuals, derivatives, states and stress scale at x.
@@ -150,14 +165,15 @@ contains
       call iterate_from(system, x, settings, report)
       first_outcome = report%outcome
       if (first_outcome /= outcome_stuck .and. first_outcome /= outcome_singular) return
+      if (.not. settings%perseveres) return
       call system%restart(x, has_start)
-      if (.not. has_start) return
-      report%was_restarted = .true.
-      call iterate_from(system, x, settings, report)
-      if (report%outcome == outcome_converged) then
-         if (is_loose(system, x)) report%outcome = outcome_singular
-      else
+      report%was_restarted = has_start
+      if (has_start) call iterate_from(system, x, settings, report)
+      if (report%outcome == outcome_stuck) call iterate_damped(system, x, settings, report)
+      if (report%outcome /= outcome_converged) then
          report%outcome = first_outcome
+      else if (has_start) then
+         if (is_loose(system, x)) report%outcome = outcome_singular
       end if
    end subroutine iterate
 
@@ -185,57 +201,124 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
-      integer(ik) :: before(size(system%state))
       integer(ik) :: seen(2*size(system%state), 0:settings%iterations_max)
-      real(rk) :: left, seen_worst(0:settings%iterations_max), step(size(x)), worst
-      type(step_quality_t) :: quality
+      real(rk) :: seen_worst(0:settings%iterations_max), step(size(x))
+      type(course_t) :: course
       integer(ik) :: k
-      logical :: is_end, is_small, was_small
 
-      before = system%state
-      was_small = .false.
-      left = 0.0_rk
+      course%before = system%state
       do k = 0, settings%iterations_max
          call system%evaluate(x)
-         worst = maxval(abs(system%residual))
-         if (.not. worst <= huge(1.0_rk)) then
-            report%outcome = outcome_not_a_number
-            return
-         end if
-         report%outcome = outcome_stuck
-         is_small = worst <= settings%tolerance*system%stress_scale
-         if (all(system%state == before) .and. k > 0) then
-            if (is_small) then
-               is_end = was_small
-               if (.not. is_end) is_end = left*report%condition <= well_solved &
-                                          .and. system%is_balanced()
-            else
-               is_end = settings%allows_rounding
-               if (is_end) is_end = is_rounding(system, x, settings%tolerance)
-            end if
-            if (is_end) report%outcome = outcome_converged
-         else if (is_small .and. was_small) then
-            if (system%obeys_law(x, settings%tolerance)) report%outcome = outcome_converged
-         end if
-         if (report%outcome == outcome_converged .or. k == settings%iterations_max) return
-         was_small = is_small
-         if (has_been(system, worst, seen(:, :k - 1), seen_worst(:k - 1))) return
+         call judge(system, x, settings, course, report)
+         if (report%outcome /= outcome_stuck .or. k == settings%iterations_max) return
+         if (has_been(system, course%worst, seen(:, :k - 1), seen_worst(:k - 1))) return
          seen(:, k) = [system%state, system%way]
-         seen_worst(k) = worst
-         before = system%state
-         call system%find_step(settings%with_condition, step, quality)
-         if (quality%is_singular) then
-            report%outcome = outcome_singular
-            return
-         end if
-         left = quality%rest
-         report%condition = quality%condition
-         report%error_bound = min(1.0_rk, quality%condition &
-                                  *(epsilon(1.0_rk) + quality%rest))
+         seen_worst(k) = course%worst
+         call find_next(system, settings, course, step, report)
+         if (report%outcome == outcome_singular) return
          x = x + step
-         report%iterations = report%iterations + 1
       end do
    end subroutine iterate_from
+
+   !> The same with steps that are shortened until the residuals fall; without memory of the way of
+   !! slip, so that these are functions of x alone.
+   subroutine iterate_damped(system, x, settings, report)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(inout) :: x(:)  !< [Pa]
+      type(iteration_settings_t), intent(in) :: settings
+      type(iteration_report_t), intent(inout) :: report
+      integer(ik), parameter :: iterations_max = 100
+      real(rk), parameter :: shortest = 1.0_rk/64.0_rk
+      real(rk), parameter :: least_fall = 1.0e-4_rk  ! of the norm, as a share of the length
+      ! Where the norm has a kink, the direction may be that of its other side, and no length lets
+      ! it fall. Of the lengths taken then, each differs from all before (the golden ratio), so that
+      ! this cannot cycle.
+      real(rk), parameter :: golden = 0.5_rk*(sqrt(5.0_rk) - 1.0_rk)
+      real(rk) :: length, norm, step(size(x))
+      type(course_t) :: course
+      integer(ik) :: k, n_kinks
+
+      n_kinks = 0
+      course%before = system%state
+      system%way = 0
+      call system%evaluate(x)
+      do k = 0, iterations_max
+         call judge(system, x, settings, course, report)
+         if (report%outcome /= outcome_stuck .or. k == iterations_max) return
+         norm = norm2(system%residual)
+         call find_next(system, settings, course, step, report)
+         if (report%outcome == outcome_singular) return
+         length = 1.0_rk
+         do
+            system%way = 0
+            call system%evaluate(x + length*step)
+            if (norm2(system%residual) <= (1.0_rk - least_fall*length)*norm) exit
+            if (length <= shortest) then
+               n_kinks = n_kinks + 1
+               length = 1.0_rk - 0.9_rk*modulo(n_kinks*golden, 1.0_rk)
+               system%way = 0
+               call system%evaluate(x + length*step)
+               exit
+            end if
+            length = 0.5_rk*length
+         end do
+         x = x + length*step
+      end do
+   end subroutine iterate_damped
+
+   !> Whether x, where the system was last evaluated, is a solution.
+   subroutine judge(system, x, settings, course, report)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      type(iteration_settings_t), intent(in) :: settings
+      type(course_t), intent(inout) :: course
+      type(iteration_report_t), intent(inout) :: report
+      logical :: is_end, is_small
+
+      course%worst = maxval(abs(system%residual))
+      if (.not. course%worst <= huge(1.0_rk)) then
+         report%outcome = outcome_not_a_number
+         return
+      end if
+      report%outcome = outcome_stuck
+      is_small = course%worst <= settings%tolerance*system%stress_scale
+      if (all(system%state == course%before) .and. course%has_begun) then
+         if (is_small) then
+            is_end = course%was_small
+            if (.not. is_end) is_end = course%left*report%condition <= well_solved &
+                                       .and. system%is_balanced()
+         else
+            is_end = settings%allows_rounding
+            if (is_end) is_end = is_rounding(system, x, settings%tolerance)
+         end if
+         if (is_end) report%outcome = outcome_converged
+      else if (is_small .and. course%was_small) then
+         if (system%obeys_law(x, settings%tolerance)) report%outcome = outcome_converged
+      end if
+      course%was_small = is_small
+   end subroutine judge
+
+   !> The step from where the system was last evaluated.
+   subroutine find_next(system, settings, course, step, report)
+      class(contact_system_t), intent(inout) :: system
+      type(iteration_settings_t), intent(in) :: settings
+      type(course_t), intent(inout) :: course
+      real(rk), intent(out) :: step(:)  !< [Pa]; undefined without one
+      type(iteration_report_t), intent(inout) :: report
+      type(step_quality_t) :: quality
+
+      course%before = system%state
+      course%has_begun = .true.
+      call system%find_step(settings%with_condition, step, quality)
+      if (quality%is_singular) then
+         report%outcome = outcome_singular
+         return
+      end if
+      course%left = quality%rest
+      report%condition = quality%condition
+      report%error_bound = min(1.0_rk, quality%condition*(epsilon(1.0_rk) + quality%rest))
+      report%iterations = report%iterations + 1
+   end subroutine find_next
 
    !> Whether the iteration has been here before: the same states and ways of slip, and the same
    !! residual.

@@ -39,6 +39,10 @@ module twolevel_window
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
 
+   !> Gap between fractures on the edge, over the clearance of vertices from it: elements become
+   !! small there, and the mesher takes about a tenth of this.
+   real(rk), parameter :: narrow = 0.1_rk
+
    !> What a window takes from the coarse level.
    type :: coarse_values_t
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
@@ -237,7 +241,7 @@ contains
    end subroutine take_given
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
-   !! between, or that a fracture crosses at an angle at which none does.
+   !! between, or that a fracture crosses at an angle at which none does, or two where they meet.
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
@@ -245,18 +249,62 @@ contains
       integer(ik) :: axis
 
       do axis = 1, 2
-         associate (at => network%xy(axis, :))
-            do while (any(abs(at - lower(axis)) < clearance) .or. &
-                      is_cut_aslant(network, axis, lower(axis)))
-               lower(axis) = lower(axis) - clearance
-            end do
-            do while (any(abs(at - upper(axis)) < clearance) .or. &
-                      is_cut_aslant(network, axis, upper(axis)))
-               upper(axis) = upper(axis) + clearance
-            end do
-         end associate
+         do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
+            lower(axis) = lower(axis) - clearance
+         end do
+         do while (is_in_the_way(network, axis, upper(axis), clearance, lower, upper))
+            upper(axis) = upper(axis) + clearance
+         end do
       end do
    end subroutine clear_edges
+
+   !> An edge cannot be where it is.
+   pure logical function is_in_the_way(network, axis, edge, clearance, lower, upper)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), intent(in) :: clearance  !< from vertices [m]
+      real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
+
+      is_in_the_way = any(abs(network%xy(axis, :) - edge) < clearance)
+      if (.not. is_in_the_way) is_in_the_way = is_cut_aslant(network, axis, edge)
+      if (.not. is_in_the_way) then
+         associate (along => 3 - axis)
+            is_in_the_way = is_cut_twice(network, axis, edge, narrow*clearance, &
+                                         lower(along) - (upper(along) - lower(along)), &
+                                         upper(along) + (upper(along) - lower(along)))
+         end associate
+      end if
+   end function is_in_the_way
+
+   !> Two fractures cross an edge's line at places between which no element fits, as they do beside
+   !! the point where they meet.
+   pure logical function is_cut_twice(network, axis, edge, gap, from, to)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), intent(in) :: gap  !< between the places [m]
+      real(rk), intent(in) :: from, to  !< the part of the line that counts [m]
+      real(rk) :: place(size(network%xy, 2)), share
+      integer(ik) :: f, i, n, v
+
+      n = 0
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
+               if ((a(axis) - edge)*(b(axis) - edge) >= 0.0_rk) cycle
+               share = (edge - a(axis))/(b(axis) - a(axis))
+               n = n + 1
+               place(n) = a(3 - axis) + share*(b(3 - axis) - a(3 - axis))
+               if (place(n) < from .or. place(n) > to) n = n - 1
+            end associate
+         end do
+      end do
+      is_cut_twice = .false.
+      do i = 2, n
+         is_cut_twice = is_cut_twice .or. any(abs(place(:i - 1) - place(i)) < gap)
+      end do
+   end function is_cut_twice
 
    !> A segment of a fracture crosses an edge's line at a small angle.
    pure logical function is_cut_aslant(network, axis, edge)

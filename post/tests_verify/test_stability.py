@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -118,6 +119,115 @@ def test_a_known_gap_is_never_passed(case: SmallCase) -> None:
     file.write_text(text.replace('name = "base"', 'name = "base"\nknown_gap = "later"'))
     report = judged(case)
     assert (report.trials[0].verdict, report.maps[0].verdict) == (GAP, GAP)
+
+
+def with_trial(case: SmallCase, text: str) -> None:
+    file = case.case.parent / "stability" / "stability.toml"
+    file.write_text(_TOML + text)
+
+
+@pytest.mark.parametrize(
+    ("expect", "cause", "verdict"),
+    [
+        ("refused", "", PASSED),
+        ("refused", 'cause = ["storage"]', PASSED),
+        ("refused", 'cause = ["gravity", "storage"]', PASSED),
+        ("refused", 'cause = ["gravity"]', FAILED),
+        ("stopped", 'cause = ["storage"]', FAILED),
+        ("settled", 'cause = ["storage"]', PASSED),
+        ("settled", 'cause = ["gravity"]', FAILED),
+        ("converged", "", FAILED),
+    ],
+)
+def test_a_cause_is_part_of_the_reason(
+    case: SmallCase, expect: str, cause: str, verdict: str
+) -> None:
+    with_trial(
+        case,
+        f'[[trial]]\nname = "last"\nexpect = "{expect}"\n{cause}\n'
+        'set = { "scene.name" = "refused", "m.a" = 3.0 }\n',
+    )
+    last = judged(case).trials[-1]
+    assert (last.trial.run.name, last.verdict) == ("last", verdict), last.reason
+
+
+def test_what_converges_settles(case: SmallCase) -> None:
+    trial = '[[trial]]\nname = "last"\nexpect = "settled"\nset = { "scene.name" = "good" }\n'
+    with_trial(case, trial)
+    assert judged(case).trials[-1].verdict == PASSED
+
+
+def test_what_settles_keeps_the_limits(case: SmallCase) -> None:
+    trial = '[[trial]]\nname = "last"\nexpect = "settled"\nset = { "scene.name" = "good" }\n'
+    with_trial(case, trial)
+    record(case, "good", mass_error_relative=1.0)
+    assert judged(case).trials[-1].verdict == FAILED
+
+
+def test_a_trial_stands_for_several(case: SmallCase) -> None:
+    with_trial(
+        case,
+        '[[trial]]\nover.a = [4.0, 5.0]\nname = "a {a:g}"\nexpect = "converged"\n'
+        'set = { "scene.name" = "good", "m.a" = "{a}" }\n',
+    )
+    trials = judged(case).trials[2:]
+    assert [(item.trial.run.name, item.trial.run.set["m.a"]) for item in trials] == [
+        ("a 4", 4.0),
+        ("a 5", 5.0),
+    ]
+
+
+_DRAW = """\
+[[draw]]
+count = 20
+seed = 7
+[draw.ranges]
+a = { from = 1e-6, to = 1e2, log = true }
+b = { from = 2.0, to = -2.0 }
+c = { of = [1, 2] }
+[draw.trial]
+name = "drawn {number}"
+expect = "settled"
+set = { "scene.name" = "good", "m.a" = "{a}", "m.b" = "{b}", "m.c" = "{c}" }
+"""
+
+
+def test_each_part_of_a_range_is_drawn_from_once(case: SmallCase) -> None:
+    with_trial(case, _DRAW)
+    values = [item.trial.run.set for item in judged(case).trials[2:]]
+    assert len(values) == 20
+    decades = sorted(math.log10(item["m.a"]) for item in values)
+    assert all(-6.0 + 0.4 * k <= x <= -6.0 + 0.4 * (k + 1) for k, x in enumerate(decades))
+    places = sorted(item["m.b"] for item in values)
+    assert all(-2.0 + 0.2 * k <= x <= -2.0 + 0.2 * (k + 1) for k, x in enumerate(places))
+    assert sorted(item["m.c"] for item in values) == [1] * 10 + [2] * 10
+    assert values == [item.trial.run.set for item in judged(case).trials[2:]]  # the seed is fixed
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("count = 20", "count = 0", "'count' must be a whole number from 1 on"),
+        ("from = 1e-6", "from = 0.0", "'log' needs numbers above 0"),
+        ("of = [1, 2]", "of = []", "'of' must be a list"),
+        ('"{c}"', "3", "nothing uses 'c'"),
+        ("seed = 7", "", "'seed' is missing"),
+    ],
+)
+def test_a_draw_that_cannot_be_is_red(case: SmallCase, old: str, new: str, found: str) -> None:
+    with_trial(case, _DRAW.replace(old, new))
+    report = judged(case)
+    assert report.verdict == ERROR
+    assert found in report.broken
+
+
+def test_what_cannot_be_judged_from_files_is_an_error(case: SmallCase) -> None:
+    file = case.case.parent / "stability" / "stability.toml"
+    file.write_text(_TOML.replace("\n[[trial]]", "from_files = true\n\n[[trial]]", 1))
+    report = judged(case)
+    assert report.trials[0].trial.run.set["output.vtu"] is True
+    assert report.trials[0].verdict == ERROR
+    assert report.trials[1].verdict == PASSED  # refused: there are no files
 
 
 def test_an_unknown_key_is_red(case: SmallCase) -> None:

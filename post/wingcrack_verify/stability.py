@@ -11,13 +11,20 @@ from pathlib import Path
 from typing import Any
 
 from wingcrack_verify.case import Run, read_toml, refuse_doubles
+from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.fields import Fields
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
 from wingcrack_verify.selection import read_selection, select
+from wingcrack_verify.sweep import Defaults, read_tables
 
-TIME_LIMIT_S = 20.0  # some hundred times what a trial takes
+TIME_LIMIT_S = 20.0  # unless the file says otherwise: some hundred times what a trial takes
+# In words of a trial; a run that crashed, or took too long, is neither.
+_STATUS = {"finished": "converged", "failed": "stopped", "refused": "refused"}
+EXPECTED = ("converged", "refused", "stopped", "settled")
+# Every accepted state with all its fields, for `recompute`; `check` doubts such an interval.
+ALL_FIELDS = {"output.vtu": True, "output.interval": 1.0e-30, "output.growth_states": 100000}
 
 
 @dataclass(frozen=True)
@@ -25,7 +32,8 @@ class Trial:
     """A scene of the table, or a cell of a map."""
 
     run: Run
-    expect: str  # "converged" or "refused"
+    expect: str  # "converged", "refused", "stopped", or "settled": one of them
+    causes: tuple[str, ...]  # one of these is part of the reason; none: any reason will do
     note: str
     known_gap: str | None
 
@@ -67,6 +75,7 @@ class Stability:
     quick: bool
     mass_error_limit: float
     contact_residual_limit: float
+    from_files: bool  # whether every state is judged again from the files
     trials: tuple[Trial, ...]
     maps: tuple[Map, ...]
 
@@ -135,67 +144,94 @@ def read_stability(folder: Path) -> Stability:
     if not base.is_file():
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
     mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
-    trials = tuple(
-        _read_trial(item, f"scene {index}", base)
-        for index, item in enumerate(fields.tables("trial"), start=1)
-    )
+    limit_s, from_files = fields.positive("time_limit_s", TIME_LIMIT_S), fields.flag("from_files")
+    maker = _Maker(base, ALL_FIELDS if from_files else {}, limit_s)
+    tables = read_tables(fields, "trial", Defaults({}))
+    for index, item in enumerate(fields.tables("draw"), start=1):
+        tables += read_draw(item, f"draw {index}")
+    trials = tuple(maker.trial(item, place) for place, item in tables)
     maps = tuple(
-        _read_map(item, f"map {index}", base)
-        for index, item in enumerate(fields.tables("map"), start=1)
+        maker.map(item, f"map {index}") for index, item in enumerate(fields.tables("map"), start=1)
     )
     fields.done()
     if not trials:
         raise CaseError("stability.toml: at least one [[trial]] is needed")
-    found = Stability(folder.name, folder, title, source, quick, mass, contact, trials, maps)
+    found = Stability(
+        folder.name, folder, title, source, quick, mass, contact, from_files, trials, maps
+    )
     refuse_doubles([run.name for run in found.runs], "trial")
     return found
 
 
-def _read_trial(data: Any, place: str, base: Path) -> Trial:
-    fields = Fields(data, place)
-    name = fields.text("name")
-    fields.place = f"trial '{name}'"
-    changes, unset = fields.mapping("set"), fields.texts("unset", ())
-    trial = Trial(
-        _run(name, base, changes, unset),
-        fields.choice("expect", ("converged", "refused")),
-        fields.text("note", ""),
-        fields.text("known_gap", None),
-    )
-    fields.done()
-    return trial
+@dataclass(frozen=True)
+class _Maker:
+    """Makes trials and maps of tables; what they share."""
 
+    base: Path
+    fields: Mapping[str, Any]  # values of all scenes
+    limit_s: float
 
-def _run(name: str, base: Path, changes: Mapping[str, Any], unset: tuple[str, ...]) -> Run:
-    return Run(
-        name, "stability", None, False, base, dict(changes), unset, None, (), {}, TIME_LIMIT_S
-    )
-
-
-def _read_map(data: Any, place: str, base: Path) -> Map:
-    fields = Fields(data, place)
-    title = fields.text("title")
-    fields.place = f"map '{title}'"
-    changes, unset = fields.mapping("set"), fields.texts("unset", ())
-    gap = fields.text("known_gap", None)
-    x, y = (_read_axis(fields.take(key), f"{fields.place}: {key}") for key in ("x", "y"))
-    fields.done()
-    trials = tuple(
-        Trial(
-            _run(
-                f"{title}: {x_value:g}, {y_value:g}",
-                base,
-                changes | x.changes(x_value) | y.changes(y_value),
-                unset,
-            ),
-            "converged",
-            "",
-            None,
+    def trial(self, data: Any, place: str) -> Trial:
+        """A trial of its table."""
+        fields = Fields(data, place)
+        name = fields.text("name")
+        fields.place = f"trial '{name}'"
+        changes, unset = fields.mapping("set"), fields.texts("unset", ())
+        expect = fields.choice("expect", EXPECTED)
+        causes = fields.texts("cause", ())
+        if causes and expect == "converged":
+            raise CaseError(f"{fields.place}: what converges has no cause")
+        trial = Trial(
+            self._run(name, changes, unset),
+            expect,
+            causes,
+            fields.text("note", ""),
+            fields.text("known_gap", None),
         )
-        for y_value in y.values
-        for x_value in x.values
-    )
-    return Map(title, x, y, trials, gap)
+        fields.done()
+        return trial
+
+    def map(self, data: Any, place: str) -> Map:
+        """A map of its table."""
+        fields = Fields(data, place)
+        title = fields.text("title")
+        fields.place = f"map '{title}'"
+        changes, unset = fields.mapping("set"), fields.texts("unset", ())
+        gap = fields.text("known_gap", None)
+        x, y = (_read_axis(fields.take(key), f"{fields.place}: {key}") for key in ("x", "y"))
+        fields.done()
+        trials = tuple(
+            Trial(
+                self._run(
+                    f"{title}: {x_value:g}, {y_value:g}",
+                    changes | x.changes(x_value) | y.changes(y_value),
+                    unset,
+                ),
+                "converged",
+                (),
+                "",
+                None,
+            )
+            for y_value in y.values
+            for x_value in x.values
+        )
+        return Map(title, x, y, trials, gap)
+
+    def _run(self, name: str, changes: Mapping[str, Any], unset: tuple[str, ...]) -> Run:
+        values = {**self.fields, **changes}
+        return Run(
+            name,
+            "stability",
+            None,
+            False,
+            self.base,
+            values,
+            unset,
+            None,
+            (),
+            {},
+            self.limit_s,
+        )
 
 
 def _read_axis(data: Any, place: str) -> Axis:
@@ -237,12 +273,16 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     if outcome.status == "invalid":
         return _report(trial, outcome, ERROR, outcome.reason, {})
     numbers: dict[str, float | None] = {}
-    if outcome.status == "finished":
-        try:
-            numbers = _numbers(Path(outcome.folder) / "output")
-        except CaseError as broken:
-            return _report(trial, outcome, ERROR, str(broken), numbers)
-    reason = _complaint(found, trial, outcome, numbers)
+    wrong = ""
+    output = Path(outcome.folder) / "output"
+    try:
+        if outcome.status == "finished":
+            numbers = _numbers(output)
+        if found.from_files and outcome.status in ("finished", "failed"):
+            wrong = _wrong_in_files(output)
+    except (CaseError, OSError, ValueError, KeyError) as broken:
+        return _report(trial, outcome, ERROR, f"files that cannot be judged: {broken}", numbers)
+    reason = _complaint(found, trial, outcome, numbers) or wrong
     verdict = FAILED if reason else PASSED
     if trial.known_gap is not None:
         verdict = GAP
@@ -250,15 +290,37 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     return _report(trial, outcome, verdict, reason, numbers)
 
 
+def _wrong_in_files(output: Path) -> str:
+    """What is wrong in any state of a run, by its files alone; empty if nothing is."""
+    # Here, because the library that reads VTU files is slow to load, and few calls need it.
+    from wingcrack_verify import recompute, recompute_growth
+
+    faults = [*recompute.judge(output).wrong, *recompute_growth.judge_growth(output).wrong]
+    if not faults:
+        return ""
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    return f"wrong in the files: {faults[0]}{more}"
+
+
 def _complaint(
     found: Stability, trial: Trial, outcome: Outcome, numbers: Mapping[str, float | None]
 ) -> str:
-    if trial.expect == "refused":
-        if outcome.status in ("failed", "refused") and outcome.reason:
-            return ""
-        return f"the run {outcome.status}, and a refusal with a reason is expected"
-    if outcome.status != "finished":
-        return f"the run {outcome.status}: {outcome.reason}"
+    """Why a trial did not end as expected; empty if it did."""
+    status = _STATUS.get(outcome.status, outcome.status)
+    if trial.expect == "converged" or (trial.expect == "settled" and status == "converged"):
+        if status != "converged":
+            return f"the run {outcome.status}: {outcome.reason}"
+        return _beyond_limits(found, numbers)
+    # A trial of fluid-free scenes need not tell before the run that it cannot be done.
+    wanted = ("stopped",) if trial.expect == "stopped" else ("stopped", "refused")
+    if status not in wanted or not outcome.reason:
+        return f"the run {outcome.status}, and is to be {trial.expect} with a reason"
+    if trial.causes and not any(cause in outcome.reason for cause in trial.causes):
+        return f"the run {outcome.status} for another reason: {outcome.reason}"
+    return ""
+
+
+def _beyond_limits(found: Stability, numbers: Mapping[str, float | None]) -> str:
     for name, limit in (
         ("mass_error_relative", found.mass_error_limit),
         ("contact_residual", found.contact_residual_limit),
@@ -300,7 +362,7 @@ def _report(
     reason: str,
     numbers: Mapping[str, float | None],
 ) -> TrialReport:
-    status = "converged" if outcome.status == "finished" else outcome.status
+    status = _STATUS.get(outcome.status, outcome.status)
     return TrialReport(
         trial,
         verdict,

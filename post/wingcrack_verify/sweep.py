@@ -1,4 +1,4 @@
-"""Tables of check.toml that stand for several: ``over``, its templates, and ``[defaults]``.
+"""Tables that stand for several: ``over``, its templates, and ``[defaults]`` of check.toml.
 
 Everything here turns tables into tables; what the keys mean is told by `case`.
 """
@@ -33,7 +33,8 @@ _LINE = {
     *("label", "run", "points", "file", "column", "columns", "where", "at", "take"),
     *("interpolate", "x", "key"),
 }
-_KEYS = {"run": _RUN, "sweep": _RUN, "check": _CHECK, "figure": _FIGURE}
+_TRIAL = {"name", "expect", "cause", "note", "known_gap", "set", "unset"}
+_KEYS = {"run": _RUN, "sweep": _RUN, "check": _CHECK, "figure": _FIGURE, "trial": _TRIAL}
 
 # A name, or arithmetic of names, in braces; perhaps with a format, as in Python.
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")
@@ -46,7 +47,7 @@ class Defaults:
         fields = Fields(data, "defaults")
         run, check = fields.mapping("run"), fields.mapping("check")
         fields.done()
-        self._tables = {"run": run, "sweep": run, "check": check, "figure": {}}
+        self._tables = {"run": run, "sweep": run, "check": check, "figure": {}, "trial": {}}
         self._left = {"run": set(run), "check": set(check)}
 
     def complete(self, data: Mapping[str, Any], kind: str) -> Table:

@@ -4,7 +4,7 @@
     .venv/bin/python verification/programs/fluid_sweeps.py --folder /tmp/sweeps --only 17 42
 
 The scenes are a Latin hypercube (McKay, Beckman and Conover 1979) of a fixed seed. Each run is
-judged by fluid_checker, which reads its files alone (docs/sweeps.md).
+judged by wingcrack_verify.recompute, which reads its files alone (docs/sweeps.md).
 """
 
 from __future__ import annotations
@@ -23,9 +23,12 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from fluid_checker import judge
 
 TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "post"))
+
+from wingcrack_verify.recompute import judge  # noqa: E402
+
 SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 SEED = 20231101
 RUN_LIMIT_S = 120.0

@@ -29,6 +29,9 @@ program test_twolevel_window
 
    call test_undrained_constants(.false.)
    call test_undrained_constants(.true.)
+   call test_edge_beside_crossing(-1.0e-4_rk, .true.)
+   call test_edge_beside_crossing(1.0e-4_rk, .true.)
+   call test_edge_beside_crossing(0.1_rk, .false.)
    call test_projection()
    call test_uniform_stress()
    call test_conditions()
@@ -99,6 +102,40 @@ contains
                            "undrained")
       call checks%is_true(window%undrained, "undrained on record")
    end subroutine test_undrained_constants
+
+   !> An edge that would pass just beside the point where two fractures cross at a small angle,
+   !! where no element fits between them, moves outwards; one that passes farther away stays.
+   subroutine test_edge_beside_crossing(beside, moves)
+      real(rk), intent(in) :: beside  !< of the crossing, from the edge [m]
+      logical, intent(in) :: moves  !< the edge does
+      real(rk), parameter :: half = 0.2_rk, slope = 0.1_rk, arm = 0.15_rk  ! 5.7 degrees
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(window_t) :: window
+      type(window_tip_t) :: tips(1)
+      type(error_t), allocatable :: error
+      real(rk) :: edge, x
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%window = 2.0_rk*half
+      edge = 1.4_rk - half
+      x = edge + beside
+      call add_fracture(scene, "served", [0.6_rk, 1.4_rk], [1.0_rk, 1.0_rk], 0.5_rk, 0.0_rk)
+      call add_fracture(scene, "across", [x - arm, x + arm], 1.0_rk + slope*[-arm, arm], 0.5_rk, &
+                        0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "a crossing in the body")
+      tips = window_tip_t(fracture=1, end=2)
+      window%serves = [1_ik]
+      call window%build(scene, simulation%network, tips, error)
+      call checks%no_error(error, "a crossing beside the window's edge")
+      if (allocated(error)) return
+      if (moves) then
+         call checks%is_true(window%lower(1) < edge - 0.001_rk, "the edge has moved outwards")
+      else
+         call checks%is_close(window%lower(1), edge, 1.0e-12_rk, "the edge is where it was")
+      end if
+   end subroutine test_edge_beside_crossing
 
    !> Nodes on a fracture face lie in a coarse cell of their own side; the weights give their
    !! place back; a face knows the coarse cell that it lies in.
