@@ -160,7 +160,7 @@ contains
                   slopes(side, :) = condensed%coupling%diagonal(at)
                   if (eq%settings%equilibrate) cycle
                   cells = pack(cells, is_beyond(eq%cells%leak_resistance, &
-                                               eq%settings%mobility*eq%dt, slopes(side, :)))
+                                                eq%settings%mobility*eq%dt, slopes(side, :)))
                end if
             end associate
             allocate (slope(size(cells)))

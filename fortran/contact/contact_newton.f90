@@ -58,7 +58,8 @@ module contact_newton
 
    type :: iteration_settings_t
       real(rk) :: tolerance = 1.0e-10_rk  !< of residuals, relative to the stress scale [-]
-      integer(ik) :: iterations_max = 30  !< before another start is tried, and after it
+      !> Before another start is tried, after it, and with shortened steps
+      integer(ik) :: iterations_max = 30
       logical :: with_condition = .false.  !< estimate the condition of the matrices
       !> Residuals as large as the rounding of their terms are small too. Only where no part can
       !! move freely: one that flies off has terms of any size.
@@ -227,7 +228,6 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
-      integer(ik), parameter :: iterations_max = 100
       real(rk), parameter :: shortest = 1.0_rk/64.0_rk
       real(rk), parameter :: least_fall = 1.0e-4_rk  ! of the norm, as a share of the length
       ! Where the norm has a kink, the direction may be that of its other side, and no length lets
@@ -242,9 +242,9 @@ contains
       course%before = system%state
       system%way = 0
       call system%evaluate(x)
-      do k = 0, iterations_max
+      do k = 0, settings%iterations_max
          call judge(system, x, settings, course, report)
-         if (report%outcome /= outcome_stuck .or. k == iterations_max) return
+         if (report%outcome /= outcome_stuck .or. k == settings%iterations_max) return
          norm = norm2(system%residual)
          call find_next(system, settings, course, step, report)
          if (report%outcome == outcome_singular) return

@@ -41,6 +41,7 @@ module growth_front
       type(network_t) :: network  !< as it has grown
       type(tip_t), allocatable :: tip(:)
       type(growth_rules_t) :: rules
+      type(network_t), private :: network_before  !< before the last increment
    contains
       procedure(evaluate_tips), deferred :: evaluate
       procedure :: find_tips
@@ -140,18 +141,19 @@ contains
       integer(ik) :: i
 
       any_grew = .false.
+      self%network_before = self%network
       call self%tip%begin_increment()
       do i = 1, size(self%tip, kind=ik)
-         if (.not. advance(i) > 0.0_rk) cycle
+         if (.not. advance(i) > 0.0_rk .or. self%tip(i)%arrested) cycle
          associate (tip => self%tip(i))
             call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
             if (self%rules%heads) then
-               call stop_half_way(self, tip%fracture, tip%xy, advance(i), to)
+               call stop_half_way(self, i, (tip%xy), advance(i), to)
                if (self%rules%joins .and. &
                    norm2(to - tip%xy) < half_way*no_room*self%rules%increment) then
-                  call join_ahead(self, i, (tip%xy), advance(i), to)
+                  call join_at_once(self, i, to)
                end if
             else
                call meet_target(self%rules, self%network, tip, (tip%xy), to)
@@ -182,7 +184,7 @@ contains
             if (.not. has_turned) cycle
             to = tip%xy
             if (self%rules%heads) then
-               call stop_half_way(self, tip%fracture, tip%origin, advance(i), to)
+               call stop_half_way(self, i, (tip%origin), advance(i), to)
             else if (self%rules%joins) then
                call meet_target(self%rules, self%network, tip, (tip%origin), to)
             end if
@@ -210,10 +212,12 @@ contains
       end associate
    end subroutine look_ahead
 
-   !> A tip that has something ahead of it is tried half way to that only.
-   pure subroutine stop_half_way(self, fracture, from, advance, to)
+   !> A tip that has something ahead of it is tried half way to that only: as it was before any tip
+   !! moved where tips join in their increment, so that their order does not count, and half way to
+   !! where they meet if that is another tip on its way.
+   pure subroutine stop_half_way(self, i, from, advance, to)
       class(front_t), intent(in) :: self
-      integer(ik), intent(in) :: fracture  !< the one that grows
+      integer(ik), intent(in) :: i  !< tip
       real(rk), intent(in) :: from(2)  !< [m]
       real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
       real(rk), intent(inout) :: to(2)  !< in that direction [m]
@@ -221,52 +225,55 @@ contains
       integer(ik) :: target
 
       direction = (to - from)/norm2(to - from)
-      call self%look_ahead(self%network, fracture, from, direction, target, at)
+      associate (fracture => self%tip(i)%fracture)
+         if (self%rules%joins) then
+            call self%look_ahead(self%network_before, fracture, from, direction, target, at)
+         else
+            call self%look_ahead(self%network, fracture, from, direction, target, at)
+         end if
+      end associate
       room = advance
       if (target /= target_none) room = min(room, half_way*norm2(at - from))
+      if (self%rules%joins .and. is_left(self, target, at)) room = half_way*room
       if (abs(room - norm2(to - from)) > same_value*advance) to = from + room*direction
    end subroutine stop_half_way
 
-   !> The tips whose directions have been found half way go the rest of it, straight on.
-   subroutine join_tips(self, advance, any_joined)
-      class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
-      logical, intent(out) :: any_joined
-      real(rk) :: to(2)
-      integer(ik) :: i
+   !> A place is that of a tip before it went on.
+   pure logical function is_left(self, fracture, at)
+      class(front_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+      real(rk), intent(in) :: at(2)  !< [m]
+      integer :: k
 
-      any_joined = .false.
-      if (.not. (self%rules%heads .and. self%rules%joins)) return
-      do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i))
-            if (.not. tip%advance > 0.0_rk .or. tip%arrested) cycle
-            to = tip%xy
-            call join_ahead(self, i, (tip%origin), advance(i), to)
-            if (.not. tip%joined) cycle
-            tip%xy = to
-            tip%advance = norm2(to - tip%origin)
-            call move_end(self%network, tip%fracture, tip%end, to)
-            any_joined = .true.
-         end associate
+      is_left = .false.
+      do k = 1, size(self%tip)
+         if (self%tip(k)%fracture /= fracture .or. self%tip(k)%arrested) cycle
+         is_left = is_left .or. &
+                   norm2(place_before(self%tip(k)) - at) <= same_place*self%rules%increment
       end do
-   end subroutine join_tips
+   end function is_left
 
-   !> A tip that would come to what lies ahead of it within half an increment from where it goes
-   !! joins it at once: it, or both if that is another one, is no tip any more.
-   subroutine join_ahead(self, i, from, advance, to)
+   !> Where a tip was before the increment [m].
+   pure function place_before(tip) result(xy)
+      type(tip_t), intent(in) :: tip
+      real(rk) :: xy(2)
+
+      xy = merge(tip%origin, tip%xy, tip%advance > 0.0_rk)
+   end function place_before
+
+   !> What lies ahead is too near for a try half way. It, or both if that is another one, is no tip
+   !! any more.
+   subroutine join_at_once(self, i, to)
       class(front_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: from(2)  !< [m]
-      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
       real(rk), intent(inout) :: to(2)  !< in that direction [m]
-      real(rk) :: at(2)
+      real(rk) :: at(2), from(2)
       integer(ik) :: target
       integer :: k
 
-      call self%look_ahead(self%network, self%tip(i)%fracture, from, (to - from)/norm2(to - from), &
-                           target, at)
-      if (target == target_none) return
-      if (norm2(at - from) > advance + (foresight - 1.0_rk)*self%rules%increment) return
+      from = self%tip(i)%xy
+      call self%look_ahead(self%network_before, self%tip(i)%fracture, from, &
+                           (to - from)/norm2(to - from), target, at)
       to = at
       self%tip(i)%target = target
       self%tip(i)%joined = .true.
@@ -274,7 +281,80 @@ contains
       do k = 1, size(self%tip)
          if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) call self%tip(k)%cease()
       end do
-   end subroutine join_ahead
+   end subroutine join_at_once
+
+   !> The tips whose directions have been found half way go the rest of it, straight on: to what lay
+   !! there before any of them moved, so that their order does not count; two that come to each
+   !! other meet half way. It, or both if that is another one, is no tip any more.
+   subroutine join_tips(self, advance, any_joined)
+      class(front_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
+      logical, intent(out) :: any_joined
+      real(rk), dimension(2, size(self%tip)) :: at, middle
+      integer(ik) :: i, k, target(size(self%tip))
+
+      any_joined = .false.
+      if (.not. (self%rules%heads .and. self%rules%joins)) return
+      do i = 1, size(self%tip, kind=ik)
+         call find_joint(self, i, advance(i), target(i), at(:, i))
+      end do
+      middle = at
+      do i = 1, size(self%tip, kind=ik)
+         if (target(i) == target_none) cycle
+         do k = 1, size(self%tip, kind=ik)
+            if (k == i .or. .not. comes_to(i, k)) cycle
+            if (comes_to(k, i)) then
+               middle(:, i) = 0.5_rk*(self%tip(i)%origin + self%tip(k)%origin)
+            else
+               call self%tip(k)%cease()
+            end if
+         end do
+      end do
+      do i = 1, size(self%tip, kind=ik)
+         if (target(i) == target_none) cycle
+         any_joined = .true.
+         associate (tip => self%tip(i))
+            tip%target = target(i)
+            tip%joined = .true.
+            call tip%cease()
+            tip%xy = middle(:, i)
+            tip%advance = norm2(tip%xy - tip%origin)
+            call move_end(self%network, tip%fracture, tip%end, tip%xy)
+         end associate
+      end do
+
+   contains
+
+      !> What a tip joins is where another one was.
+      pure logical function comes_to(tip, other)
+         integer(ik), intent(in) :: tip, other
+
+         comes_to = target(tip) == self%tip(other)%fracture .and. &
+                    norm2(at(:, tip) - place_before(self%tip(other))) &
+                    <= same_place*self%rules%increment
+      end function comes_to
+
+   end subroutine join_tips
+
+   !> What a tip that has grown comes to within half an increment from where it would have gone.
+   pure subroutine find_joint(self, i, advance, target, at)
+      class(front_t), intent(in) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
+      integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
+      real(rk), intent(out) :: at(2)  !< [m]
+
+      target = target_none
+      at = 0.0_rk
+      associate (tip => self%tip(i))
+         if (.not. tip%advance > 0.0_rk .or. tip%arrested) return
+         call self%look_ahead(self%network_before, tip%fracture, tip%origin, tip%direction, &
+                              target, at)
+         if (norm2(at - tip%origin) > advance + (foresight - 1.0_rk)*self%rules%increment) then
+            target = target_none
+         end if
+      end associate
+   end subroutine find_joint
 
    !> A tip that crosses another fracture or the boundary, or comes near it, joins it there, or
    !! stops where it is.

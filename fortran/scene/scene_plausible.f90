@@ -6,6 +6,7 @@ module scene_plausible
    use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
+   use scene_check_permeability, only: anisotropy
    use scene_near_ends, only: near_end_t, near_ends
    use scene_region_outline, only: body_part
    use scene_storage, only: skempton
@@ -31,7 +32,7 @@ module scene_plausible
                          of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
                          of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
                          of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
-                         of_stub = 20
+                         of_stub = 20, of_anisotropy = 21
 
    ! The table keeps its own layout.
    !&<
@@ -84,7 +85,10 @@ module scene_plausible
       doubt_t("fracture", "stub", "m", &
               "past a fracture that it crosses below 0.05 increments, likewise", &
               "its end is a tip of its own, in cells as small as the stub; let it end on the "// &
-              "other one if that is meant")]
+              "other one if that is meant"), &
+      doubt_t("material", "anisotropy", "-", "above 10, with &fluid", &
+              "where rock conducts so much better one way, pressures may leave their bounds: "// &
+              "by a fifth of their range where it is 100")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
@@ -125,6 +129,7 @@ contains
          associate (largest => max(m%permeability_xx, m%permeability_yy))
             call add(list, has_fluid .and. largest > 1.0e-8_rk, of_permeability, largest)
          end associate
+         if (has_fluid) call add(list, anisotropy(m) > 10.0_rk, of_anisotropy, anisotropy(m))
          if (scene%growth%enabled) then
             call add(list,.not. within(m%toughness, 1.0e4_rk, 1.0e8_rk), of_toughness, &
                      m%toughness)

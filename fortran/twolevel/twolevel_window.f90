@@ -241,19 +241,27 @@ contains
    end subroutine take_given
 
    !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
-   !! between, or that a fracture crosses at an angle at which none does, or two where they meet.
+   !! between, or that a fracture crosses at an angle at which none does, or beside a corner, or two
+   !! where they meet.
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
       real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
       integer(ik) :: axis
+      logical :: has_moved
 
-      do axis = 1, 2
-         do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
-            lower(axis) = lower(axis) - clearance
-         end do
-         do while (is_in_the_way(network, axis, upper(axis), clearance, lower, upper))
-            upper(axis) = upper(axis) + clearance
+      has_moved = .true.
+      do while (has_moved)  ! an edge that moves takes two corners along
+         has_moved = .false.
+         do axis = 1, 2
+            do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
+               lower(axis) = lower(axis) - clearance
+               has_moved = .true.
+            end do
+            do while (is_in_the_way(network, axis, upper(axis), clearance, lower, upper))
+               upper(axis) = upper(axis) + clearance
+               has_moved = .true.
+            end do
          end do
       end do
    end subroutine clear_edges
@@ -270,21 +278,21 @@ contains
       if (.not. is_in_the_way) is_in_the_way = is_cut_aslant(network, axis, edge)
       if (.not. is_in_the_way) then
          associate (along => 3 - axis)
-            is_in_the_way = is_cut_twice(network, axis, edge, narrow*clearance, &
-                                         lower(along) - (upper(along) - lower(along)), &
-                                         upper(along) + (upper(along) - lower(along)))
+            is_in_the_way = is_cut_closely(network, axis, edge, narrow*clearance, &
+                                           lower(along), upper(along))
          end associate
       end if
    end function is_in_the_way
 
-   !> Two fractures cross an edge's line at places between which no element fits, as they do beside
-   !! the point where they meet.
-   pure logical function is_cut_twice(network, axis, edge, gap, from, to)
+   !> A fracture crosses an edge so near to a corner, or to another fracture that does, that no
+   !! element fits between. Those that cross it within a window's width beyond the corners count:
+   !! the edge may become longer.
+   pure logical function is_cut_closely(network, axis, edge, gap, from, to)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: axis  !< across the edge
       real(rk), intent(in) :: edge  !< where it is along that [m]
       real(rk), intent(in) :: gap  !< between the places [m]
-      real(rk), intent(in) :: from, to  !< the part of the line that counts [m]
+      real(rk), intent(in) :: from, to  !< the corners along it [m]
       real(rk) :: place(size(network%xy, 2)), share
       integer(ik) :: f, i, n, v
 
@@ -296,15 +304,15 @@ contains
                share = (edge - a(axis))/(b(axis) - a(axis))
                n = n + 1
                place(n) = a(3 - axis) + share*(b(3 - axis) - a(3 - axis))
-               if (place(n) < from .or. place(n) > to) n = n - 1
+               if (place(n) < 2.0_rk*from - to .or. place(n) > 2.0_rk*to - from) n = n - 1
             end associate
          end do
       end do
-      is_cut_twice = .false.
+      is_cut_closely = any(abs(place(:n) - from) < gap .or. abs(place(:n) - to) < gap)
       do i = 2, n
-         is_cut_twice = is_cut_twice .or. any(abs(place(:i - 1) - place(i)) < gap)
+         is_cut_closely = is_cut_closely .or. any(abs(place(:i - 1) - place(i)) < gap)
       end do
-   end function is_cut_twice
+   end function is_cut_closely
 
    !> A segment of a fracture crosses an edge's line at a small angle.
    pure logical function is_cut_aslant(network, axis, edge)

@@ -126,6 +126,9 @@ contains
    subroutine test_material()
       type(scene_t) :: s
 
+      s = sound()
+      s%material%permeability_yy = 4.0e-21_rk
+      call expect(s, "&material: anisotropy is 12.5: ", "a better conductor one way")
       s = solid
       s%material%poisson = 0.4999_rk
       call expect(s, "&material: poisson is 0.4999: ", "poisson")
@@ -139,6 +142,7 @@ contains
       s%material%porosity = 1.0_rk
       call expect(s, "&material: porosity is 1.0: ", "porosity")
       s = sound()
+      s%material%permeability_xx = 0.1_rk
       s%material%permeability_yy = 0.1_rk
       call expect(s, "&material: permeability is 0.1 m2: ", "permeability")
       s%fluid%viscosity = 0.0_rk

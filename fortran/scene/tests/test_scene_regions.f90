@@ -149,6 +149,14 @@ contains
                "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must be "// &
                   "smaller than sqrt(permeability_xx permeability_yy), for the tensor must be "// &
                   "positive definite"//doc)
+      call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-18 /", &
+                  ":7: &region: permeability_xx and its companions make the rock 10000.0 times "// &
+                  "more permeable one way than across it, but the fluxes between cells hold "// &
+                  "for a ratio of at most 1000.0"//doc)
+      call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-14 "// &
+                  "permeability_xy=0.9999e-14 /", ":7: &region: permeability_xx and its "// &
+                "companions make the rock 20000.0 times more permeable one way than across it, "// &
+                  "but the fluxes between cells hold for a ratio of at most 1000.0"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-28 /", ":5: &region: permeability "// &
                 "of region 'p' and the permeability of the rock around it or of another region "// &
                   "differ by more than a factor of 1e12 but must not"//doc)

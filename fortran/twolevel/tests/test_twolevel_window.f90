@@ -32,6 +32,8 @@ program test_twolevel_window
    call test_edge_beside_crossing(-1.0e-4_rk, .true.)
    call test_edge_beside_crossing(1.0e-4_rk, .true.)
    call test_edge_beside_crossing(0.1_rk, .false.)
+   call test_corner_beside_fracture(5.0e-6_rk, .true.)
+   call test_corner_beside_fracture(0.05_rk, .false.)
    call test_projection()
    call test_uniform_stress()
    call test_conditions()
@@ -136,6 +138,39 @@ contains
          call checks%is_close(window%lower(1), edge, 1.0e-12_rk, "the edge is where it was")
       end if
    end subroutine test_edge_beside_crossing
+
+   !> A fracture that would cross an edge just beside a corner makes the edges move.
+   subroutine test_corner_beside_fracture(beside, moves)
+      real(rk), intent(in) :: beside  !< of the fracture, from the corner along the edge [m]
+      logical, intent(in) :: moves  !< the edge does
+      real(rk), parameter :: half = 0.2_rk, arm = 0.15_rk
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(window_t) :: window
+      type(window_tip_t) :: tips(1)
+      type(error_t), allocatable :: error
+      real(rk) :: corner(2)
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%window = 2.0_rk*half
+      corner = [1.4_rk - half, 1.0_rk - half]
+      call add_fracture(scene, "served", [0.6_rk, 1.4_rk], [1.0_rk, 1.0_rk], 0.5_rk, 0.0_rk)
+      call add_fracture(scene, "aside", corner(1) + [-arm, arm], &
+                        corner(2) + beside + 0.8_rk*[-arm, arm], 0.5_rk, 0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "a fracture across a window's edge")
+      tips = window_tip_t(fracture=1, end=2)
+      window%serves = [1_ik]
+      call window%build(scene, simulation%network, tips, error)
+      call checks%no_error(error, "a fracture beside the window's corner")
+      if (allocated(error)) return
+      if (moves) then
+         call checks%is_true(any(window%lower < corner - 0.001_rk), "an edge has moved outwards")
+      else
+         call checks%is_close(maxval(abs(window%lower - corner)), 0.0_rk, 1.0e-12_rk, &
+                              "the corner is where it was")
+      end if
+   end subroutine test_corner_beside_fracture
 
    !> Nodes on a fracture face lie in a coarse cell of their own side; the weights give their
    !! place back; a face knows the coarse cell that it lies in.
