@@ -26,6 +26,7 @@ module twolevel_window
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
    use twolevel_faces, only: face_map_t, match_faces
+   use twolevel_window_edges, only: clear_edges
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
@@ -38,10 +39,6 @@ module twolevel_window
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
-
-   !> Gap between fractures on the edge, over the clearance of vertices from it: elements become
-   !! small there, and the mesher takes about a tenth of this.
-   real(rk), parameter :: narrow = 0.1_rk
 
    !> What a window takes from the coarse level.
    type :: coarse_values_t
@@ -239,100 +236,6 @@ contains
          end do
       end associate
    end subroutine take_given
-
-   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
-   !! between, or that a fracture crosses at an angle at which none does, or beside a corner, or two
-   !! where they meet.
-   pure subroutine clear_edges(network, clearance, lower, upper)
-      type(network_t), intent(in) :: network
-      real(rk), intent(in) :: clearance  !< [m]
-      real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
-      integer(ik) :: axis
-      logical :: has_moved
-
-      has_moved = .true.
-      do while (has_moved)  ! an edge that moves takes two corners along
-         has_moved = .false.
-         do axis = 1, 2
-            do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
-               lower(axis) = lower(axis) - clearance
-               has_moved = .true.
-            end do
-            do while (is_in_the_way(network, axis, upper(axis), clearance, lower, upper))
-               upper(axis) = upper(axis) + clearance
-               has_moved = .true.
-            end do
-         end do
-      end do
-   end subroutine clear_edges
-
-   !> An edge cannot be where it is.
-   pure logical function is_in_the_way(network, axis, edge, clearance, lower, upper)
-      type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), intent(in) :: clearance  !< from vertices [m]
-      real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
-
-      is_in_the_way = any(abs(network%xy(axis, :) - edge) < clearance)
-      if (.not. is_in_the_way) is_in_the_way = is_cut_aslant(network, axis, edge)
-      if (.not. is_in_the_way) then
-         associate (along => 3 - axis)
-            is_in_the_way = is_cut_closely(network, axis, edge, narrow*clearance, &
-                                           lower(along), upper(along))
-         end associate
-      end if
-   end function is_in_the_way
-
-   !> A fracture crosses an edge so near to a corner, or to another fracture that does, that no
-   !! element fits between. Those that cross it within a window's width beyond the corners count:
-   !! the edge may become longer.
-   pure logical function is_cut_closely(network, axis, edge, gap, from, to)
-      type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), intent(in) :: gap  !< between the places [m]
-      real(rk), intent(in) :: from, to  !< the corners along it [m]
-      real(rk) :: place(size(network%xy, 2)), share
-      integer(ik) :: f, i, n, v
-
-      n = 0
-      do f = 1, size(network%first, kind=ik) - 1
-         do v = network%first(f), network%first(f + 1) - 2
-            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
-               if ((a(axis) - edge)*(b(axis) - edge) >= 0.0_rk) cycle
-               share = (edge - a(axis))/(b(axis) - a(axis))
-               n = n + 1
-               place(n) = a(3 - axis) + share*(b(3 - axis) - a(3 - axis))
-               if (place(n) < 2.0_rk*from - to .or. place(n) > 2.0_rk*to - from) n = n - 1
-            end associate
-         end do
-      end do
-      is_cut_closely = any(abs(place(:n) - from) < gap .or. abs(place(:n) - to) < gap)
-      do i = 2, n
-         is_cut_closely = is_cut_closely .or. any(abs(place(:i - 1) - place(i)) < gap)
-      end do
-   end function is_cut_closely
-
-   !> A segment of a fracture crosses an edge's line at a small angle.
-   pure logical function is_cut_aslant(network, axis, edge)
-      type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), parameter :: shallow = tan(5.0_rk*acos(-1.0_rk)/180.0_rk)
-      integer(ik) :: f, v
-
-      is_cut_aslant = .false.
-      do f = 1, size(network%first, kind=ik) - 1
-         do v = network%first(f), network%first(f + 1) - 2
-            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
-              is_cut_aslant = is_cut_aslant .or. ((a(axis) - edge)*(b(axis) - edge) < 0.0_rk .and. &
-                                                   abs(b(axis) - a(axis)) < shallow &
-                                                   *abs(b(3 - axis) - a(3 - axis)))
-            end associate
-         end do
-      end do
-   end function is_cut_aslant
 
    !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves.
    !! There the pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the

@@ -1,0 +1,124 @@
+!> Where the edges of a window can be: no good elements fit where one passes close to a vertex of a
+!! fracture, or a fracture crosses it at a small angle, beside a corner or beside another one.
+module twolevel_window_edges
+   use base_kinds, only: ik, rk
+   use mesh_types, only: network_t
+   implicit none(type, external)
+   private
+
+   public :: clear_edges
+
+   !> Gap between fractures on the edge, over the clearance of vertices from it: elements become
+   !! small there, and the mesher takes about a tenth of this.
+   real(rk), parameter :: narrow = 0.1_rk
+
+   !> What crosses an edge that near to a corner, over that gap, crosses it at the corner.
+   real(rk), parameter :: at_it = 1.0e-9_rk
+
+contains
+
+   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
+   !! between, or that a fracture crosses at an angle at which none does, or beside a corner, or two
+   !! where they meet.
+   pure subroutine clear_edges(network, clearance, lower, upper)
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: clearance  !< [m]
+      real(rk), intent(inout) :: lower(2), upper(2)  !< corners [m]
+      integer(ik) :: axis
+      logical :: has_moved
+
+      has_moved = .true.
+      do while (has_moved)  ! an edge that moves takes two corners along
+         has_moved = .false.
+         do axis = 1, 2
+            do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
+               lower(axis) = lower(axis) - clearance
+               has_moved = .true.
+            end do
+            do while (is_in_the_way(network, axis, upper(axis), clearance, lower, upper))
+               upper(axis) = upper(axis) + clearance
+               has_moved = .true.
+            end do
+         end do
+      end do
+   end subroutine clear_edges
+
+   !> An edge cannot be where it is.
+   pure logical function is_in_the_way(network, axis, edge, clearance, lower, upper)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), intent(in) :: clearance  !< from vertices [m]
+      real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
+
+      is_in_the_way = any(abs(network%xy(axis, :) - edge) < clearance)
+      if (.not. is_in_the_way) is_in_the_way = is_cut_aslant(network, axis, edge)
+      if (.not. is_in_the_way) then
+         associate (along => 3 - axis)
+            is_in_the_way = is_cut_closely(network, axis, edge, narrow*clearance, &
+                                           lower(along), upper(along))
+         end associate
+      end if
+   end function is_in_the_way
+
+   !> A fracture crosses an edge so near to a corner, or to another fracture that does, that no
+   !! element fits between. Those that cross it within a window's width beyond the corners count:
+   !! the edge may become longer.
+   pure logical function is_cut_closely(network, axis, edge, gap, from, to)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), intent(in) :: gap  !< between the places [m]
+      real(rk), intent(in) :: from, to  !< the corners along it [m]
+      real(rk) :: place(size(network%xy, 2)), share
+      integer(ik) :: f, i, n, v
+
+      n = 0
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
+               if ((a(axis) - edge)*(b(axis) - edge) >= 0.0_rk) cycle
+               share = (edge - a(axis))/(b(axis) - a(axis))
+               n = n + 1
+               place(n) = a(3 - axis) + share*(b(3 - axis) - a(3 - axis))
+               if (place(n) < 2.0_rk*from - to .or. place(n) > 2.0_rk*to - from) n = n - 1
+            end associate
+         end do
+      end do
+      is_cut_closely = any(is_beside(place(:n) - from) .or. is_beside(place(:n) - to))
+      do i = 2, n
+         is_cut_closely = is_cut_closely .or. any(abs(place(:i - 1) - place(i)) < gap)
+      end do
+
+   contains
+
+      !> Near a corner, but not at it: there is nothing between then.
+      elemental logical function is_beside(distance)
+         real(rk), intent(in) :: distance  !< [m]
+
+         is_beside = abs(distance) < gap .and. abs(distance) > at_it*gap
+      end function is_beside
+
+   end function is_cut_closely
+
+   !> A segment of a fracture crosses an edge's line at a small angle.
+   pure logical function is_cut_aslant(network, axis, edge)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: axis  !< across the edge
+      real(rk), intent(in) :: edge  !< where it is along that [m]
+      real(rk), parameter :: shallow = tan(5.0_rk*acos(-1.0_rk)/180.0_rk)
+      integer(ik) :: f, v
+
+      is_cut_aslant = .false.
+      do f = 1, size(network%first, kind=ik) - 1
+         do v = network%first(f), network%first(f + 1) - 2
+            associate (a => network%xy(:, v), b => network%xy(:, v + 1))
+              is_cut_aslant = is_cut_aslant .or. ((a(axis) - edge)*(b(axis) - edge) < 0.0_rk .and. &
+                                                   abs(b(axis) - a(axis)) < shallow &
+                                                   *abs(b(3 - axis) - a(3 - axis)))
+            end associate
+         end do
+      end do
+   end function is_cut_aslant
+
+end module twolevel_window_edges
