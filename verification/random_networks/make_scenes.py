@@ -67,7 +67,7 @@ class Network:
 
 
 EIGHT = Network(8, 2.0, (0.2, 0.5), 2.0e-7, 150.0)
-THIRTY = Network(30, 2.0, (0.15, 0.35), 2.0e-7, 20.0)
+THIRTY = Network(30, 2.0, (0.15, 0.35), 2.0e-7, 100.0)
 CASE = [(EIGHT, range(1, 5)), (THIRTY, range(1, 3))]
 
 
