@@ -125,6 +125,15 @@ def test_marks_tell_what_happened(stimulated: Path) -> None:
     assert "largest $M_w$ = $-1.40$ (10 m thick)" in words
 
 
+def test_a_well_along_a_fracture_stands_on_what_the_scene_has_of_it(stimulated: Path) -> None:
+    scene = stimulated / "scene.nml"
+    scene.write_text(scene.read_text().replace(", x = 1.0, y = 1.0, rate", ", rate"))
+    axes = panel(story(read_run(stimulated)), "network")
+    (well,) = (line for line in axes.lines if line.get_marker() == "v")
+    first, last = polyline(0)[[0, -1]]
+    assert np.asarray(well.get_xydata())[0] == pytest.approx(first + 0.6 * (last - first), abs=1e-9)
+
+
 def test_the_map_has_states_wells_and_events(stimulated: Path) -> None:
     figure = story(read_run(stimulated))
     axes = panel(figure, "network")

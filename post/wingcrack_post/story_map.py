@@ -169,9 +169,11 @@ def _name(
 
 
 def _draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
-    """Wells at their point; those along a whole fracture at its middle."""
+    """Wells at their point; those along a whole fracture near its middle, as the scene has it."""
     wells = run.scene.wells if run.scene else ()
-    fractures = {item["name"]: item for item in (run.network or {}).get("fractures", [])}
+    network = run.network or {}
+    first = network["steps"][0] if network.get("steps") else network
+    fractures = {item["name"]: item for item in first.get("fractures", [])}
     drawn = False
     for place in {_place(well.fracture, well.place_m, fractures) for well in wells} - {None}:
         assert place is not None
@@ -194,14 +196,9 @@ def _place(
         return None
     points = np.column_stack((item["x_m"], item["y_m"])).astype(np.float64)
     arc = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
-    arc += float(item["s_start_m"])
     # a little off the middle, where another fracture often crosses
-    s = 0.6 * min(arc[-1], _first_length(item))
+    s = 0.6 * arc[-1]
     return float(np.interp(s, arc, points[:, 0])), float(np.interp(s, arc, points[:, 1]))
-
-
-def _first_length(item: Mapping[str, Any]) -> float:
-    return float(item["length_m"]) + float(item["s_start_m"])
 
 
 def _draw_events(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
