@@ -7,7 +7,8 @@ module mechanics_simulation
    use base_timers, only: timers_t
    use base_tolerances, only: same_value
    use mechanics_dead_load, only: dead_load_t
-   use mechanics_equilibrium, only: increment_t, together
+   use mechanics_equilibrium, only: increment_t
+   use mechanics_misfit, only: together
    use mechanics_limits, only: watch_body
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
    use mechanics_rise, only: rise

@@ -21,6 +21,10 @@ module mechanics_state
    !! the intensities, so that equal tips stay equal.
    real(rk), parameter :: together = 2.0e-3_rk
 
+   !> Ends and kinks lie on the way of a tip that passes them nearer than that, in increments: no
+   !! mesh of good shape fits between.
+   real(rk), parameter :: near_way = 0.02_rk
+
    !> Share of the estimated error that one new mesh is made for.
    real(rk), parameter :: error_step = 0.4_rk
 
@@ -63,8 +67,8 @@ contains
       self%rules = growth_rules_t(toughness=scene%material%toughness, &
                                   increment=scene%growth%increment, &
                                   exponent=scene%growth%exponent, together=together, &
-                                  reach=scene%discretization%rosette_radius, joins=.true., &
-                                  outline=outline%corners)
+                                  joins=.true., heads=.true., &
+                                  near=near_way*scene%growth%increment, outline=outline%corners)
       self%meshed_vertices = size(self%network%xy, 2)
       call self%body%build(scene, self%start, self%network, timers, error)
       if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)

@@ -1,0 +1,227 @@
+!> The tries of one increment of growth: which tips go along which pieces of their paths, and how
+!! far. Each begins from the state before.
+module mechanics_tries
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use base_tolerances, only: same_place
+   use growth_kinds, only: likes
+   use growth_network, only: end_gain, extend, move_end
+   use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
+   use mechanics_misfit, only: together, tolerance
+   use mechanics_state, only: loaded_body_t
+   use mesh_types, only: network_t
+   implicit none(type, external)
+   private
+
+   public :: least, tries_t
+
+   !> Shares of a new piece: what the mesh around a tip can hold at least; from where on the piece
+   !! may end at an accepted state, so that none is left that is too short.
+   real(rk), parameter :: least = 0.05_rk, whole = 0.5_rk
+
+   !> Tips on their pieces, and the state before.
+   type :: tries_t
+      type(segment_t), allocatable :: segment(:)  !< (tips)
+      type(segment_t), allocatable :: segment_before(:)
+      type(network_t) :: network_before
+      type(tip_t), allocatable :: tip_before(:)
+      real(rk) :: piece = 0.0_rk  !< how far the tips go on at most [m]
+      integer(ik), allocatable :: alike(:)  !< (tips) the first one that is like each
+   contains
+      procedure :: begin
+      procedure :: go_back
+      procedure :: begin_pieces
+      procedure :: rooms
+      procedure :: place
+      procedure :: keep_paths
+      procedure :: find_alike
+      procedure :: with_their_like
+      procedure :: part
+      procedure :: finish
+   end type tries_t
+
+contains
+
+   !> Begin from the present state, whose tips have been evaluated.
+   pure subroutine begin(self, body)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(in) :: body
+
+      if (.not. allocated(self%segment)) allocate (self%segment(size(body%tip)))
+      self%network_before = body%network
+      self%tip_before = body%tip
+      self%segment_before = self%segment
+   end subroutine begin
+
+   !> Back to the network before; its tips know what drives them there.
+   pure subroutine go_back(self, body)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+
+      body%network = self%network_before
+      body%tip = self%tip_before
+      self%segment = self%segment_before
+   end subroutine go_back
+
+   !> New pieces for the tips of a group that stand at the ends of theirs, in the direction in which
+   !! the criterion holds at their ends. All tips are evaluated there.
+   subroutine begin_pieces(self, body, group, timers, error)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      integer(ik), intent(in) :: group(:)  !< tips
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: advance(size(body%tip))
+      logical :: any_grew
+      integer(ik) :: i, k
+
+      advance = 0.0_rk
+      do k = 1, size(group, kind=ik)
+         i = group(k)
+         if (.not. self%segment(i)%is_open) advance(i) = self%piece
+      end do
+      if (.not. any(advance > 0.0_rk)) return
+      call body%grow_by(advance, any_grew, timers, error)
+      if (allocated(error)) return
+      do i = 1, size(body%tip, kind=ik)
+         associate (tip => body%tip(i), segment => self%segment(i))
+            if (.not. (advance(i) > 0.0_rk .and. tip%advance > 0.0_rk)) cycle
+            call segment%open_segment(tip%origin, tip%direction, norm2(tip%xy - tip%origin))
+            segment%reached = segment%length
+         end associate
+      end do
+   end subroutine begin_pieces
+
+   !> How far the tips of a group may go on.
+   pure function rooms(self, group) result(room)
+      class(tries_t), intent(in) :: self
+      integer(ik), intent(in) :: group(:)  !< tips
+      real(rk) :: room(size(group))  !< [m]
+
+      room = min(self%piece, self%segment(group)%length - self%segment(group)%accepted)
+   end function rooms
+
+   !> Put the tips of a group on their pieces. Those that do not advance have no new piece.
+   pure subroutine place(self, body, group, advance, begun)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      integer(ik), intent(in) :: group(:)  !< tips
+      real(rk), intent(in) :: advance(:)  !< of the group [m]
+      type(tip_t), intent(in) :: begun(:)  !< all tips, at the ends of new pieces
+      integer(ik) :: k
+
+      body%network = self%network_before
+      do k = 1, size(group, kind=ik)
+         associate (tip => body%tip(group(k)), segment => self%segment(group(k)))
+            tip = begun(group(k))
+            segment%reached = segment%accepted + advance(k)
+            if (.not. segment%reached > 0.0_rk) then
+               tip%xy = self%tip_before(group(k))%xy
+               cycle
+            end if
+            tip%xy = segment%place()
+            tip%direction = segment%direction
+            if (segment%accepted > 0.0_rk) then
+               call move_end(body%network, tip%fracture, tip%end, tip%xy)
+            else
+               call extend(body%network, tip%fracture, tip%end, tip%xy)
+            end if
+         end associate
+      end do
+   end subroutine place
+
+   !> Tips that have not begun their new pieces after all stand as they stood.
+   pure subroutine keep_paths(self, body, group, advance)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      integer(ik), intent(in) :: group(:)  !< tips
+      real(rk), intent(in) :: advance(:)  !< of the group [m]
+      type(tip_t) :: stood
+      integer(ik) :: i, k
+
+      do k = 1, size(group, kind=ik)
+         i = group(k)
+         if (self%segment(i)%accepted + advance(k) > 0.0_rk) cycle
+         stood = self%tip_before(i)
+         stood%intensity = body%tip(i)%intensity
+         stood%drive = body%tip(i)%drive
+         stood%is_free = body%tip(i)%is_free
+         stood%arrested = body%tip(i)%arrested
+         body%tip(i) = stood
+         self%segment(i) = self%segment_before(i)
+      end do
+   end subroutine keep_paths
+
+   !> The first tip that is like each: those that have come equally far, and that the error of the
+   !! intensities does not tell from each other.
+   pure subroutine find_alike(self, body)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(in) :: body
+      real(rk), parameter :: as_far = 1.0e-2_rk  ! difference over an increment
+      logical :: alike(size(body%tip), size(body%tip))
+      real(rk) :: gain(size(body%tip)), scale
+      integer(ik) :: i
+
+      do i = 1, size(body%tip, kind=ik)
+         associate (tip => self%tip_before(i))
+            gain(i) = end_gain(self%network_before, body%start, tip%fracture, tip%end)
+         end associate
+      end do
+      associate (drive => self%tip_before%drive%intensity)
+         scale = maxval(drive, mask=.not. self%tip_before%arrested)
+         do i = 1, size(body%tip, kind=ik)
+            alike(:, i) = abs(gain - gain(i)) <= as_far*body%rules%increment
+            alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= scale &
+                          *merge(tolerance, together, min(gain, gain(i)) > 0.0_rk)
+         end do
+      end associate
+      self%alike = likes(alike)
+   end subroutine find_alike
+
+   !> The tips of a group, and those that are like them.
+   pure function with_their_like(self, group) result(larger)
+      class(tries_t), intent(in) :: self
+      integer(ik), intent(in) :: group(:)  !< tips
+      integer(ik), allocatable :: larger(:)
+      integer(ik) :: i
+
+      larger = pack([(i, i=1, size(self%alike, kind=ik))], &
+                    .not. self%tip_before%arrested .and. &
+                    [(any(self%alike(group) == self%alike(i)), i=1, size(self%alike, kind=ik))])
+   end function with_their_like
+
+   !> Tips of a group that are not alike after all, and those that were like them, go by themselves.
+   pure subroutine part(self, group, differs)
+      class(tries_t), intent(inout) :: self
+      integer(ik), intent(in) :: group(:)  !< tips
+      logical, intent(in) :: differs(:)
+      integer(ik), allocatable :: kinds(:)
+      integer(ik) :: i
+
+      kinds = self%alike(pack(group, differs))
+      do i = 1, size(self%alike, kind=ik)
+         if (any(kinds == self%alike(i))) self%alike(i) = i
+      end do
+   end subroutine part
+
+   !> The last try is that which is accepted: how far the tips have gone in it.
+   subroutine finish(self, body)
+      class(tries_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      integer(ik) :: i
+
+      do i = 1, size(body%tip, kind=ik)
+         associate (tip => body%tip(i), segment => self%segment(i))
+            tip%advance = end_gain(body%network, body%start, tip%fracture, tip%end) &
+                          - end_gain(self%network_before, body%start, tip%fracture, tip%end)
+            if (tip%advance < same_place*body%rules%increment) tip%advance = 0.0_rk
+            if (self%segment_before(i)%is_open) tip%kink = 0.0_rk  ! it went straight on
+            segment%accepted = segment%reached
+            if (segment%reached >= whole*segment%length .or. tip%arrested) segment%is_open = .false.
+         end associate
+      end do
+   end subroutine finish
+
+end module mechanics_tries
