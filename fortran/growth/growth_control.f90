@@ -44,16 +44,17 @@ contains
    end subroutine better_advances
 
    !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
-   !! mesh is none.
+   !! mesh is none, nor what hardly changes the intensities.
    pure function fitted(advance, room, accepted, shortest) result(fit)
       real(rk), intent(in) :: advance(:), room(:), accepted(:)  !< [m]
       real(rk), intent(in) :: shortest  !< of a piece, what the mesh can hold [m]
       real(rk) :: fit(size(advance))
+      real(rk), parameter :: negligible = 1.0e-3_rk  ! of the room
 
       fit = room
       if (.not. maxval(advance/room) > 0.0_rk) return
       fit = advance/maxval(advance/room)
-      where (accepted + fit < shortest) fit = 0.0_rk
+      where (accepted + fit < shortest .or. fit < negligible*room) fit = 0.0_rk
       where (fit > 0.999_rk*room) fit = room
    end function fitted
 

@@ -249,7 +249,8 @@ contains
             return
          end if
          call correct(self, body, group, kind, lack, slope, room, advance)
-         if (all(abs(advance - before) <= 1.0e-3_rk*advance)) exit
+         ! One that hardly moves in its piece may be far from where it has to be in its own measure.
+         if (all(abs(advance - before) <= min(1.0e-3_rk*room, 0.1_rk*advance))) exit
       end do
       self%misfit = maxval(merge(lack, 0.0_rk, advance > 0.0_rk))/body%rules%toughness
       is_done = .true.

@@ -43,6 +43,10 @@ contains
                    [0.0_rk, 0.1_rk, 0.0_rk], 0.02_rk)
       call checks%is_close(maxval(abs(fit - [0.4_rk, 0.2_rk, 0.0_rk])), 0.0_rk, 1.0e-15_rk, &
                            "in proportion")
+      fit = fitted([0.4_rk, 1.0e-4_rk, 1.0e-3_rk], spread(0.4_rk, 1, 3), spread(0.1_rk, 1, 3), &
+                   0.02_rk)
+      call checks%is_close(maxval(abs(fit - [0.4_rk, 0.0_rk, 1.0e-3_rk])), 0.0_rk, 1.0e-15_rk, &
+                           "on a piece that is open, less than a thousandth of it is none")
       fit = fitted([0.0_rk, 0.0_rk, 0.0_rk], [0.4_rk, 0.3_rk, 0.2_rk], spread(0.0_rk, 1, 3), &
                    0.02_rk)
       call checks%is_close(maxval(abs(fit - [0.4_rk, 0.3_rk, 0.2_rk])), 0.0_rk, 0.0_rk, &

@@ -3,9 +3,10 @@
 program test_mechanics_equilibrium
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use mechanics_balance, only: balance_load
+   use mechanics_misfit, only: share_misfit, tolerance
    use mechanics_simulation, only: mechanics_simulation_t
    use scene_defaults, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
@@ -17,6 +18,8 @@ program test_mechanics_equilibrium
    call check_strip("length")
    call check_strip("dead")
    call check_balance()
+   call check_shared_misfit(0.065_rk, is_shared=.true.)
+   call check_shared_misfit(0.2_rk, is_shared=.false.)
    call checks%finish()
 
 contains
@@ -125,5 +128,47 @@ contains
       call checks%is_true(.not. holds, "below the onset nothing is at its toughness")
       call checks%is_close(simulation%factor, 0.5_rk, 0.0_rk, "at the limit")
    end subroutine check_balance
+
+   !> A crack off the middle of the strip: K of the tip that is nearer to a side is larger, and both
+   !! are proportional to the load. With the larger one at K_IC the other lacks a share d. Where d is
+   !! above the tolerance but below twice that, the load rises until 0.9 of the tolerance are lacking;
+   !! where it is above, no load helps.
+   subroutine check_shared_misfit(off, is_shared)
+      real(rk), intent(in) :: off  !< the middle [m]
+      logical, intent(in) :: is_shared
+      type(mechanics_simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      real(rk) :: lack, slope(2)
+      logical :: holds, is_loose
+
+      scene = strip("length")
+      scene%fractures(1)%x = scene%fractures(1)%x + off
+      call timers%begin()
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "off the middle: begin")
+      if (allocated(error)) return
+      call simulation%respond(1.0_rk, timers, error)
+      call balance_load(simulation, 1.0_rk, 100.0_rk, timers, holds, is_loose, slope, error)
+      call checks%no_error(error, "off the middle: balance")
+      if (allocated(error)) return
+      lack = 1.0_rk - minval(simulation%tip%drive%intensity)/2.0_rk
+      call checks%is_true(lack > tolerance .and. (lack < 1.8_rk*tolerance .eqv. is_shared), &
+                          "the tips differ as the test wants it")
+      call share_misfit(simulation, [1_ik, 2_ik], slope, timers, error)
+      call checks%no_error(error, "shared misfit")
+      if (allocated(error)) return
+      associate (least => minval(simulation%tip%drive%intensity)/2.0_rk, &
+                 excess => simulation%largest_excess())
+         if (is_shared) then
+            call checks%is_close(least, 1.0_rk - 0.9_rk*tolerance, 1.0e-6_rk, "what is lacking")
+            call checks%is_close((1.0_rk + excess)/least, 1.0_rk/(1.0_rk - lack), 1.0e-9_rk, &
+                                 "in proportion")
+         else
+            call checks%is_close(excess, 0.0_rk, 1.0e-8_rk, "the load stays")
+         end if
+      end associate
+   end subroutine check_shared_misfit
 
 end program test_mechanics_equilibrium
