@@ -174,6 +174,8 @@ contains
             trial%goes_too_far = .not. is_last .and. &
                                  any(wants .and. (has_begun .or. excesses(self) > excess_max))
             if (trial%goes_too_far) then
+               trial%was_beyond = any(wants .and. tip%drive%intensity/self%rules%toughness &
+                                      > 1.0_rk + excess_max)
                ! From where they come to the toughness on, not from the start of the step.
                trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
                                    unmoved/self%rules%toughness, wants)

@@ -35,6 +35,7 @@ module twolevel_stepping
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
       logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      logical :: was_beyond = .false.  !< one of these was, of its toughness, before it
       logical :: has_joined = .false.  !< a tip has joined something in it
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
@@ -111,6 +112,7 @@ contains
       type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
+      real(rk) :: share
 
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
@@ -119,8 +121,11 @@ contains
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else if (trial%converged) then
-         ! No tinier than the shortest step is when halves lead to it.
-         dt = max(min(0.5_rk*dt, 0.5_rk*self%shortest), dt*next_share(self%in_vain))
+         ! No tinier than the shortest step is when halves lead to it; to there at once if it does
+         ! not matter how much flows in the step.
+         share = 0.0_rk
+         if (.not. trial%was_beyond) share = next_share(self%in_vain)
+         dt = max(min(0.5_rk*dt, 0.5_rk*self%shortest), share*dt)
          self%in_vain = self%in_vain + 1
       else
          dt = 0.5_rk*dt

@@ -213,6 +213,10 @@ contains
       dt = 1.0_rk
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_close(dt, 0.5_rk, 0.0_rk, "the next step is halved first")
+      trial%was_beyond = .true.
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(is_too_short, "at once where no time is needed to go too far")
+      call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
 
    !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
