@@ -20,7 +20,6 @@ module growth_segment
       real(rk), private :: tried(2) = 0.0_rk  !< [m]
       real(rk), private :: excess(2) = 0.0_rk  !< [-]
       integer, private :: tries = 0
-      logical, private :: rises = .false.  !< the excess, beyond none, from the last try but one on
       real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
    contains
       procedure :: open_segment
@@ -61,7 +60,6 @@ contains
       self%reached = least*length
       self%accepted = 0.0_rk
       self%tries = 0
-      self%rises = .false.
    end subroutine open_segment
 
    !> The tip is to go along a share of the piece only.
@@ -122,7 +120,6 @@ contains
 
       self%reached = self%lowest()
       self%tries = 0
-      self%rises = .false.
    end subroutine restart
 
    !> Go where the excess probably vanishes: back no farther than the last accepted state, and on no
@@ -150,27 +147,21 @@ contains
       self%tried(2) = self%reached
       self%excess(2) = excess
       self%tries = self%tries + 1
-      self%rises = .false.
       if (self%tries > 1 .and. abs(self%tried(2) - self%tried(1)) > 1.0e-3_rk*self%length) then
          slope = (self%excess(2) - self%excess(1))/(self%tried(2) - self%tried(1))
          if (slope < 0.0_rk) self%slope = slope
-         self%rises = slope >= 0.0_rk .and. excess > 0.0_rk
       end if
    end subroutine learn
 
-   !> A slope of the excess, or a usual one where it does not fall enough for a tip to come to rest:
-   !! a flat one if it rises, for then what is ahead decides, the end of the piece first [1/m].
+   !> A slope of the excess, or a usual one where it does not fall enough for a tip to come to rest
+   !! [1/m].
    elemental real(rk) function steep(self, slope)
       class(segment_t), intent(in) :: self
       real(rk), intent(in) :: slope  !< [1/m]
 
       steep = slope
       associate (usual => -0.5_rk/self%length)
-         if (self%rises) then
-            steep = 0.02_rk*usual
-         else if (.not. slope < 0.02_rk*usual) then
-            steep = 0.2_rk*usual
-         end if
+         if (.not. slope < 0.02_rk*usual) steep = 0.2_rk*usual
       end associate
    end function steep
 
@@ -218,7 +209,6 @@ contains
       self%tried = self%length*(other%tried/other%length)
       self%excess = other%excess
       self%tries = other%tries
-      self%rises = other%rises
       self%slope = other%slope*(other%length/self%length)
    end subroutine keep_up_with
 
@@ -228,7 +218,6 @@ contains
 
       self%accepted = self%reached
       self%tries = 0
-      self%rises = .false.
       if (self%is_open .and. self%is_complete()) self%is_open = .false.
    end subroutine accept
 

@@ -11,7 +11,6 @@ program test_growth_segment
    call test_equilibrium()
    call test_bounds()
    call test_rest()
-   call test_rise()
    call checks%finish()
 
 contains
@@ -94,32 +93,6 @@ contains
       call checks%is_true(.not. segment%is_open, "over")
       call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")
    end subroutine test_bounds
-
-   !> What drives a tip rises along its piece: it is at the end in few tries, for nothing holds it
-   !! before. Where the excess falls again, and vanishes, the tip finds that.
-   subroutine test_rise()
-      type(segment_t) :: segment
-      real(rk), parameter :: fall(2) = [0.0_rk, 0.3_rk]
-      logical :: has_moved
-      integer :: k, try
-
-      do k = 1, size(fall)
-         call segment%open_segment([0.0_rk, 0.0_rk], [1.0_rk, 0.0_rk], 1.0_rk)
-         do try = 1, 12
-            associate (s => segment%reached)
-               call segment%improve(0.01_rk + 0.1_rk*s - fall(k)*s**2, tolerance, has_moved)
-            end associate
-            if (.not. has_moved) exit
-         end do
-         call checks%is_true(try <= merge(4, 12, k == 1), "few tries")
-         if (k == 1) then
-            call checks%is_true(segment%is_complete(), "at the end")
-         else
-            call checks%is_close(segment%reached, (0.1_rk + sqrt(0.022_rk))/0.6_rk, 0.01_rk, &
-                                 "where it vanishes")
-         end if
-      end do
-   end subroutine test_rise
 
    pure real(rk) function excess(s, s0)
       real(rk), intent(in) :: s, s0  !< [m]
