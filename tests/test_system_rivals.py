@@ -9,6 +9,37 @@ from system_scene import TOP, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
+# Two equal fractures, both beyond their toughness at the start, one with a well.
+FED_AND_NOT = """\
+&domain x_min = 0.0, x_max = 2.0, y_min = 0.0, y_max = 2.0 /
+&material
+  young = 40.0e9, poisson = 0.2, biot = 0.8, porosity = 0.01, permeability = 5.0e-20
+  toughness = 1.0e6
+/
+&fluid compressibility = 4.4e-10, viscosity = 1.0e-4 /
+&fracture
+  name = 'fed', friction = 0.5, dilation_deg = 1.0, aperture = 1.0e-3
+  x = 0.85, 1.15
+  y = 0.35, 0.60
+/
+&fracture
+  name = 'not', friction = 0.5, dilation_deg = 1.0, aperture = 1.0e-3
+  x = 0.85, 1.15
+  y = 1.40, 1.65
+/
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&side name = 'right', x_traction = -20.0e6 /
+&side name = 'top', y_traction = -10.0e6 /
+&injection fracture = 'fed', rate = 5.0e-7 /
+&initial fracture_pressure = 'equilibrated' /
+&time end = 1.0 /
+&coarse size_fracture = 0.05, size_boundary = 0.4 /
+&fine window = 0.1, size_ratio = 0.5 /
+&growth enabled = .true., new_aperture = 1.0e-5 /
+&output vtu = .false. /
+"""
+
 PAIR = (TOP / "verification/competing_wells/pair.nml").read_text()
 
 
@@ -59,3 +90,18 @@ def test_a_viscous_fluid_holds_them_together(tmp_path: Path) -> None:
     assert gain == pytest.approx([gain[0]] * 4, rel=0.02)
     assert gain[0] > 0.05
     assert "bifurcation" not in [row["kind"] for row in rows(out / "events.csv")]
+
+
+def test_none_goes_along_below_its_toughness(tmp_path: Path) -> None:
+    """At the start all four tips grow alike; after that the well drives those of its fracture.
+
+    The others had gone along with them once, at less than half of their toughness.
+    """
+    out = run(tmp_path, FED_AND_NOT)
+    later = [row for row in rows(out / "tips.csv") if float(row["time_s"]) > 1.0e-3]
+    grown = [row for row in later if float(row["advance_m"]) > 0.0]
+    assert sum(float(row["advance_m"]) for row in grown) > 2.0e-3
+    assert {row["fracture"] for row in grown} == {"1"}
+    for row in grown:
+        error = max(float(row["k1_error_pa_sqrtm"]), float(row["k2_error_pa_sqrtm"]))
+        assert float(row["keq_pa_sqrtm"]) + max(error, 0.1e6) > 1.0e6

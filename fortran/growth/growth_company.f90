@@ -8,7 +8,7 @@ module growth_company
    implicit none(type, external)
    private
 
-   public :: company_t, could_part
+   public :: company_t, could_part, lags_behind
 
    !> Share of an increment within which tips have come equally far [-].
    real(rk), parameter :: same_gain = 0.02_rk
@@ -28,6 +28,10 @@ module growth_company
    !! measured with a lead of two fifths (twolevel_probe), which has to be worth twice what does not
    !! tell tips from each other [-].
    real(rk), parameter :: could_part = 5.0_rk*same_drive
+
+   !> What a tip in company may lack of its toughness where it comes to rest: new pieces and their
+   !! meshes throw it back by some per cent [-].
+   real(rk), parameter :: by_chance = 0.1_rk
 
    !> Tips on their way, and the company that they have kept so far.
    type :: company_t
@@ -87,6 +91,15 @@ contains
       if (self%kind(i) /= self%kind(j) .or. .not. gain > 0.0_rk) return
       keep_company = rivals%preference_of([i, j])*increment <= could_part
    end function keep_company
+
+   !> A tip that has come to rest lacks so much of its toughness that it has not got there by
+   !! itself: it has no share in what drives those that it has been like so far.
+   elemental logical function lags_behind(excess, off)
+      real(rk), intent(in) :: excess  !< of K_eq over K_IC [-]
+      real(rk), intent(in) :: off  !< how well that is known [-]
+
+      lags_behind = excess < -max(by_chance, off)
+   end function lags_behind
 
    !> A step is accepted.
    subroutine accept(self, drive, advance, increment)

@@ -12,6 +12,7 @@ module twolevel_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
+   use growth_company, only: lags_behind
    use growth_kinds, only: numbered
    use growth_network, only: total_length
    use growth_segment, only: segment_t
@@ -70,9 +71,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, unstable_tries_max = 1000
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
+      real(rk) :: unmoved(size(self%tip))  ! K_eq of the first try [Pa m^1/2]
       logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
       integer(ik) :: kind(size(self%tip))
-      logical :: any_exceeds, has_measured, is_coupled
+      logical :: any_exceeds, any_parted, has_measured, is_coupled
       type(lesson_t) :: lesson
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
@@ -109,10 +111,9 @@ contains
          if (allocated(error)) exit
          call self%certainty%see_try(total_length(self%network), &
                                      self%well_pressure())
-         if (.not. is_last) then
-            trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
-                                self%tip%drive%intensity/self%rules%toughness, &
-                                self%tip%arrested .or. self%segment%gain > 0.0_rk)
+         if (k == 1) then
+            unmoved = self%tip%drive%intensity
+            if (.not. is_last) trial%onset = first_onset(self, tip%drive%intensity)
             if (trial%onset < 1.0_rk) exit
          end if
          if (k == 1) self%asked = are_asked(self)
@@ -125,6 +126,14 @@ contains
          if (is_coupled) is_coupled = several_kinds(kind, in_play)
          call judge_tips(self, kind, is_coupled, moves, wants)
          if (.not. (any(moves) .or. has_measured)) then
+            call part_company(self, wants, kind, any_parted)
+            if (any_parted) then
+               self%state = self%before
+               cycle
+            end if
+            ! Not while others are on their way: they may go back.
+            if (.not. is_last) trial%onset = first_onset(self, tip%drive%intensity)
+            if (trial%onset < 1.0_rk) exit
             joins = wants .and. can_join(self)
             wants = wants .and. self%tip%heads_for == target_none
             if (.not. trial%has_joined) trial%time_error = self%step_error(dt)
@@ -162,9 +171,16 @@ contains
                call improve_windows(self, self%before%time, trial%needs_windows, error)
                exit
             end if
-            trial%goes_too_far = .not. is_last .and. any(wants .and. (has_begun .or. &
-                             self%tip%drive%intensity > (1.0_rk + excess_max)*self%rules%toughness))
-            if (trial%goes_too_far) exit
+            trial%goes_too_far = .not. is_last .and. &
+                                 any(wants .and. (has_begun .or. excesses(self) > excess_max))
+            if (trial%goes_too_far) then
+               trial%was_beyond = any(wants .and. tip%drive%intensity/self%rules%toughness &
+                                      > 1.0_rk + excess_max)
+               ! From where they come to the toughness on, not from the start of the step.
+               trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
+                                   unmoved/self%rules%toughness, wants)
+               exit
+            end if
             call begin_pieces(self, wants, timers, error)
             if (allocated(error)) exit
             ! Not those that have come to something already: nothing lies between.
@@ -231,17 +247,27 @@ contains
       call self%segment%accept()
    end subroutine accept_equilibrium
 
-   !> Share of the step after which the first tip reaches the toughness; 1 where none begins to
-   !! grow, or where it does so at the end of the step. Tips that have grown before are not asked.
-   pure function onset(before, after, has_grown)
+   !> Share of the step after which the first tip that has not grown before begins to, as tried [-].
+   pure real(rk) function first_onset(self, before)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: before(:)  !< K_eq of the tips at the start of the step [Pa m^1/2]
+
+      first_onset = onset(before/self%rules%toughness, &
+                          self%tip%drive%intensity/self%rules%toughness, &
+                          .not. (self%tip%arrested .or. self%segment%gain > 0.0_rk))
+   end function first_onset
+
+   !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
+   !! begins to grow, or where it does so at the end of the step.
+   pure function onset(before, after, counts)
       real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
-      logical, intent(in) :: has_grown(:)
+      logical, intent(in) :: counts(:)
       real(rk) :: onset
       integer :: i
 
       onset = 1.0_rk
       do i = 1, size(before)
-         if (has_grown(i) .or. before(i) > 1.0_rk - onset_lack) cycle
+         if (.not. counts(i) .or. before(i) > 1.0_rk - onset_lack) cycle
          if (after(i) <= 1.0_rk + tolerance) cycle
          onset = min(onset, (1.0_rk - before(i))/(after(i) - before(i)))
       end do
@@ -269,6 +295,29 @@ contains
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
+
+   !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
+   !! toughness: each is a kind of its own from now on, and begins anew where it was.
+   subroutine part_company(self, wants, kind, any_parted)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: wants(:)  !< (tips) a new piece
+      integer(ik), intent(inout) :: kind(:)  !< of each tip, from 1
+      logical, intent(out) :: any_parted
+      logical :: lags(size(kind))
+      integer(ik) :: i
+
+      associate (k => self%tip%intensity, segment => self%segment)
+         lags = (wants .or. (segment%is_open .and. segment%reached > segment%lowest())) .and. &
+                lags_behind(excesses(self), max(k%k1_error, k%k2_error)/self%rules%toughness)
+      end associate
+      any_parted = .false.
+      do i = 1, size(kind, kind=ik)
+         if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
+         kind(i) = maxval(kind) + 1
+         if (self%segment(i)%is_open) call self%segment(i)%restart()
+         any_parted = .true.
+      end do
+   end subroutine part_company
 
    !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
    pure function shared_excesses(self) result(excess)

@@ -6,6 +6,11 @@
 !! are as long as that, and the growth of the tips, allow; without one they are the scene's.
 !! Lengths differ by factors of two where there is a choice: each costs a factorization.
 !!
+!! How fast tips grow is not known before a step that holds it: seconds per segment where the wells
+!! feed it, microseconds where fluid that was held back bursts in, none where growth is unstable. So
+!! each further cut of a step in which tips grow too far squares the share that is left of it: six
+!! cuts instead of thirty to the shortest one.
+!!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
 module twolevel_stepping
@@ -30,6 +35,7 @@ module twolevel_stepping
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
       logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      logical :: was_beyond = .false.  !< one of these was, of its toughness, before it
       logical :: has_joined = .false.  !< a tip has joined something in it
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
@@ -52,6 +58,7 @@ module twolevel_stepping
       real(rk) :: shortest = 0.0_rk  !< below it a step is too short [s]
       real(rk) :: after_growth = 0.0_rk  !< after an increment of growth [s]
       real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: not judged [-]
+      integer :: in_vain = 0  !< cuts of the present step after which tips still grew too far
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
    contains
@@ -105,6 +112,7 @@ contains
       type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
+      real(rk) :: share
 
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
@@ -112,12 +120,27 @@ contains
          dt = max(soonest, trial%arrival)*dt
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
+      else if (trial%converged) then
+         ! No tinier than the shortest step is when halves lead to it; to there at once if it does
+         ! not matter how much flows in the step.
+         share = 0.0_rk
+         if (.not. trial%was_beyond) share = next_share(self%in_vain)
+         dt = max(min(0.5_rk*dt, 0.5_rk*self%shortest), share*dt)
+         self%in_vain = self%in_vain + 1
       else
          dt = 0.5_rk*dt
       end if
       is_too_short = dt < self%shortest
       self%next = dt
    end subroutine cut
+
+   !> Share of a step that is left by a cut, so that after n of them it is 2**(-2**(n-1)) [-].
+   pure real(rk) function next_share(n)
+      integer, intent(in) :: n  !< cuts before
+      integer, parameter :: most_cuts = 6  ! there is no shorter step
+
+      next_share = 2.0_rk**(-2**max(0, min(n, most_cuts) - 1))
+   end function next_share
 
    !> A step of length dt has been accepted.
    pure subroutine step_done(self, trial, dt)
@@ -127,6 +150,7 @@ contains
       integer, parameter :: most_powers = 2  ! a step is at most 4 times the last one
       integer :: power
 
+      self%in_vain = 0
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)

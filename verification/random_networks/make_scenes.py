@@ -68,7 +68,8 @@ class Network:
 
 EIGHT = Network(8, 2.0, (0.2, 0.5), 2.0e-7, 150.0)
 THIRTY = Network(30, 2.0, (0.15, 0.35), 2.0e-7, 100.0)
-CASE = [(EIGHT, range(1, 5)), (THIRTY, range(1, 3))]
+HUNDRED = Network(100, 3.65, (0.15, 0.35), 2.0e-7, 100.0)  # as many per area as thirty
+CASE = [(EIGHT, range(1, 5)), (THIRTY, range(1, 11)), (HUNDRED, range(1, 2))]
 
 
 def fractures(network: Network, seed: int) -> list[tuple[float, float, float, float]]:

@@ -2,7 +2,7 @@
 program test_growth_company
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_company, only: company_t, could_part
+   use growth_company, only: company_t, could_part, lags_behind
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
    implicit none(type, external)
@@ -16,6 +16,7 @@ program test_growth_company
    call test_chance()
    call test_difference()
    call test_rivals()
+   call test_lag()
    call checks%finish()
 
 contains
@@ -71,6 +72,16 @@ contains
          call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "rivals")
       end do
    end subroutine test_rivals
+
+   !> What keeps a tip in company is chance, not a third of its toughness; nor a sixth, unless that
+   !! is all that is known of it.
+   subroutine test_lag()
+      call checks%is_true(.not. lags_behind(-0.06_rk, 0.0_rk), "six per cent may be the meshes")
+      call checks%is_true(lags_behind(-0.16_rk, 0.02_rk), "sixteen are not")
+      call checks%is_true(.not. lags_behind(-0.16_rk, 0.2_rk), "sixteen, known to twenty")
+      call checks%is_true(lags_behind(-0.73_rk, 0.2_rk), "nothing drives it")
+      call checks%is_true(.not. lags_behind(0.3_rk, 0.0_rk), "beyond its toughness")
+   end subroutine test_lag
 
    !> Two tips that have grown nowhere yet, or as far as given, are of one kind.
    logical function are_one(one, other, off, gain)

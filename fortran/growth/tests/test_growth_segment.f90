@@ -11,6 +11,7 @@ program test_growth_segment
    call test_equilibrium()
    call test_bounds()
    call test_rest()
+   call test_steep()
    call checks%finish()
 
 contains
@@ -93,6 +94,27 @@ contains
       call checks%is_true(.not. segment%is_open, "over")
       call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")
    end subroutine test_bounds
+
+   !> Next to another fracture the excess falls by 33 along a piece: what is left of it is less than
+   !! the tolerance all the same, not what a thousandth of the piece is worth.
+   subroutine test_steep()
+      type(segment_t) :: segment
+      real(rk), parameter :: fall = 33.0_rk, known = 0.2_rk, wanted = 0.2008_rk
+      logical :: has_moved
+      integer :: try
+
+      call segment%open_segment([0.0_rk, 0.0_rk], [1.0_rk, 0.0_rk], 1.0_rk)
+      segment%slope = -fall
+      segment%reached = known
+      call segment%accept()
+      call segment%restart()
+      do try = 1, 12
+         call segment%improve(fall*(wanted - segment%reached), 5.0_rk*tolerance, has_moved)
+         if (.not. has_moved) exit
+      end do
+      call checks%is_true(abs(fall*(wanted - segment%reached)) <= 5.0_rk*tolerance, "at rest")
+      call checks%is_true(try <= 3, "in few tries")
+   end subroutine test_steep
 
    pure real(rk) function excess(s, s0)
       real(rk), intent(in) :: s, s0  !< [m]

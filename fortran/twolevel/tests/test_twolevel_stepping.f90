@@ -20,6 +20,7 @@ program test_twolevel_stepping
    call test_decay()
    call test_advance()
    call test_onset()
+   call test_too_far()
    call test_increments()
    call test_wells()
    call checks%finish()
@@ -177,6 +178,46 @@ contains
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_close(dt, 4.0_rk, 1.0e-14_rk, "the step to the joint")
    end subroutine test_onset
+
+   !> Unstable growth does not get shorter with the step: the shortest one, of a 1e9th of the
+   !! scene's time, comes within six cuts, and is no tinier than half of that. Growth that is fast
+   !! is not passed over by more than the square of what it asks for; the next step starts anew.
+   subroutine test_too_far()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+      integer :: cuts
+
+      trial = trial_t(converged=.true., goes_too_far=.true.)
+      call stepper%begin(chosen)
+      dt = 1.0e5_rk
+      is_too_short = .false.
+      cuts = 0
+      do while (.not. is_too_short .and. cuts < 100)
+         call stepper%cut(trial, dt, is_too_short)
+         cuts = cuts + 1
+      end do
+      call checks%is_true(cuts <= 6, "few cuts where they do not help")
+      call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "to half of the shortest step")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 0.25_rk*stepper%shortest, 1.0e-12_rk, "halved if that is too long")
+      call stepper%begin(chosen)
+      dt = 1.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 0.5_rk, 0.0_rk, "the first cut halves")
+      call stepper%cut(trial, dt, is_too_short)
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 0.0625_rk, 0.0_rk, "the third leaves a sixteenth")
+      call stepper%step_done(trial_t(converged=.true.), dt)
+      dt = 1.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 0.5_rk, 0.0_rk, "the next step is halved first")
+      trial%was_beyond = .true.
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(is_too_short, "at once where no time is needed to go too far")
+      call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
+   end subroutine test_too_far
 
    !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
    subroutine test_increments()
