@@ -93,7 +93,7 @@ contains
    end subroutine fill_balance
 
    !> Initial state, instead of exchange and balance: nothing flows, and cell i has the pressure of
-   !! the rock around it.
+   !! the rock around it, unless its fluid does not bear that (fluid_at).
    pure subroutine fill_equilibrium(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]

@@ -28,7 +28,7 @@ module coarse_fractures
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
-      !> initial state: no exchange, p_F = (p+ + p-)/2, no fluid balance
+      !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
    end type newton_settings_t
 
@@ -70,7 +70,8 @@ module coarse_fractures
 
    !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
    !! vapour pressure it has this one, and the rest of the unknown says how wide the void is that
-   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown.
+   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown. In the initial
+   !! state, which has no fluid balance, the fracture is full, at p_v where the rock draws on it.
    type :: cell_fluid_t
       real(rk) :: pressure = 0.0_rk  !< [Pa]
       real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
@@ -310,9 +311,11 @@ contains
 
       associate (settings => self%settings)
          fluid%pressure = x(self%layout%at_pressure(cell))
-         if (settings%equilibrate .or. .not. fluid%pressure < settings%vapour_pressure) return
-         fluid%void_slope = -1.0_rk/self%stiffness
-         fluid%void = (fluid%pressure - settings%vapour_pressure)*fluid%void_slope
+         if (.not. fluid%pressure < settings%vapour_pressure) return
+         if (.not. settings%equilibrate) then
+            fluid%void_slope = -1.0_rk/self%stiffness
+            fluid%void = (fluid%pressure - settings%vapour_pressure)*fluid%void_slope
+         end if
          fluid%pressure = settings%vapour_pressure
          fluid%pressure_slope = 0.0_rk
       end associate

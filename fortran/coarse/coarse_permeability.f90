@@ -9,6 +9,10 @@
 !! the mean along, the harmonic mean across. It is symmetric and positive definite as K1 and K2 are.
 !! Its inverse follows from theirs in the same way with along and across exchanged; so found, it
 !! stays definite where the two rocks differ by 1e12 (scene_check_regions allows no more).
+!! Multi-point fluxes do not bear what is as anisotropic as that. Nor does it help: a cell whose
+!! faces lie askew to its layers lets nothing flow along them, for what seals the next face, and
+!! the mean across, hold every direction. So above the ratio that fluxes bear the more a cell would
+!! conduct along its layers the less it does, down to what it conducts across (`bearable`).
 !!
 !! In a cell an outline counts as a straight line with its mean direction there, placed such that
 !! the region has its share of the cell. Each line cuts the region's part off what later regions
@@ -19,12 +23,13 @@ module coarse_permeability
    use base_plane, only: barycentric, polygon_area, triangle_area, turned_left
    use coarse_rock, only: mean_mobility, resistivity_of, rock_t
    use mesh_types, only: mesh_t
+   use scene_check_permeability, only: most_anisotropic
    use scene_region_outline, only: region_outline
    use scene_types, only: domain_t, region_t
    implicit none(type, external)
    private
 
-   public :: layered, place_regions, relative_resistance, share_of_cell
+   public :: bearable, conduction_t, layered, place_regions, relative_resistance, share_of_cell
 
    !> Corners of a region [m].
    type :: outline_t
@@ -64,7 +69,7 @@ contains
       deallocate (rock%permeability, rock%resistivity)
       allocate (rock%permeability(3, mesh%n_cells), rock%resistivity(2, 2, mesh%n_cells))
       do c = 1, mesh%n_cells
-         at_cell = cell_conduction(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, own)
+         at_cell = cell_conduction(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, own, viscosity)
          rock%permeability(:, c) = at_cell%permeability
          rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
       end do
@@ -101,13 +106,15 @@ contains
    end function relative_resistance
 
    !> What a cell has of each region, from the last one, which counts most, to the rock around.
-   pure function cell_conduction(cell, outlines, own) result(mixed)
+   pure function cell_conduction(cell, outlines, own, viscosity) result(mixed)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       type(outline_t), intent(in) :: outlines(:)
       type(conduction_t), intent(in) :: own(0:)  !< of the rock around, and of the regions
+      real(rk), intent(in) :: viscosity  !< [Pa s]
       type(conduction_t) :: mixed
       real(rk), allocatable :: rest(:, :)
       real(rk) :: along(2, size(outlines)), area, line(2, 2), part(0:size(outlines)), share
+      logical :: is_mixed
       integer :: i
 
       area = triangle_area(cell)
@@ -128,6 +135,7 @@ contains
       end do
       part(0) = polygon_area(rest)
       mixed = own(0)
+      is_mixed = .false.
       do i = 1, size(outlines)
          if (part(i) <= nothing*area) cycle
          if (sum(part(:i - 1)) <= nothing*area) then
@@ -138,8 +146,33 @@ contains
          mixed%permeability = layered(own(i)%permeability, mixed%permeability, share, &
                                       turned_left(along(:, i)))
          mixed%resistivity = layered(own(i)%resistivity, mixed%resistivity, share, along(:, i))
+         is_mixed = .true.
       end do
+      if (is_mixed) mixed = bearable(mixed, viscosity)
    end function cell_conduction
+
+   !> The same, or if it conducts more than `most_anisotropic` times better along than across, less
+   !! well along: by most_anisotropic**2 over this ratio, or as well as across.
+   pure function bearable(layers, viscosity) result(limited)
+      type(conduction_t), intent(in) :: layers
+      real(rk), intent(in) :: viscosity  !< [Pa s]
+      type(conduction_t) :: limited
+      real(rk) :: across, along, angle, dyad(3), ratio, resistance
+
+      limited = layers
+      associate (k => layers%permeability, r => layers%resistivity)
+         along = 0.5_rk*(k(1) + k(2)) + hypot(0.5_rk*(k(1) - k(2)), k(3))
+         resistance = 0.5_rk*(r(1) + r(2)) + hypot(0.5_rk*(r(1) - r(2)), r(3))
+         angle = 0.5_rk*atan2(2.0_rk*k(3), k(1) - k(2))
+      end associate
+      across = viscosity/resistance  ! in the permeability the other direction would hide it
+      ratio = along/across
+      if (.not. ratio > most_anisotropic) return
+      ratio = max(1.0_rk, most_anisotropic**2/ratio)
+      dyad = [cos(angle)**2, sin(angle)**2, cos(angle)*sin(angle)]
+      limited%permeability = across*([1.0_rk, 1.0_rk, 0.0_rk] + (ratio - 1.0_rk)*dyad)
+      limited%resistivity = resistance*([1.0_rk, 1.0_rk, 0.0_rk] + (1.0_rk/ratio - 1.0_rk)*dyad)
+   end function bearable
 
    !> The part of a cell in a region, and a line with the region on its left that cuts it off.
    pure subroutine share_of_cell(cell, outline, share, line)

@@ -8,11 +8,14 @@
 !!   open   z <= 0:             f_n = 0,               f_tau = 0
 !!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
 !!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
-!! The gap g = tan(psi) |[u]_tau|. A bilateral law knows no open state: the faces keep the gap g
-!! under tension too, where z <= 0, and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the
-!! model of reference solutions for cracks that are closed all along; friction under tension drives
-!! the slip, either way, so it makes sense only where the tension is confined to small zones and
-!! the rest of the crack decides the way.
+!! The gap g = tan(psi) |[u]_tau|; without slip it rises whichever way the shear drives. What
+!! rounding has left of a slip that is none counts as none: with its sign the gap would fall the
+!! other way, and a step could take the point nowhere but back, again and again.
+!! A bilateral law knows no open state: the faces keep the gap g under tension too, where z <= 0,
+!! and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the model of reference solutions for
+!! cracks that are closed all along; friction under tension drives the slip, either way, so it makes
+!! sense only where the tension is confined to small zones and the rest of the crack decides the
+!! way.
 !!
 !! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
 !! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip
@@ -21,6 +24,7 @@
 !! slip.)
 module contact_law
    use base_kinds, only: ik, rk
+   use base_tolerances, only: round_off
    use contact_states, only: state_open, state_slip, state_stick
    implicit none(type, external)
    private
@@ -94,9 +98,11 @@ contains
       real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
       real(rk) :: gap_slope, pressure, shear
       integer(ik) :: way_before
+      logical :: has_slipped
 
       shear = traction(2) + stiffness*(jump(2) - slip_before)
-      gap_slope = law%dilation*sign(1.0_rk, merge(jump(2), shear, abs(jump(2)) > 0.0_rk))
+      has_slipped = abs(jump(2)) > round_off*max(abs(slip_before), norm2(traction)/stiffness)
+      gap_slope = law%dilation*sign(1.0_rk, merge(jump(2), shear, has_slipped))
       pressure = -traction(1) - stiffness*(jump(1) - gap_slope*jump(2))
       by_traction = 0.0_rk
       by_jump = 0.0_rk

@@ -10,7 +10,7 @@ module scene_check_permeability
    implicit none(type, external)
    private
 
-   public :: anisotropy, check_given_permeability, check_tensor
+   public :: anisotropy, check_given_permeability, check_tensor, most_anisotropic
 
    !> Largest principal permeability over the smallest. The coarse level's fluxes are exact for
    !! linear pressures, but on triangles they lose what makes pressures stay within their bounds: at

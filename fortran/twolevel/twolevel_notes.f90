@@ -1,11 +1,11 @@
-!> What is noted of tips that grow in equilibrium: when each begins, how well lengths and pressures
-!! are known, and where tips compete.
+!> What is noted of tips that grow in equilibrium: when each begins, which exceed their toughness
+!! from the start, how well lengths and pressures are known, and where tips compete.
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
    use growth_company, only: could_part
    use growth_network, only: total_length
-   use results_chronicle, only: event_bifurcation, event_growth_onset
+   use results_chronicle, only: event_bifurcation, event_growth_onset, event_unstable
    use twolevel_equilibrium, only: tolerance
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
@@ -13,7 +13,7 @@ module twolevel_notes
    implicit none(type, external)
    private
 
-   public :: note_certainty, notes_t
+   public :: note_certainty, note_excess, notes_t
 
    !> What has been noted so far.
    type :: notes_t
@@ -63,6 +63,25 @@ contains
          end associate
       end do
    end subroutine note_onsets
+
+   !> The tips that the initial state leaves above their toughness. It is what the scene says, so
+   !! nothing grows in it; what it bears too much is in no equilibrium and grows at once.
+   subroutine note_excess(levels)
+      class(two_levels_t), intent(inout) :: levels
+      real(rk) :: share
+      integer(ik) :: i
+
+      do i = 1, size(levels%tip, kind=ik)
+         associate (tip => levels%tip(i))
+            share = tip%drive%intensity/levels%rules%toughness
+            if (tip%arrested .or. .not. share > 1.0_rk + tolerance) cycle
+            call levels%chronicle%add_event(levels%state%time, event_unstable, "K_eq is "// &
+                                            brief_text(share, 4)//" K_IC in the initial "// &
+                                            "state: growth is unstable from the start", &
+                                            tip%fracture, tip%origin)
+         end associate
+      end do
+   end subroutine note_excess
 
    !> Tips of which one could run ahead of the others.
    subroutine note_competition(self, levels)

@@ -15,7 +15,7 @@ module twolevel_simulation
    use twolevel_doubt, only: improve_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_notes, only: note_certainty, notes_t
+   use twolevel_notes, only: note_certainty, note_excess, notes_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
    use twolevel_state, only: two_levels_t
@@ -344,6 +344,7 @@ contains
          end if
          if (allocated(error)) return
          if (is_equilibrium(self)) call self%notes%note_onsets(self)
+         if (is_equilibrium(self) .and. self%is_initial) call note_excess(self)
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)

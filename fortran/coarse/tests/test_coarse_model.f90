@@ -1,5 +1,5 @@
 !> The coarse level against exact states: uniform stress and pressure, linear pressure, a sticking
-!! fracture, a slipping one, fluid mass.
+!! fracture, a slipping one, one at the pressure of vapour, fluid mass.
 program test_coarse_model
    use testing_checks, only: checks_t
    use base_errors, only: error_t
@@ -24,6 +24,8 @@ program test_coarse_model
    call linear_pressure()
    call sticking_fracture()
    call slipping_fracture()
+   call closed_at_vapour_pressure()
+   call open_at_vapour_pressure()
    call injection_conserves_mass()
    call checks%finish()
 
@@ -254,6 +256,80 @@ contains
          call checks%is_true(order > 0.5_rk .and. order < 1.2_rk, "slip: order between 1/2 and 1")
       end associate
    end subroutine slipping_fracture
+
+   !> Undrained stretching draws the pressure of the rock below 0: a third of the load of Paper C in
+   !! the mean, with the other sign. A fracture that stays closed has this pressure, or that of its
+   !! vapour if it is larger, and the contact traction of the stress across it; it is full.
+   subroutine closed_at_vapour_pressure()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 1.0_rk, 1.3_rk, 1.0_rk], [2, 2])
+      real(rk), parameter :: vapour(3) = [0.0_rk, -1.0e6_rk, -3.0e6_rk]
+      real(rk), parameter :: rock = -undrained_pressure/3.0_rk
+      real(rk) :: expected
+      integer :: k
+
+      call paper_c(scene)
+      scene%sides(2)%traction = [20.0e6_rk, 0.0_rk]
+      call make_mesh(at, 0.1_rk, 0.3_rk, mesh)
+      do k = 1, size(vapour)
+         scene%fluid%vapour_pressure = vapour(k)
+         expected = max(rock, vapour(k))
+         call start(mesh, scene, 0.5_rk, 0.0_rk, model, state)
+         call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
+         call checks%no_error(error, "initial state above vapour")
+         call checks%is_true(report%converged, "initial state above vapour converges")
+         call checks%is_close(maxval(abs(state%pressure - expected)), 0.0_rk, 1.0e-1_rk, &
+                              "fracture pressure, not below vapour")
+         call checks%is_close(maxval(abs(state%traction(1, :, :) + 10.0e6_rk - expected)), &
+                              0.0_rk, 1.0e-1_rk, "normal traction at it")
+         call checks%is_close(maxval(abs(state%unknowns(3, :mesh%n_cells) - rock)), 0.0_rk, &
+                              1.0e-1_rk, "the rock's pressure may be lower")
+         call checks%is_close(maxval(abs(state%void)), 0.0_rk, 0.0_rk, "no void")
+      end do
+   end subroutine closed_at_vapour_pressure
+
+   !> Stretched across, a fracture opens against the pressure of vapour: the volume of a crack under
+   !! net tension s in undrained rock is 2 pi s a^2/E', whatever the pressure of the rock. The next
+   !! step goes on from there.
+   subroutine open_at_vapour_pressure()
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk, pi = acos(-1.0_rk)
+      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2])
+      real(rk) :: exact, volume
+
+      call paper_c(scene)
+      scene%sides(2)%traction = [20.0e6_rk, 0.0_rk]
+      scene%sides(4)%traction = [0.0_rk, tension]
+      scene%fluid%vapour_pressure = 0.0_rk
+      call make_mesh(at, 0.005_rk, 0.1_rk, mesh)
+      call start(mesh, scene, 0.5_rk, 0.0_rk, model, state)
+      call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
+      call checks%no_error(error, "open at vapour pressure")
+      call checks%is_true(report%converged, "open at vapour pressure: converges")
+      call checks%is_close(maxval(abs(state%pressure)), 0.0_rk, 1.0e-3_rk, "it has this pressure")
+      exact = 2.0_rk*pi*tension*a**2*(1.0_rk - 0.3104329765_rk)/(2.0_rk*40.0e9_rk/2.4_rk)
+      volume = sum(0.5_rk*sum(state%jump(1, :, :), dim=1)*model%condensed%length)
+      ! 2 % of the cells (theory.md, tips), 1 % of the finite body
+      call checks%is_close(volume, exact, 0.03_rk*exact, "volume against vapour pressure")
+      call checks%is_close(maxval(abs(state%void)), 0.0_rk, 0.0_rk, "it is full")
+      call model%advance(mesh, 1.0e-6_rk, state, timers, report, error)
+      call checks%no_error(error, "the next step")
+      call checks%is_true(report%converged, "the next step converges")
+      call checks%is_close(report%mass_error, 0.0_rk, 1.0e-12_rk*exact, "fluid mass")
+      call checks%is_true(all(state%pressure >= 0.0_rk), "still not below vapour")
+   end subroutine open_at_vapour_pressure
 
    !> Ten steps of injection: fluid is neither made nor lost.
    subroutine injection_conserves_mass()

@@ -9,7 +9,7 @@ program test_coarse_permeability
    use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_permeability, only: layered, place_regions, share_of_cell
+   use coarse_permeability, only: bearable, conduction_t, layered, place_regions, share_of_cell
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, resistivity_of, rock_t
    use coarse_state, only: state_t, step_report_t
@@ -26,6 +26,9 @@ program test_coarse_permeability
 
    call test_shares()
    call test_layers()
+   call test_bearable()
+   call test_sealing_sheet()
+   call test_bounds()
    call test_order()
    call test_neighbours()
    call test_piecewise_linear([1.0_rk, 0.0_rk], [1.0_rk, 1.0_rk], "upright")
@@ -88,6 +91,116 @@ contains
       call checks%is_close(r(2, 3), inverse(2, 2), tiny_error, "inverse, yy")
       call checks%is_close(r(3, 3), inverse(1, 2), tiny_error, "inverse, xy")
    end subroutine test_layers
+
+   !> Layers at an angle of 30 degrees that conduct 1000 times better along than across stay as they
+   !! are, of a ratio of 4e4 25 is left, of 1e6 and more nothing. What they resist across stays.
+   subroutine test_bearable()
+      real(rk), parameter :: across = 2.0e-18_rk, viscosity = 1.0e-3_rk
+      real(rk), parameter :: direction(2) = [0.5_rk*sqrt(3.0_rk), 0.5_rk]
+      real(rk), parameter :: ratio(4) = [1.0e3_rk, 4.0e4_rk, 1.0e6_rk, 1.0e12_rk]
+      real(rk), parameter :: left(4) = [1.0e3_rk, 25.0_rk, 1.0_rk, 1.0_rk]
+      real(rk), parameter :: nearly = 1.0_rk - 1.0e-9_rk
+      type(conduction_t) :: found, wanted
+      integer :: k
+
+      do k = 1, size(ratio)
+         found = bearable(conduction_along(direction, nearly*ratio(k)*across, across, viscosity), &
+                          viscosity)
+         wanted = conduction_along(direction, left(k)*across, across, viscosity)
+         call checks%is_close(maxval(abs(found%permeability - wanted%permeability)), 0.0_rk, &
+                              1.0e-8_rk*left(k)*across, "no more along than is borne")
+         call checks%is_close(maxval(abs(found%resistivity - wanted%resistivity)), 0.0_rk, &
+                              1.0e-8_rk*viscosity/across, "as much across as before")
+      end do
+   end subroutine test_bearable
+
+   pure function conduction_along(direction, along, across, viscosity) result(found)
+      real(rk), intent(in) :: direction(2)  !< unit vector
+      real(rk), intent(in) :: along, across  !< [m2]
+      real(rk), intent(in) :: viscosity  !< [Pa s]
+      type(conduction_t) :: found
+
+      associate (c => direction(1), s => direction(2))
+         found%permeability = along*[c**2, s**2, c*s] + across*[s**2, c**2, -c*s]
+         found%resistivity = viscosity*([c**2, s**2, c*s]/along + [s**2, c**2, -c*s]/across)
+      end associate
+   end function conduction_along
+
+   !> A sheet that seals, thinner than the cells that it goes through: they resist across it as the
+   !! layers do that they hold, whatever the contrast.
+   subroutine test_sealing_sheet()
+      real(rk), parameter :: sheet(4) = [0.7_rk, 0.71_rk, -1.0_rk, 3.0_rk]
+      real(rk), parameter :: contrast(3) = [1.0e2_rk, 1.0e6_rk, 1.0e12_rk]
+      type(mesh_t) :: mesh
+      type(scene_t) :: scene
+      type(rock_t) :: rock
+      real(rk) :: line(2, 2), share, worst
+      integer(ik) :: c
+      integer :: k
+
+      mesh = boxes(4_ik)
+      scene = body_with(1)
+      do k = 1, size(contrast)
+         scene%regions(1) = box_region(sheet(1), sheet(2), sheet(3), sheet(4), &
+                                       scene%material%permeability_xx/contrast(k))
+         rock = new_rock(scene%material, scene%fluid)
+         call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
+         worst = 0.0_rk
+         do c = 1, mesh%n_cells
+            call share_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), &
+                               box(sheet(1), sheet(2), sheet(3), sheet(4)), share, line)
+            associate (layers => scene%fluid%viscosity/scene%material%permeability_xx &
+                       *(1.0_rk - share + share*contrast(k)))
+               worst = max(worst, abs(rock%resistivity(1, 1, c)/layers - 1.0_rk))
+            end associate
+         end do
+         call checks%is_close(worst, 0.0_rk, 1.0e-9_rk, "resistance across a thin sheet")
+      end do
+   end subroutine test_sealing_sheet
+
+   !> Flow along a strip between sealing rock, from a pressure of 1 MPa to one of 0, in a mesh that
+   !! knows nothing of the strip: all pressures lie between the two.
+   subroutine test_bounds()
+      real(rk), parameter :: contrast(3) = [1.0e6_rk, 1.0e9_rk, 1.0e12_rk]
+      real(rk), parameter :: given = 1.0e6_rk  ! [Pa]
+      real(rk), parameter :: slack = 0.01_rk  ! of the range: triangles are not all acute
+      type(mesh_t) :: mesh
+      type(mesher_t) :: mesher
+      real(rk) :: none(2, 2, 0)
+      type(scene_t) :: scene
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      integer :: k, step
+
+      call mesh_square(checks, straight_network(none), 0.2_rk, 0.2_rk, mesher, mesh)
+      do k = 1, size(contrast)
+         scene = body_with(1)
+         scene%material%permeability_xx = 1.0e-12_rk/contrast(k)
+         scene%material%permeability_yy = 1.0e-12_rk/contrast(k)
+         scene%regions(1) = box_region(-1.0_rk, 3.0_rk, 0.0_rk, 1.0_rk, 1.0e-12_rk)
+         scene%regions(1)%y = [0.57_rk, 0.97_rk, 1.61_rk, 1.21_rk]  ! askew to the mesh
+         scene%sides%displacement_given(1) = .true.
+         scene%sides%displacement_given(2) = .true.
+         scene%sides(:2)%pressure_given = .true.
+         scene%sides(1)%pressure = given
+         model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
+         call model%set_mesh(mesh, scene, timers, error)
+         call checks%no_error(error, "a strip")
+         call new_state(mesh, model%cells, scene%initial, model, state)
+         do step = 1, 3
+            call model%advance(mesh, 1.0e22_rk, state, timers, report, error)
+            call checks%no_error(error, "flow along a strip")
+         end do
+         associate (pressure => state%unknowns(3, :mesh%n_cells)/given)
+            call checks%is_true(minval(pressure) > -slack, "no pressure below the lowest")
+            call checks%is_true(maxval(pressure) < 1.0_rk + slack, "none above the highest")
+            print "(es8.1,2f12.7)", contrast(k), minval(pressure), maxval(pressure)
+         end associate
+      end do
+   end subroutine test_bounds
 
    !> Of regions that overlap the last one counts; cells that they leave keep the scene's rock.
    subroutine test_order()

@@ -20,6 +20,7 @@ program test_contact_law
    call test_admissible()
    call test_violations()
    call test_way()
+   call test_slip_of_rounding()
    call test_friction_opposes_slip()
    call test_means()
    call test_validity()
@@ -111,6 +112,36 @@ contains
       call expect(smooth_dilating, [-4.0e6_rk, 0.0_rk], [0.25e-6_rk, 2.5e-6_rk], 1.0e-6_rk, &
                   state_slip)
    end subroutine test_admissible
+
+   !> A point that sticks, but for the rounding of what was solved, and is to slip the other way. On
+   !! springs kn, kt, pressed by F: with u_n = tan(psi) s and the slip -s, friction is
+   !! F_t + kt s = mu (F_n - kn tan(psi) s).
+   subroutine test_slip_of_rounding()
+      type(contact_law_t), parameter :: law = contact_law_t(friction=1.9_rk, dilation=0.38_rk)
+      real(rk), parameter :: spring(2) = [3.0e12_rk, 1.0e12_rk], force(2) = [-1.5e6_rk, -2.9e6_rk]
+      real(rk), parameter :: rounding = 2.6e-22_rk  ! [m]
+      real(rk), parameter :: slip = (law%friction*force(1) - force(2)) &
+                             /(spring(2) + law%friction*spring(1)*law%dilation)
+      real(rk) :: jump(2), residual(2), by_traction(2, 2), by_jump(2, 2), slope(2, 2), step(2)
+      integer(ik) :: state, way
+      integer :: k
+
+      jump = [0.0_rk, rounding]
+      way = 0
+      do k = 1, 8
+         call contact_equations(law, stiffness, force - spring*jump, jump, rounding, way, state, &
+                                residual, by_traction, by_jump)
+         slope = by_jump
+         slope(:, 1) = slope(:, 1) - by_traction(:, 1)*spring(1)
+         slope(:, 2) = slope(:, 2) - by_traction(:, 2)*spring(2)
+         step = [slope(2, 2)*residual(1) - slope(1, 2)*residual(2), &
+                 slope(1, 1)*residual(2) - slope(2, 1)*residual(1)]
+         jump = jump - step/(slope(1, 1)*slope(2, 2) - slope(1, 2)*slope(2, 1))
+      end do
+      call checks%is_true(state == state_slip, "slips")
+      call checks%is_close(jump(2), -slip, 1.0e-9_rk*slip, "as far as the springs let it")
+      call checks%is_close(jump(1), law%dilation*slip, 1.0e-9_rk*slip, "and opens")
+   end subroutine test_slip_of_rounding
 
    subroutine expect(law, traction, jump, slip_before, expected)
       type(contact_law_t), intent(in) :: law
