@@ -40,6 +40,9 @@ module coarse_permeability
    type :: conduction_t
       real(rk) :: permeability(3) = 0.0_rk  !< [m2]
       real(rk) :: resistivity(3) = 0.0_rk  !< [Pa s/m2]
+      !> Of a cell with several rocks: how much better they conduct along their layers than across,
+      !! also where the cell is taken for less than that (`bearable`).
+      real(rk) :: layering = 0.0_rk
    end type conduction_t
 
    real(rk), parameter :: nothing = 1.0e-9_rk  !< share of a cell that is rounding [-]
@@ -72,6 +75,10 @@ contains
          at_cell = cell_conduction(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, own, viscosity)
          rock%permeability(:, c) = at_cell%permeability
          rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
+         if (at_cell%layering > rock%most_layered) then
+            rock%most_layered = at_cell%layering
+            rock%most_layered_cell = c
+         end if
       end do
    end subroutine place_regions
 
@@ -167,6 +174,7 @@ contains
       end associate
       across = viscosity/resistance  ! in the permeability the other direction would hide it
       ratio = along/across
+      limited%layering = ratio
       if (.not. ratio > most_anisotropic) return
       ratio = max(1.0_rk, most_anisotropic**2/ratio)
       dyad = [cos(angle)**2, sin(angle)**2, cos(angle)*sin(angle)]

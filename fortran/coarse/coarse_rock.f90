@@ -1,6 +1,6 @@
 !> Poroelastic constants of the rock in the form that the discretization uses.
 module coarse_rock
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use scene_storage, only: storage
    use scene_types, only: fluid_t, material_t
    implicit none(type, external)
@@ -19,6 +19,10 @@ module coarse_rock
       ! (.., 1) of a uniform rock, (.., n_cells) where regions differ (coarse_permeability):
       real(rk), allocatable :: permeability(:, :)  !< (3, ..) K_xx, K_yy, K_xy [m2]
       real(rk), allocatable :: resistivity(:, :, :)  !< (2, 2, ..) inverse of K/mu [Pa s/m2]
+      !> How much better a cell that outlines of regions cut conducts along them than across, at the
+      !! most, and which one; 0: no cell is cut.
+      real(rk) :: most_layered = 0.0_rk
+      integer(ik) :: most_layered_cell = 0
    end type rock_t
 
 contains

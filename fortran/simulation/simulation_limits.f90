@@ -10,7 +10,7 @@ module simulation_limits
    public :: verdict_fine, verdict_stop, verdict_warning
    public :: limit_angle, limit_aperture, limit_contact, limit_forward_error, limit_jump
    public :: limit_keq, limit_k_error, limit_k_methods, limit_mass, limit_pressure_load
-   public :: limit_k_to_grow, limit_pressure_stiffness, limit_strain, limit_time_error
+ public :: limit_k_to_grow, limit_layering, limit_pressure_stiffness, limit_strain, limit_time_error
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -33,7 +33,8 @@ module simulation_limits
                          limit_aperture = 4, limit_jump = 5, limit_strain = 6, &
                          limit_pressure_load = 7, limit_pressure_stiffness = 8, &
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
-                         limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14
+                         limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
+                         limit_layering = 15
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -94,7 +95,13 @@ module simulation_limits
       limit_t("error in time of a step", "-", with_fluid, 0.5_rk, never, &
               "Estimated error of a time step in the mean pressure, slip or opening, over the "// &
               "range that these have gone through", &
-              "shorten the step, or leave it out: then the error decides about it")]
+              "shorten the step, or leave it out: then the error decides about it"), &
+      limit_t("contrast in a cell that an outline cuts", "-", "with &region", 1.0e3_rk, never, &
+              "How much better rock conducts along the outline than across, in a cell with "// &
+              "both; above it flow along is up to a quarter too small, and pressures may leave "// &
+              "their bounds by a third", &
+              "leave outlines room from fractures and each other (docs/theory.md), so that the "// &
+              "mesh follows them")]
    !&>
 
 contains

@@ -6,8 +6,8 @@ module twolevel_limits
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
    use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                                limit_jump, limit_keq, limit_mass, limit_pressure_load, &
-                                limit_pressure_stiffness, limit_strain
+                                limit_jump, limit_keq, limit_layering, limit_mass, &
+                                limit_pressure_load, limit_pressure_stiffness, limit_strain
    use simulation_watch, only: worst_place
    use twolevel_scales, only: pressure_scale
    use twolevel_state, only: two_levels_t
@@ -104,8 +104,23 @@ contains
 
       call mesh_quality(self%mesher, angle, cell, error)
       if (allocated(error)) return
-      call self%watch%see(limit_angle, angle*degrees, present_time(self), sum( &
-                          self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk)
+      call self%watch%see(limit_angle, angle*degrees, present_time(self), middle_of(cell))
+      associate (rock => self%model%rock)
+         if (rock%most_layered_cell == 0) return
+         call self%watch%see(limit_layering, rock%most_layered, present_time(self), &
+                             middle_of(rock%most_layered_cell))
+      end associate
+
+   contains
+
+      !> Of a cell [m].
+      pure function middle_of(cell) result(xy)
+         integer(ik), intent(in) :: cell
+         real(rk) :: xy(2)
+
+         xy = sum(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+      end function middle_of
+
    end subroutine watch_mesh
 
    !> Take note of the tips. None shall exceed the toughness once growth in a state is done.

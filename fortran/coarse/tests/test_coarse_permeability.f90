@@ -134,7 +134,7 @@ contains
       type(mesh_t) :: mesh
       type(scene_t) :: scene
       type(rock_t) :: rock
-      real(rk) :: line(2, 2), share, worst
+      real(rk) :: layering, line(2, 2), share, worst
       integer(ik) :: c
       integer :: k
 
@@ -146,6 +146,7 @@ contains
          rock = new_rock(scene%material, scene%fluid)
          call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
          worst = 0.0_rk
+         layering = 0.0_rk
          do c = 1, mesh%n_cells
             call share_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), &
                                box(sheet(1), sheet(2), sheet(3), sheet(4)), share, line)
@@ -153,7 +154,11 @@ contains
                        *(1.0_rk - share + share*contrast(k)))
                worst = max(worst, abs(rock%resistivity(1, 1, c)/layers - 1.0_rk))
             end associate
+            layering = max(layering, (1.0_rk - share + share*contrast(k)) &
+                           *(1.0_rk - share + share/contrast(k)))
          end do
+         call checks%is_close(rock%most_layered/layering, 1.0_rk, 1.0e-9_rk, &
+                              "how much better it conducts along")
          call checks%is_close(worst, 0.0_rk, 1.0e-9_rk, "resistance across a thin sheet")
       end do
    end subroutine test_sealing_sheet

@@ -130,8 +130,8 @@ contains
    end subroutine check_balance
 
    !> A crack off the middle of the strip: K of the tip that is nearer to a side is larger, and both
-   !! are proportional to the load. With the larger one at K_IC the other lacks a share d. Where d is
-   !! above the tolerance but below twice that, the load rises until 0.9 of the tolerance are lacking;
+   !! are proportional to the load. With the larger one at K_IC the other lacks a share d. Where d
+   !! is above the tolerance but below twice that, the load rises until 0.9 of the tolerance lack;
    !! where it is above, no load helps.
    subroutine check_shared_misfit(off, is_shared)
       real(rk), intent(in) :: off  !< the middle [m]
