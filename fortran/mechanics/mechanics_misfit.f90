@@ -29,7 +29,7 @@ contains
 
    !> The largest K_eq is K_IC, and some of tips that have advanced lack more than the tolerance: a
    !! load at which the one is too large and the others too small, all within the tolerance, if
-   !! there is one. Tips that hardly answer to the load would fix it by the errors of their intensities.
+   !! there is one. Tips that hardly answer to the load would fix it by the errors of their K.
    subroutine share_misfit(body, grown, slope, timers, error)
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: grown(:)  !< tips that have advanced
