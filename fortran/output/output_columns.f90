@@ -42,7 +42,7 @@ module output_columns
    !> A word that a column or key may hold.
    type :: word_t
       character(len=16) :: word = ""
-      character(len=160) :: meaning = ""
+      character(len=208) :: meaning = ""
    end type word_t
 
    ! The tables keep their own layout.
@@ -341,9 +341,9 @@ module output_columns
       word_t("arrest", "a tip has stopped for good, for the reason in `detail`"), &
       word_t("step_cut", "a time step did not converge, erred too much, or tips would begin to "// &
              "grow or grow too far in it: it is tried again, shorter"), &
-    word_t("unstable_growth", "tips have grown at constant time until they arrested, or exceed "// &
-             "K_IC in the initial state, from which they grow at once; without a fluid a row "// &
-             "where it begins and one where it ends, with the energy released"), &
+      word_t("unstable_growth", "tips have grown at constant time until they arrested, or "// &
+             "exceed K_IC in the initial state, from which they grow at once; without a fluid "// &
+             "a row where it begins and one where it ends, with the energy released"), &
       word_t("bifurcation", "tips grow together, but any difference between them would grow: "// &
              "one of them could run ahead of the others"), &
       word_t("remesh", "the mesh has followed the growth"), &
