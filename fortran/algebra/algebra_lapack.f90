@@ -9,22 +9,9 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgecon, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
+   public :: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
 
    interface
-      !> Estimate the reciprocal of the condition number from the factors of dgetrf.
-      subroutine dgecon(norm, n, a, lda, anorm, rcond, work, iwork, info)
-         import :: ik, rk
-         implicit none(type, external)
-         character, intent(in) :: norm  !< "1" for the largest column sum
-         integer(ik), intent(in) :: n, lda
-         real(rk), intent(in) :: a(lda, n)
-         real(rk), intent(in) :: anorm  !< that norm of the matrix itself
-         real(rk), intent(out) :: rcond
-         real(rk), intent(out) :: work(4*n)
-         integer(ik), intent(out) :: iwork(n), info
-      end subroutine dgecon
-
       !> Solve A X = B by LU factors with row exchanges. On return A holds the factors, B is X.
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: ik, rk

@@ -55,6 +55,7 @@ module coarse_fractures
       type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
       integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
       real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
+      logical, allocatable :: is_flow(:)  !< (unknowns of x)
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
@@ -138,6 +139,8 @@ contains
                eq%layout%at_face_pressure(i, k)
          end do
       end do
+      allocate (eq%is_flow(eq%layout%count()), source=.false.)
+      eq%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_branch(eq%layout%n_branches)) = .true.
    end subroutine link_unknowns
 
    !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
@@ -225,11 +228,12 @@ contains
       if (self%condensed%is_full) then
          associate (jumps => [((self%layout%at_jump(i, end), end=1, 2), i=1, self%condensed%n)])
             call find_full_step(self%condensed%stiffness, self%slopes, jumps, self%x_of_q, &
-                                self%q_per_x, self%residual, with_condition, step, quality)
+                                self%q_per_x, self%is_flow, self%residual, with_condition, step, &
+                                quality)
          end associate
       else
          call self%factors%find_step(self%condensed, self%slopes, self%x_of_q, self%q_per_x, &
-                                     self%residual, self%stress_scale, step, quality)
+                                     self%is_flow, self%residual, self%stress_scale, step, quality)
       end if
    end subroutine find_step
 

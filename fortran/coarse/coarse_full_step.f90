@@ -16,13 +16,14 @@ module coarse_full_step
 contains
 
    !> Solve for the step. The condition is that of the equations which are left.
-   subroutine find_full_step(stiffness, slopes, jumps, x_of_q, q_per_x, residual, with_condition, &
-                             step, quality)
+   subroutine find_full_step(stiffness, slopes, jumps, x_of_q, q_per_x, is_flow, residual, &
+                             with_condition, step, quality)
       real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: jumps(:)  !< the numbers of [u]_n in x; [u]_tau follows each
       integer(ik), intent(in) :: x_of_q(:)  !< the number of each unknown of q in x
       real(rk), intent(in) :: q_per_x(:)  !< their units [m/Pa], [-]
+      logical, intent(in) :: is_flow(:)  !< (n) unknowns whose errors the condition leaves out
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
@@ -43,7 +44,7 @@ contains
          call ties%reduce(row, rest(k))
          matrix(:, k) = row(kept)
       end do
-      call ties%find_step(matrix, rest, with_condition, step, quality)
+      call ties%find_step(matrix, rest, with_condition, step, quality, left_out=is_flow)
    end subroutine find_full_step
 
    !> Ends whose equations hold their own jumps alone.

@@ -14,7 +14,7 @@
 !!
 !! What is known of the error: the residual that is left (`rest` of step_quality_t), and the
 !! condition of the condensed matrix with its equations scaled, estimated from products and
-!! solutions as dgecon does from factors (Higham 1988). It costs as much as a dozen solutions, and
+!! solutions (Higham 1988). It costs as much as a dozen solutions, and
 !! is found for the first matrix of a time step and then at every tenth factorization: in between,
 !! and where old factors serve, it is that of a matrix some states away.
 module coarse_sparse_step
@@ -67,13 +67,14 @@ module coarse_sparse_step
 contains
 
    !> Solve for the step.
-   subroutine find_step(self, condensed, slopes, x_of_q, q_per_x, residual, stress_scale, step, &
-                        quality)
+   subroutine find_step(self, condensed, slopes, x_of_q, q_per_x, is_flow, residual, &
+                        stress_scale, step, quality)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: x_of_q(:)  !< the number of each unknown of q in x
       real(rk), intent(in) :: q_per_x(:)  !< their units [m/Pa], [-]
+      logical, intent(in) :: is_flow(:)  !< (n) unknowns whose errors the condition leaves out
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
       real(rk), intent(in) :: stress_scale  !< [Pa]
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
@@ -84,7 +85,7 @@ contains
       type(error_t), allocatable :: error
 
       is_new = needs_factors(self, condensed, slopes)
-      if (is_new) call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+      if (is_new) call renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
       quality%is_singular = allocated(error)
       if (quality%is_singular) return
       enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
@@ -92,7 +93,7 @@ contains
       left = -residual
       call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
       if (.not. is_done .and. .not. is_new .and. .not. allocated(error)) then
-         call renew(self, condensed, slopes, x_of_q, q_per_x, error)
+         call renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
          if (.not. allocated(error)) then
             call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, &
                         error)
@@ -222,12 +223,13 @@ contains
    end subroutine precondition
 
    !> Factors of the system with the rows of now.
-   subroutine renew(self, condensed, slopes, x_of_q, q_per_x, error)
+   subroutine renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: x_of_q(:)
       real(rk), intent(in) :: q_per_x(:)
+      logical, intent(in) :: is_flow(:)
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: col(:), row(:)
       real(rk), allocatable :: values(:)
@@ -280,19 +282,21 @@ contains
       self%is_ready = .true.
       if (self%estimated_for == self%of .and. &
           self%factorizations < self%estimated_at + estimate_every) return
-      call estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+      call estimate_condition(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
       self%estimated_for = self%of
       self%estimated_at = self%factorizations
    end subroutine renew
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
-   !! transpose: the norms of both that matrix and its inverse, estimated.
-   subroutine estimate_condition(self, condensed, slopes, x_of_q, q_per_x, error)
+   !! transpose: the norms of both that matrix and its inverse, estimated; of the inverse without
+   !! the rows of the flows (contact_dense).
+   subroutine estimate_condition(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: x_of_q(:)
       real(rk), intent(in) :: q_per_x(:)
+      logical, intent(in) :: is_flow(:)
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: norm(2), v(slopes%n), x(slopes%n)
       integer(ik) :: kase, part, save(3), signs(slopes%n)
@@ -338,13 +342,13 @@ contains
          allocate (all(size(self%col_scale), 1), source=0.0_rk)
          associate (n => condensed%coupling%n_bulk)
             if (transposed) then
-               all(n + 1:, 1) = x*self%col_scale(n + 1:)
+               all(n + 1:, 1) = merge(0.0_rk, x*self%col_scale(n + 1:), is_flow)
                call self%solver%solve(all, error, transposed=.true.)
                x = all(n + 1:, 1)*self%row_factor*self%row_scale
             else
                all(n + 1:, 1) = x*self%row_factor*self%row_scale
                call self%solver%solve(all, error)
-               x = all(n + 1:, 1)*self%col_scale(n + 1:)
+               x = merge(0.0_rk, all(n + 1:, 1)*self%col_scale(n + 1:), is_flow)
             end if
          end associate
       end subroutine solve

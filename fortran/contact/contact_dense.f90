@@ -1,7 +1,7 @@
 !> The linear step of contact systems whose derivatives are a full matrix, as they are for a body
 !! that is condensed onto its fractures: by Gauss elimination.
 module contact_dense
-   use algebra_lapack, only: dgecon, dgetrf, dgetrs
+   use algebra_lapack, only: dgetrf, dgetrs, dlacn2
    use base_kinds, only: ik, rk
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -12,17 +12,19 @@ module contact_dense
 contains
 
    !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
-   !! that of the scaled matrix in the 1-norm of its transpose. Matrix and residual are used up.
-   subroutine solve_full(jacobian, residual, with_condition, step, quality)
+   !! that of the scaled matrix in the 1-norm of its transpose: what a relative error of an equation
+   !! makes of the unknowns. Some of these may be left out of it, as flows are: those that go round
+   !! in a loop of open fractures are driven by less than the rounding of pressures, know little of
+   !! themselves, and change nothing else. Matrix and residual are used up.
+   subroutine solve_full(jacobian, residual, with_condition, step, quality, left_out)
       real(rk), intent(inout), contiguous :: jacobian(:, :)  !< (n, n) an equation per column [-]
       real(rk), intent(inout) :: residual(:)  !< (n) [Pa]
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(out) :: quality
-      real(rk) :: inverse_condition, norm, rhs(size(step), 1), scale
-      real(rk), allocatable :: work(:)
+      logical, intent(in), optional :: left_out(:)  !< (n) unknowns
+      real(rk) :: norm, rhs(size(step), 1), scale
       integer(ik) :: info, n, pivots(size(step)), row
-      integer(ik), allocatable :: iwork(:)
 
       n = size(step, kind=ik)
       if (n == 0) return
@@ -41,10 +43,32 @@ contains
       if (quality%is_singular) return
       call dgetrs("T", n, 1_ik, jacobian, n, pivots, rhs, n, info)
       step = rhs(:, 1)
-      if (.not. with_condition) return
-      allocate (work(4*n), iwork(n))
-      call dgecon("1", n, jacobian, n, norm, inverse_condition, work, iwork, info)
-      quality%condition = 1.0_rk/max(inverse_condition, tiny(1.0_rk))
+      if (with_condition) quality%condition = norm*norm_of_inverse(jacobian, pivots, left_out)
    end subroutine solve_full
+
+   !> The 1-norm of the inverse of a matrix, estimated from its factors (Higham 1988); columns of
+   !! the inverse may be left out.
+   function norm_of_inverse(factors, pivots, left_out) result(norm)
+      real(rk), intent(in), contiguous :: factors(:, :)  !< (n, n) of dgetrf
+      integer(ik), intent(in) :: pivots(:)  !< (n) of dgetrf
+      logical, intent(in), optional :: left_out(:)  !< (n)
+      real(rk) :: norm
+      real(rk), dimension(size(pivots)) :: v, x
+      real(rk) :: rhs(size(pivots), 1)
+      integer(ik) :: info, kase, n, save(3), signs(size(pivots))
+
+      n = size(pivots, kind=ik)
+      norm = 0.0_rk
+      kase = 0
+      do
+         call dlacn2(n, v, x, signs, norm, kase, save)
+         if (kase == 0) exit
+         if (kase == 1 .and. present(left_out)) where (left_out) x = 0.0_rk
+         rhs(:, 1) = x
+         call dgetrs(merge("N", "T", kase == 1), n, 1_ik, factors, n, pivots, rhs, n, info)
+         x = rhs(:, 1)
+         if (kase == 2 .and. present(left_out)) where (left_out) x = 0.0_rk
+      end do
+   end function norm_of_inverse
 
 end module contact_dense

@@ -88,20 +88,26 @@ contains
    end subroutine reduce
 
    !> The step of all unknowns from the equations of those that are kept, which are used up.
-   subroutine find_step(self, matrix, residual, with_condition, step, quality)
+   subroutine find_step(self, matrix, residual, with_condition, step, quality, left_out)
       class(ties_t), intent(in) :: self
       real(rk), intent(inout), contiguous :: matrix(:, :)  !< an equation per column [-]
       real(rk), intent(inout) :: residual(:)  !< (kept) [Pa]
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (all) [Pa]
       type(step_quality_t), intent(out) :: quality
+      logical, intent(in), optional :: left_out(:)  !< (all) of the condition, see solve_full
       real(rk) :: solution(size(residual))
-      integer(ik) :: i
+      integer(ik) :: i, kept(size(residual))
 
-      call solve_full(matrix, residual, with_condition, solution, quality)
+      kept = self%kept()
+      if (present(left_out)) then
+         call solve_full(matrix, residual, with_condition, solution, quality, left_out(kept))
+      else
+         call solve_full(matrix, residual, with_condition, solution, quality)
+      end if
       if (quality%is_singular) return
       step = self%rest
-      step(self%kept()) = solution
+      step(kept) = solution
       do i = 1, size(step, kind=ik)
          if (self%partner(i) > 0) step(i) = step(i) + self%share(i)*step(self%partner(i))
       end do

@@ -126,7 +126,7 @@ contains
          if (is_coupled) is_coupled = several_kinds(kind, in_play)
          call judge_tips(self, kind, is_coupled, moves, wants)
          if (.not. (any(moves) .or. has_measured)) then
-            call part_company(self, wants, kind, any_parted)
+            call part_company(self, tip, wants, kind, any_parted)
             if (any_parted) then
                self%state = self%before
                cycle
@@ -297,18 +297,20 @@ contains
    end subroutine judge_tips
 
    !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
-   !! toughness: each is a kind of its own from now on, and begins anew where it was.
-   subroutine part_company(self, wants, kind, any_parted)
+   !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that
+   !! were on their way and at their toughness before the step: one mesh may throw them back.
+   subroutine part_company(self, before, wants, kind, any_parted)
       class(two_levels_t), intent(inout) :: self
+      type(tip_t), intent(in) :: before(:)  !< the tips before the step
       logical, intent(in) :: wants(:)  !< (tips) a new piece
       integer(ik), intent(inout) :: kind(:)  !< of each tip, from 1
       logical, intent(out) :: any_parted
       logical :: lags(size(kind))
       integer(ik) :: i
 
-      associate (k => self%tip%intensity, segment => self%segment)
+      associate (segment => self%segment)
          lags = (wants .or. (segment%is_open .and. segment%reached > segment%lowest())) .and. &
-                lags_behind(excesses(self), max(k%k1_error, k%k2_error)/self%rules%toughness)
+                lacks(self%tip) .and. (lacks(before) .or. .not. segment%gain > 0.0_rk)
       end associate
       any_parted = .false.
       do i = 1, size(kind, kind=ik)
@@ -317,6 +319,18 @@ contains
          if (self%segment(i)%is_open) call self%segment(i)%restart()
          any_parted = .true.
       end do
+
+   contains
+
+      pure elemental logical function lacks(tip)
+         type(tip_t), intent(in) :: tip
+
+         associate (k => tip%intensity, toughness => self%rules%toughness)
+            lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk, &
+                                max(k%k1_error, k%k2_error)/toughness)
+         end associate
+      end function lacks
+
    end subroutine part_company
 
    !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].

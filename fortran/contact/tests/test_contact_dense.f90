@@ -1,5 +1,6 @@
 !> The linear step of a full matrix: equations of very different sizes, the condition of a matrix
-!! that is known, one that is singular, and none at all; and what a step leaves out of its matrix.
+!! that is known, one that is singular, and none at all; what a step leaves out of its matrix, and
+!! flows that a condition leaves out.
 program test_contact_dense
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
@@ -13,6 +14,7 @@ program test_contact_dense
    call finds_step()
    call notices_singular_matrix()
    call has_nothing_to_solve()
+   call leaves_flows_out_of_condition()
    call leaves_out_ties()
    call checks%finish()
 
@@ -58,6 +60,44 @@ contains
       call solve_full(matrix, residual, .true., step, quality)
       call checks%is_true(.not. quality%is_singular, "no equation is not singular")
    end subroutine has_nothing_to_solve
+
+   !> Three cells p in a ring and the flows q between them, against which there is hardly any
+   !! resistance: p_k + q_k - q_(k-1) = f_k, r q_k - p_k + p_(k+1) = d_k. As r vanishes,
+   !! p_1 = (f_1 + f_2 + f_3 + d_3 - d_1)/3, while the flow round the ring is (d_1 + d_2 + d_3)/3r.
+   !! So the norm of the inverse is 5/3 for the cells, 1/r for all; that of the matrix is 3.
+   subroutine leaves_flows_out_of_condition()
+      real(rk), parameter :: resistance = 1.0e-10_rk
+      logical, parameter :: is_flow(6) = [.false., .false., .false., .true., .true., .true.]
+      type(step_quality_t) :: quality
+      real(rk) :: matrix(6, 6), residual(6), step(6)
+
+      call fill_ring(resistance, matrix)
+      residual = [1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]
+      call solve_full(matrix, residual, .true., step, quality)
+      call checks%is_close(quality%condition*resistance, 3.0_rk, 1.0e-5_rk, "of the whole ring")
+      call fill_ring(resistance, matrix)
+      residual = [1.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]
+      call solve_full(matrix, residual, .true., step, quality, left_out=is_flow)
+      call checks%is_close(quality%condition, 5.0_rk, 1.0e-6_rk, "of the cells in the ring")
+      call checks%is_close(step(1), -1.0_rk/3.0_rk, 1.0e-9_rk, "the cells are right")
+   end subroutine leaves_flows_out_of_condition
+
+   pure subroutine fill_ring(resistance, matrix)
+      real(rk), intent(in) :: resistance
+      real(rk), intent(out) :: matrix(6, 6)  !< an equation per column
+      integer :: k, next
+
+      matrix = 0.0_rk
+      do k = 1, 3
+         next = modulo(k, 3) + 1
+         matrix(k, k) = 1.0_rk
+         matrix(3 + k, k) = 1.0_rk
+         matrix(3 + k, next) = -1.0_rk
+         matrix(3 + k, 3 + k) = resistance
+         matrix(k, 3 + k) = -1.0_rk
+         matrix(next, 3 + k) = 1.0_rk
+      end do
+   end subroutine fill_ring
 
    !> Three points: one sticks, one opens with its slip, one is open. The step is that of the whole
    !! matrix.
