@@ -31,7 +31,7 @@ module twolevel_equilibrium
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, find_equilibrium, tolerance
+   public :: accept_equilibrium, find_equilibrium, punctual, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
@@ -46,8 +46,8 @@ module twolevel_equilibrium
    !! [-].
    real(rk), parameter :: much = 4.0_rk
 
-   !> A tip comes to a joint no earlier before the end of a step than this share of the time since
-   !! the wells were switched last [-].
+   !> A tip comes to a joint no earlier before the end of a step, and jumps in one no longer, than
+   !! this share of the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
    !> A tip with less than this share of its toughness in the first try of a step is not asked in
@@ -57,19 +57,21 @@ module twolevel_equilibrium
 contains
 
    !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
-   !! goes too far, unless the step is the last try: so short that nothing but growth happens in
-   !! it, until that arrests. Nothing is accepted yet; a step that does not show an equilibrium
-   !! leaves the state before. So does one in which a tip would grow, or might, whose intensities
-   !! are not known well enough: its window is a better one then.
-   subroutine find_equilibrium(self, dt, is_last, timers, report, trial, error)
+   !! goes too far, unless it may jump: the step is so short that it does not matter when in it that
+   !! happens, or it is the last try, in which nothing but growth happens until that arrests.
+   !! Nothing is accepted yet; a step that does not show an equilibrium leaves the state before. So
+   !! does one in which a tip would grow, or might, whose intensities are not known well enough: its
+   !! window is a better one then.
+   subroutine find_equilibrium(self, dt, is_last, may_jump, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(in) :: is_last
+      logical, intent(in) :: is_last  !< its error in time is not judged; tips may jump
+      logical, intent(in) :: may_jump
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: tries_max = 25, unstable_tries_max = 1000
+      integer, parameter :: tries_max = 25, jump_tries_max = 100, unstable_tries_max = 1000
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
       real(rk) :: unmoved(size(self%tip))  ! K_eq of the first try [Pa m^1/2]
       logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
@@ -79,7 +81,7 @@ contains
       type(tip_t) :: tip(size(self%tip))
       type(segment_t) :: segment(size(self%tip))
       type(network_t) :: network
-      integer :: k
+      integer :: k, most
       logical :: was_undrained
 
       was_undrained = self%undrained
@@ -94,7 +96,10 @@ contains
       self%before = self%state
       call self%segment%restart()
       call self%certainty%begin_step()
-      do k = 1, merge(unstable_tries_max, tries_max, is_last)
+      most = tries_max
+      if (may_jump) most = jump_tries_max
+      if (is_last) most = unstable_tries_max
+      do k = 1, most
          call place_tips(self)
          call self%try_step(dt, timers, report, error)
          if (allocated(error)) exit
@@ -132,14 +137,14 @@ contains
                cycle
             end if
             ! Not while others are on their way: they may go back.
-            if (.not. is_last) trial%onset = first_onset(self, tip%drive%intensity)
+            if (.not. may_jump) trial%onset = first_onset(self, tip%drive%intensity)
             if (trial%onset < 1.0_rk) exit
             joins = wants .and. can_join(self)
             wants = wants .and. self%tip%heads_for == target_none
-            if (.not. trial%has_joined) trial%time_error = self%step_error(dt)
+            if (.not. (trial%has_joined .or. trial%jumps)) trial%time_error = self%step_error(dt)
             if (any(joins)) then
                ! The error in time is that up to the joint: what follows is a jump.
-               if (.not. is_last) then
+               if (.not. may_jump) then
                   trial%goes_too_far = any(joins .and. has_begun)
                   trial%arrival = minval(arrivals(self, tip%drive%intensity), mask=joins)
                   trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
@@ -171,8 +176,10 @@ contains
                call improve_windows(self, self%before%time, trial%needs_windows, error)
                exit
             end if
-            trial%goes_too_far = .not. is_last .and. &
-                                 any(wants .and. (has_begun .or. excesses(self) > excess_max))
+            trial%jumps = trial%jumps .or. &
+                          any(wants .and. (has_begun .or. excesses(self) > excess_max))
+            trial%goes_too_far = trial%jumps .and. .not. may_jump
+            if (trial%jumps) trial%time_error = 0.0_rk  ! what jumps has no rates
             if (trial%goes_too_far) then
                trial%was_beyond = any(wants .and. tip%drive%intensity/self%rules%toughness &
                                       > 1.0_rk + excess_max)
@@ -189,7 +196,7 @@ contains
          end if
          self%state = self%before
       end do
-      trial%goes_too_far = trial%goes_too_far .or. k > tries_max
+      trial%goes_too_far = trial%goes_too_far .or. k > most
       if (allocated(self%asked)) deallocate (self%asked)
       ! The cells that segments were begun with stay, closed, for the next try.
       self%state = self%before

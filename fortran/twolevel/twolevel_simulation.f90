@@ -13,7 +13,7 @@ module twolevel_simulation
    use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess, notes_t
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
@@ -22,7 +22,7 @@ module twolevel_simulation
    use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_stimulation, only: stimulation_t
    use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_wells, only: next_switch
+   use twolevel_wells, only: last_switch, next_switch
    implicit none(type, external)
    private
 
@@ -184,15 +184,15 @@ contains
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step, cut as often as it takes. In the shortest one errors in time are not
-   !! judged, and where tips find no equilibrium in it either, growth is unstable: nothing but that
-   !! happens, until it arrests.
+   !> One accepted step, cut as often as it takes. Where tips find no equilibrium in a step that is
+   !! short beside the time since the wells were switched, or in the shortest one, in which errors
+   !! in time are not judged either, growth is unstable: nothing but that happens, until it arrests.
    subroutine take_step(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(trial_t) :: trial
-      logical :: is_last, is_too_short, is_unstable
+      logical :: is_last, is_too_short, is_unstable, may_jump
       real(rk) :: wanted
 
       if (self%scene%growth%intensities) then
@@ -205,8 +205,9 @@ contains
       is_too_short = .false.
       is_last = .false.
       is_unstable = .false.
+      may_jump = .false.
       do
-         call try_length(self, is_last, trial, timers, error)
+         call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows) cycle
          if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
@@ -218,13 +219,22 @@ contains
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
+         may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
       end do
+      is_unstable = is_unstable .or. trial%jumps
       if (self%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
          call self%watch%see(limit_time_error, trial%time_error, last_state(self))
       end if
       call accept_step(self, trial, is_unstable)
       if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
    end subroutine take_step
+
+   !> The present step is so short that it does not matter when in it tips jump.
+   pure logical function is_moment(self)
+      class(twolevel_simulation_t), intent(in) :: self
+
+      is_moment = self%dt <= punctual*(self%state%time - last_switch(self%scene, self%state%time))
+   end function is_moment
 
    !> The equations are solved and tips in equilibrium, whatever the error in time.
    pure logical function solves(trial)
@@ -234,15 +244,16 @@ contains
    end function solves
 
    !> Try a step of the present length. The last try is taken if its equations are solved.
-   subroutine try_length(self, is_last, trial, timers, error)
+   subroutine try_length(self, is_last, may_jump, trial, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
-      logical, intent(in) :: is_last
+      logical, intent(in) :: is_last, may_jump
       type(trial_t), intent(out) :: trial
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       if (is_equilibrium(self)) then
-         call find_equilibrium(self, self%dt, is_last, timers, self%report, trial, error)
+         call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
+                               error)
       else
          self%before = self%state
          call self%try_step(self%dt, timers, self%report, error)

@@ -35,6 +35,7 @@ module twolevel_stepping
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
       logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
+      logical :: jumps = .false.  !< they do, and may
       logical :: was_beyond = .false.  !< one of these was, of its toughness, before it
       logical :: has_joined = .false.  !< a tip has joined something in it
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again

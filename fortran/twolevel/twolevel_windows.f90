@@ -18,13 +18,17 @@ module twolevel_windows
 
    public :: windows_t
 
+   !> A tip that another one's window holds has moved where it has by more than this share of its
+   !! distance to that: intensities change by a small part of it [-].
+   real(rk), parameter :: noticeable = 1.0e-3_rk
+
    !> The windows, and whether each is that of the present network and coarse mesh.
    type :: windows_t
       type(window_t), allocatable :: window(:)
       logical, allocatable :: built(:), projected(:)  !< (windows)
       integer(ik), allocatable :: window_of(:)  !< (tips)
       type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
-      real(rk), allocatable :: seen(:, :)  !< (2, tips) places of the tips that were seen last [m]
+      real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
    contains
       procedure :: begin
       procedure :: evaluate
@@ -50,13 +54,13 @@ contains
       n_windows = size(tips, kind=ik)
       if (is_body) n_windows = min(n_windows, 1_ik)
       allocate (self%window(n_windows), self%window_of(size(tips)))
-      allocate (self%tip(size(tips)), self%seen(2, size(tips)))
+      allocate (self%tip(size(tips)))
+      allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
       do i = 1, size(tips, kind=ik)
          self%window_of(i) = min(i, n_windows)
          self%tip(i)%fracture = tips(i)%fracture
          self%tip(i)%end = tips(i)%end
-         self%seen(:, i) = tips(i)%xy
       end do
       do i = 1, n_windows
          self%window(i)%is_body = is_body
@@ -89,7 +93,7 @@ contains
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: w
+      integer(ik) :: i, w
 
       call see_tips(self, tips)
       do w = 1, size(self%window, kind=ik)
@@ -108,6 +112,9 @@ contains
                end if
                self%built(w) = .true.
                self%projected(w) = .false.
+               do i = 1, size(tips, kind=ik)
+                  self%built_for(:, i, w) = tips(i)%xy
+               end do
             end if
             if (.not. self%projected(w)) then
                call window%project(mesher, mesh, values, error)
@@ -180,30 +187,44 @@ contains
    pure subroutine see_tips(self, tips)
       class(windows_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
-      integer(ik) :: i
+      integer(ik) :: i, w
 
-      do i = 1, size(tips, kind=ik)
-         associate (tip => tips(i), seen => self%seen(:, i))
-            if (all(abs(tip%xy - seen) <= 0.0_rk)) cycle
-            call forget(self, tip%origin, seen)
-            call forget(self, tip%origin, tip%xy)
-            seen = tip%xy
-         end associate
+      do w = 1, size(self%window, kind=ik)
+         do i = 1, size(tips, kind=ik)
+            if (self%built(w)) self%built(w) = .not. has_moved(self, tips, i, w)
+         end do
       end do
    end subroutine see_tips
 
-   !> Windows that hold a segment must be meshed again.
-   pure subroutine forget(self, from, to)
-      class(windows_t), intent(inout) :: self
-      real(rk), intent(in) :: from(2), to(2)  !< [m]
-      integer(ik) :: i
+   !> A tip has moved noticeably in a window since that was meshed.
+   pure logical function has_moved(self, tips, i, w)
+      class(windows_t), intent(in) :: self
+      type(tip_t), intent(in) :: tips(:)
+      integer(ik), intent(in) :: i, w
+      real(rk) :: apart, moved
+      integer(ik) :: k
 
-      do i = 1, size(self%window, kind=ik)
-         if (.not. self%built(i)) cycle
-         if (all(min(from, to) <= self%window(i)%upper) .and. &
-             all(max(from, to) >= self%window(i)%lower)) self%built(i) = .false.
-      end do
-   end subroutine forget
+      associate (tip => tips(i), before => self%built_for(:, i, w), window => self%window(w))
+         moved = norm2(tip%xy - before)
+         has_moved = moved > 0.0_rk
+         if (has_moved) has_moved = overlaps(window, tip%origin, before) .or. &
+                                    overlaps(window, tip%origin, tip%xy)
+         if (.not. has_moved) return
+         apart = huge(1.0_rk)
+         do k = 1, size(window%serves, kind=ik)
+            apart = min(apart, norm2(tip%xy - tips(window%serves(k))%xy))
+         end do
+         has_moved = any(window%serves == i) .or. moved > noticeable*apart
+      end associate
+   end function has_moved
+
+   !> The box around a segment and that of a window have something in common.
+   pure logical function overlaps(window, from, to)
+      type(window_t), intent(in) :: window
+      real(rk), intent(in) :: from(2), to(2)  !< [m]
+
+      overlaps = all(min(from, to) <= window%upper) .and. all(max(from, to) >= window%lower)
+   end function overlaps
 
    !> The window of a tip must be meshed again, for it is to be a better one.
    pure subroutine make_anew(self, tip)
