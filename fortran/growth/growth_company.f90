@@ -37,8 +37,10 @@ module growth_company
    type :: company_t
       integer(ik), allocatable, private :: kind(:)  !< (tips) those of one have gone equally far
       real(rk), allocatable, private :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
+      logical, allocatable, private :: is_alone(:)  !< (tips) has lagged behind its company
    contains
       procedure :: find_kinds
+      procedure :: part
       procedure :: accept
    end type company_t
 
@@ -59,6 +61,7 @@ contains
       integer(ik) :: i, j
 
       if (.not. allocated(self%usual)) self%usual = drive
+      if (.not. allocated(self%is_alone)) allocate (self%is_alone(size(drive)), source=.false.)
       where (.not. gain > 0.0_rk) self%usual = drive
       do j = 1, size(drive, kind=ik)
          do i = 1, size(drive, kind=ik)
@@ -70,7 +73,8 @@ contains
             end if
             alike(i, j) = apart <= max(least, hypot(off(i), off(j))) .and. &
                           abs(gain(i) - gain(j)) <= same_gain*increment .and. &
-                          .not. (is_arrested(i) .or. is_arrested(j))
+                          .not. (is_arrested(i) .or. is_arrested(j)) .and. &
+                          .not. any(self%is_alone([i, j]))
          end do
       end do
       kind = numbered(likes(alike))
@@ -100,6 +104,14 @@ contains
 
       lags_behind = excess < -max(by_chance, off)
    end function lags_behind
+
+   !> A tip has lagged behind: it is like no other from now on.
+   pure subroutine part(self, tip)
+      class(company_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip
+
+      self%is_alone(tip) = .true.
+   end subroutine part
 
    !> A step is accepted.
    subroutine accept(self, drive, advance, increment)

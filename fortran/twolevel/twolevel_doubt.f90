@@ -2,8 +2,9 @@
 !! where that does not help the run stops.
 !!
 !! Which part of the stated error is the larger one decides how: the window's own asks for smaller
-!! elements, the coarse level's, which comes in over the edge, for an edge farther away. A window
-!! stays as good as it was made, and goes along with its tip.
+!! elements, the coarse level's, which comes in over the edge, for an edge farther away, and in the
+!! end for none: the body, which tips share. A window stays as good as it was made, and goes along
+!! with its tip.
 module twolevel_doubt
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -55,8 +56,9 @@ contains
       integer(ik), intent(in) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
       real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
-      logical :: is_finer
+      logical :: is_finer, takes_body
 
+      takes_body = .false.
       associate (seen => self%windows%tip(tip), &
                  window => self%windows%window(self%windows%window_of(tip)))
          ! What cannot be done leaves the other, if that is worth it. Where the window holds the
@@ -74,17 +76,38 @@ contains
             if (seen%times_finer > 1) then
                what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
             end if
-            if (.not. window%is_body) then
+            if (.not. self%scene%discretization%window_is_body) then
                self%reference%tip(tip)%times_finer = seen%times_finer
                call self%reference%make_anew(tip)
             end if
          else
             if (.not. window%can_be_larger(self%scene)) return
-            window%times_larger = window%times_larger + 1
-            what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
+            takes_body = costs_as_body(self, 2.0_rk*window%edge_length(self%scene))
+            if (takes_body) then
+               what = "the body as its window"
+            else
+               window%times_larger = window%times_larger + 1
+               what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
+            end if
          end if
       end associate
-      call self%windows%make_anew(tip)
+      if (takes_body) then
+         call self%windows%take_body(tip)
+      else
+         call self%windows%make_anew(tip)
+      end if
    end subroutine improve_window
+
+   !> A window of this size would cost about as much as the body, where that can be one.
+   pure logical function costs_as_body(self, edge)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: edge  !< [m]
+      real(rk), parameter :: large = 0.3_rk  ! share of the body's shorter side
+
+      associate (domain => self%scene%domain)
+         costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
+      end associate
+      costs_as_body = costs_as_body .and. self%mesh%fracture%n_cells <= self%reference_most
+   end function costs_as_body
 
 end module twolevel_doubt

@@ -323,6 +323,7 @@ contains
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
          kind(i) = maxval(kind) + 1
+         call self%company%part(i)
          if (self%segment(i)%is_open) call self%segment(i)%restart()
          any_parted = .true.
       end do

@@ -117,13 +117,12 @@ contains
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) then
-         associate (fine => scene%discretization)
-            call self%windows%begin(self%tip, fine%window_is_body, coarser=1.0_rk)
-            ! With elements as large as the coarse cells: at the tips, where it matters, they are
-            ! those of the windows.
-            if (.not. fine%window_is_body) then
-               call self%reference%begin(self%tip, .true., coarser=1.0_rk/fine%fine_ratio)
-            end if
+         ! The body beside windows has elements as large as the coarse cells: at the tips, where it
+         ! matters, they are those of the windows.
+         associate (fine => scene%discretization, is_body => scene%discretization%window_is_body)
+            call self%windows%begin(self%tip, is_body, merge(1.0_rk, 1.0_rk/fine%fine_ratio, &
+                                                             is_body))
+            if (.not. is_body) call self%reference%begin(self%tip, .true., 1.0_rk/fine%fine_ratio)
          end associate
       end if
       allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))

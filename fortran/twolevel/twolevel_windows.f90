@@ -1,6 +1,7 @@
 !> The windows of all tips: built where the network has changed, and asked for intensities.
 !!
-!! Each tip has a window of its own, or the body is one window for all of them.
+!! Each tip has a window of its own, or the body is one window for all of them. Tips whose own
+!! windows would have to be nearly as large as the body share one that is the body.
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -38,33 +39,35 @@ module twolevel_windows
       procedure :: intensity_of
       procedure :: is_asked
       procedure :: make_anew
+      procedure :: take_body
       procedure :: n_unknowns
    end type windows_t
 
 contains
 
-   !> No window has been built.
-   subroutine begin(self, tips, is_body, coarser)
+   !> No window has been built. After those of the tips there is one that is the body, for none.
+   subroutine begin(self, tips, is_body, body_coarser)
       class(windows_t), intent(out) :: self
       type(tip_t), intent(in) :: tips(:)
       logical, intent(in) :: is_body  !< it is one window for all tips
-      real(rk), intent(in) :: coarser  !< elements along fractures, over what the scene says [-]
+      !> Elements of the body along fractures, over what the scene says [-]
+      real(rk), intent(in) :: body_coarser
       integer(ik) :: i, n_windows
 
-      n_windows = size(tips, kind=ik)
-      if (is_body) n_windows = min(n_windows, 1_ik)
+      n_windows = size(tips, kind=ik) + 1
+      if (is_body) n_windows = 1
       allocate (self%window(n_windows), self%window_of(size(tips)))
       allocate (self%tip(size(tips)))
       allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
       do i = 1, size(tips, kind=ik)
-         self%window_of(i) = min(i, n_windows)
+         self%window_of(i) = merge(1_ik, i, is_body)
          self%tip(i)%fracture = tips(i)%fracture
          self%tip(i)%end = tips(i)%end
       end do
       do i = 1, n_windows
-         self%window(i)%is_body = is_body
-         self%window(i)%coarser = coarser
+         self%window(i)%is_body = i == n_windows
+         if (self%window(i)%is_body) self%window(i)%coarser = body_coarser
          self%window(i)%serves = numbers_of(self%window_of == i)
       end do
    end subroutine begin
@@ -234,6 +237,21 @@ contains
       self%built(self%window_of(tip)) = .false.
       call self%tip(tip)%forget_coarse_error()
    end subroutine make_anew
+
+   !> A tip is to be known from the body from now on, not from a window of its own.
+   pure subroutine take_body(self, tip)
+      class(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: tip
+      integer(ik) :: body, own
+
+      own = self%window_of(tip)
+      body = size(self%window, kind=ik)
+      self%window_of(tip) = body
+      self%window(own)%serves = numbers_of(self%window_of == own)
+      self%window(body)%serves = numbers_of(self%window_of == body)
+      self%built(own) = .false.
+      call self%make_anew(tip)
+   end subroutine take_body
 
    !> The network is another one now, not only at its tips.
    pure subroutine network_changed(self)

@@ -29,6 +29,7 @@ program test_twolevel_doubt
    call test_small_window(.false.)
    call test_good_window()
    call test_poor_elements()
+   call test_body()
    call checks%finish()
 
 contains
@@ -98,7 +99,7 @@ contains
       call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "better windows")
       call checks%is_true(any_improved .and. .not. any(simulation%windows%built), "to be built")
-      call checks%is_true(all(simulation%windows%window%times_larger == 1), "larger ones")
+      call checks%is_true(all(simulation%windows%window(:2)%times_larger == 1), "larger ones")
       call checks%is_true(size(simulation%chronicle%events) == 2, "an event for each")
       call evaluate(simulation)
       associate (now => simulation%tip%intensity)
@@ -120,7 +121,7 @@ contains
       n_unknowns = simulation%windows%n_unknowns()
       call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "good windows")
-      call checks%is_true(.not. any_improved .and. all(simulation%windows%built), "they stay")
+      call checks%is_true(.not. any_improved .and. all(simulation%windows%built(:2)), "they stay")
       call checks%is_true(simulation%windows%n_unknowns() == n_unknowns, "all of them")
       associate (now => simulation%tip%intensity)
          ! What verification/tip_cells allows.
@@ -149,5 +150,28 @@ contains
     call checks%fails_with(error, "error of K over K_IC where a tip would grow 10 % above 5 at "// &
                              "0 s, fracture f, end ", "then the run stops")
    end subroutine test_poor_elements
+
+   !> A window that would have to be nearly as large as the body gives way to that, which both tips
+   !! share; then nothing comes in over an edge.
+   subroutine test_body()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      logical :: any_improved
+
+      call start(0.4_rk, 0.5_rk, simulation, usual_toughness)
+      simulation%windows%tip%of_edge = 0.1_rk*usual_toughness
+      simulation%tip%intensity%k2_error = 0.1_rk*usual_toughness
+      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call checks%no_error(error, "the body")
+      call checks%is_true(any_improved .and. all(simulation%windows%window_of == 3), "for both")
+      call checks%is_true(size(simulation%windows%window(3)%serves) == 2, "one for both")
+      call checks%is_true(size(simulation%windows%window(1)%serves) == 0, "not its own")
+      call evaluate(simulation)
+      associate (now => simulation%tip%intensity, seen => simulation%windows%tip)
+         call checks%is_true(all(abs(now%k2 - known) < 0.01_rk*known), "K of the body")
+         call checks%is_true(all(seen%of_edge < 1.0e-3_rk*known), "nothing comes over the edge")
+      end associate
+      call checks%is_true(.not. any(simulation%windows%built(:2)), "its own is not built")
+   end subroutine test_body
 
 end program test_twolevel_doubt
