@@ -17,6 +17,7 @@ program test_growth_company
    call test_difference()
    call test_rivals()
    call test_lag()
+   call test_parting()
    call checks%finish()
 
 contains
@@ -82,6 +83,23 @@ contains
       call checks%is_true(lags_behind(-0.73_rk, 0.2_rk), "nothing drives it")
       call checks%is_true(.not. lags_behind(0.3_rk, 0.0_rk), "beyond its toughness")
    end subroutine test_lag
+
+   !> One that has parted stays alone, though nothing tells it from the others; these stay one kind.
+   subroutine test_parting()
+      type(company_t) :: company
+      type(rivals_t) :: rivals
+      integer(ik) :: kind(3)
+      real(rk) :: same(3)
+
+      call rivals%begin(3)
+      same = 1.0_rk
+     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, increment, rivals, kind)
+      call checks%is_true(all(kind == 1), "all alike")
+      call company%part(2_ik)
+      call company%accept(same, 0.0_rk*same, increment)
+     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, increment, rivals, kind)
+      call checks%is_true(all(kind == [1, 2, 1]), "all but one")
+   end subroutine test_parting
 
    !> Two tips that have grown nowhere yet, or as far as given, are of one kind.
    logical function are_one(one, other, off, gain)

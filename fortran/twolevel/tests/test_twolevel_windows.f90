@@ -1,0 +1,85 @@
+!> Windows outlive small moves of tips that they hold but are not for: intensities change by next to
+!> nothing then, and by as much as they should once the moves are noticeable.
+!>
+!> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m; each of its two windows
+!> holds all of it.
+program test_twolevel_windows
+   use testing_checks, only: checks_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
+   use coarse_state, only: step_report_t
+   use growth_network, only: move_end
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: scene_t
+   use twolevel_simulation, only: twolevel_simulation_t
+   implicit none(type, external)
+
+   real(rk), parameter :: length = 0.1_rk  !< of the crack [m]
+   type(checks_t) :: checks
+   type(timers_t) :: timers
+   type(twolevel_simulation_t) :: simulation
+   real(rk) :: before, place(2)
+
+   call start(simulation)
+   before = simulation%tip(2)%intensity%k2
+   place = simulation%tip(1)%xy
+   call move(simulation, 0.5e-3_rk*length)
+   call checks%is_true(is_meshed_for(1_ik), "the tip's own window follows it")
+   call checks%is_true(.not. is_meshed_for(2_ik), "the other one's stays")
+   call checks%is_close(simulation%tip(2)%intensity%k2/before, 1.0_rk, 1.0e-3_rk, "its intensity")
+   ! Small moves add up.
+   call move(simulation, 1.1e-3_rk*length)
+   call checks%is_true(is_meshed_for(1_ik) .and. is_meshed_for(2_ik), "noticeable to both")
+   ! Longer by 5 %: K_II by 2.5 % where nothing else is near, half of what the near tip has.
+   call move(simulation, 0.05_rk*length)
+   call checks%is_true(is_meshed_for(2_ik), "far")
+   call checks%is_close(simulation%tip(2)%intensity%k2/before, sqrt(1.05_rk), 5.0e-3_rk, &
+                        "the intensity grows with the crack")
+   call checks%finish()
+
+contains
+
+   subroutine start(simulation)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), parameter :: along = 0.5_rk*length*sqrt(0.5_rk)
+      type(scene_t) :: scene
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%discretization%size_fracture = 0.02_rk
+      scene%discretization%window = 0.4_rk
+      call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
+                        0.0_rk)
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "begin")
+      call simulation%equilibrate(timers, report, error)
+      call checks%no_error(error, "initial state")
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "tips")
+   end subroutine start
+
+   !> The first tip goes on from where it was at first, along the crack; the coarse level stays.
+   subroutine move(simulation, by)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: by  !< [m]
+      type(error_t), allocatable :: error
+
+      associate (tip => simulation%tip(1))
+         tip%xy = place + by*tip%direction
+         call move_end(simulation%network, tip%fracture, tip%end, tip%xy)
+      end associate
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "after a move")
+   end subroutine move
+
+   !> A window has been meshed for the first tip where it is now.
+   logical function is_meshed_for(window)
+      integer(ik), intent(in) :: window
+
+      is_meshed_for = .not. norm2(simulation%windows%built_for(:, 1, window) &
+                                  - simulation%tip(1)%xy) > 0.0_rk
+   end function is_meshed_for
+
+end program test_twolevel_windows
