@@ -71,7 +71,7 @@ contains
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: tries_max = 25, jump_tries_max = 100, unstable_tries_max = 1000
+      integer, parameter :: tries_max = 25, jump_tries_max = 1000
       integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
       real(rk) :: unmoved(size(self%tip))  ! K_eq of the first try [Pa m^1/2]
       logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
@@ -98,7 +98,6 @@ contains
       call self%certainty%begin_step()
       most = tries_max
       if (may_jump) most = jump_tries_max
-      if (is_last) most = unstable_tries_max
       do k = 1, most
          call place_tips(self)
          call self%try_step(dt, timers, report, error)

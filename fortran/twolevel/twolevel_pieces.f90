@@ -42,22 +42,23 @@ contains
       type(tip_t) :: tip(size(self%tip))
       logical, dimension(size(self%tip)) :: is_new, is_near
       logical :: any_grew
-      integer(ik) :: i
+      integer(ik) :: i, number
 
       self%segment%is_open = self%segment%is_open .and. .not. wants
       is_new = wants
       is_near = .false.
       do i = 1, size(self%tip, kind=ik)
          if (.not. wants(i)) cycle
-         to = end_place(self%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
-         is_new(i) = .not. norm2(to - self%tip(i)%xy) > same_place*self%rules%increment
+         number = self%prepared(i)%find(self%tip(i)%xy, same_place*self%rules%increment)
+         is_new(i) = number == 0
          if (is_new(i)) then
             ahead(:, i) = way_ahead(self, self%tip(i))
             is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
             cycle
          end if
          ! An earlier try of this step has begun it, and its path has learned from that.
-         self%tip(i) = self%begun(i)
+         self%tip(i) = self%prepared(i)%tip_of(number)
+         to = self%prepared(i)%end_of(number)
          associate (begun => self%tip(i))
             if (norm2(to - begun%origin) > rest*self%rules%increment) then
                call extend(self%network, begun%fracture, begun%end, begun%xy)
@@ -189,7 +190,7 @@ contains
             call open_piece(self, i, to(:, i))
          end if
          associate (tip => self%tip(i))
-            self%begun(i) = tip
+            call self%prepared(i)%add(tip, to(:, i))
             call extend(self%coarse_network, tip%fracture, tip%end, to(:, i))
          end associate
          centres = reshape([centres, to(:, i)], [2, size(centres, 2) + 1])

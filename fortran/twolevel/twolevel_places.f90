@@ -1,7 +1,8 @@
 !> Where tips are along the last pieces of their paths, on both levels.
 !!
 !! The last cell of a fracture ends with its last piece, at a joint if that ends on something. As
-!! long as its tip has not come to it, nothing flows there.
+!! long as its tip has not come to it, nothing flows there. Tries that were not taken may have left
+!! several pieces before the tip.
 module twolevel_places
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
@@ -49,13 +50,38 @@ contains
          associate (ends => self%model%ends)
             ends%cell = [(end_cell(fracture, self%tip(free(k))), k=1, size(free))]
             ends%inwards = merge(1_ik, -1_ik, self%tip(free)%end == 1)
-            ends%ahead = [(norm2(fracture%point_xy(:, fracture%cell_points( &
-                                                   self%tip(free(k))%end, ends%cell(k))) &
-                                 - self%tip(free(k))%xy), k=1, size(free))]
+            ends%ahead = [(length_ahead(self, free(k), fracture%point_xy(:, fracture%cell_points( &
+                                                           self%tip(free(k))%end, ends%cell(k)))), &
+                           k=1, size(free))]
             call self%model%joints%shut_only(ends%cell, self%tip(free)%end)
          end associate
       end associate
    end subroutine place_tips
+
+   !> Length of the coarse cells that lie before a tip [m].
+   pure real(rk) function length_ahead(self, i, end)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i  !< tip
+      real(rk), intent(in) :: end(2)  !< of its fracture in the coarse mesh [m]
+      integer(ik) :: number
+
+      associate (tip => self%tip(i), segment => self%segment(i), prepared => self%prepared(i), &
+                 within => same_place*self%rules%increment)
+         if (segment%is_open) then
+            number = prepared%find(segment%start, within)
+         else
+            number = prepared%find(tip%xy, within)
+         end if
+         if (number == 0) then
+            length_ahead = norm2(end - tip%xy)
+         else if (segment%is_open) then
+            length_ahead = norm2(prepared%end_of(number) - tip%xy) &
+                           + prepared%length_from(number + 1)
+         else
+            length_ahead = prepared%length_from(number)
+         end if
+      end associate
+   end function length_ahead
 
    !> The fracture cell that a fracture ends with at a tip; cells are stored along each fracture.
    pure integer(ik) function end_cell(fracture, tip)

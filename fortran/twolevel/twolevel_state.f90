@@ -11,9 +11,9 @@ module twolevel_state
    use growth_company, only: company_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
+   use growth_prepared, only: prepared_t
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
-   use growth_tip, only: tip_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
@@ -66,7 +66,7 @@ module twolevel_state
       real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
-      type(tip_t), allocatable :: begun(:)  !< (tips) when those were begun, whole
+      type(prepared_t), allocatable :: prepared(:)  !< (tips) pieces that the coarse mesh has
       type(rivals_t) :: rivals  !< how the tips act on each other
       type(company_t) :: company  !< which of them grow as one
       type(certainty_t) :: certainty  !< how well lengths and pressures are known
@@ -125,7 +125,7 @@ contains
             if (.not. is_body) call self%reference%begin(self%tip, .true., 1.0_rk/fine%fine_ratio)
          end associate
       end if
-      allocate (self%grown(0), self%segment(size(self%tip)), self%begun(size(self%tip)))
+      allocate (self%grown(0), self%segment(size(self%tip)), self%prepared(size(self%tip)))
       call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
