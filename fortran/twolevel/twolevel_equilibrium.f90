@@ -12,8 +12,6 @@ module twolevel_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use growth_company, only: lags_behind
-   use growth_kinds, only: numbered
    use growth_network, only: total_length
    use growth_segment, only: segment_t
    use growth_targets, only: target_none
@@ -21,7 +19,9 @@ module twolevel_equilibrium
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
-   use twolevel_pieces, only: begin_pieces, can_join, comes_to, have_come, join_targets
+   use twolevel_excess, only: arrivals, excesses, first_onset, onset, tolerance
+   use twolevel_moves, only: judge_tips, part_company, several_kinds, tips_in_play
+   use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
@@ -31,16 +31,11 @@ module twolevel_equilibrium
    implicit none(type, external)
    private
 
-   public :: accept_equilibrium, find_equilibrium, punctual, tolerance
-
-   real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
+   public :: accept_equilibrium, find_equilibrium, punctual
 
    !> Excess of K_eq over K_IC, relative to that, beyond which no segment begins in a tried step:
    !! its direction would be that of a state that never is.
    real(rk), parameter :: excess_max = 0.2_rk
-
-   !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
-   real(rk), parameter :: onset_lack = 5.0e-3_rk
 
    !> A step that errs this much with the tips where they were cannot be taken, whatever they do
    !! [-].
@@ -53,6 +48,25 @@ module twolevel_equilibrium
    !> A tip with less than this share of its toughness in the first try of a step is not asked in
    !! the others, but for the last one.
    real(rk), parameter :: far = 0.7_rk
+
+   !> A step that is being tried.
+   type :: search_t
+      real(rk) :: dt = 0.0_rk  !< [s]
+      logical :: is_last = .false.  !< its error in time is not judged
+      logical :: may_jump = .false.  !< tips may go on from piece to piece in it
+      ! Before it
+      type(tip_t), allocatable :: tip(:)
+      type(segment_t), allocatable :: segment(:)
+      type(network_t) :: network
+      logical :: was_undrained = .false.
+      ! Of its tries
+      real(rk), allocatable :: unmoved(:)  !< (tips) K_eq of the first one [Pa m^1/2]
+      integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
+      logical, allocatable :: has_begun(:)  !< (tips) a new piece
+      type(lesson_t) :: lesson
+      logical :: is_over = .false.  !< there is no more to be tried
+      logical :: is_found = .false.  !< the state is an equilibrium
+   end type search_t
 
 contains
 
@@ -72,145 +86,239 @@ contains
       type(trial_t), intent(out) :: trial
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries_max = 25, jump_tries_max = 1000
-      integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
-      real(rk) :: unmoved(size(self%tip))  ! K_eq of the first try [Pa m^1/2]
-      logical, dimension(size(self%tip)) :: has_begun, in_play, joins, moves, wants
-      integer(ik) :: kind(size(self%tip))
-      logical :: any_exceeds, any_parted, has_measured, is_coupled
-      type(lesson_t) :: lesson
-      type(tip_t) :: tip(size(self%tip))
-      type(segment_t) :: segment(size(self%tip))
-      type(network_t) :: network
+      logical :: any_moves, wants(size(self%tip))
+      type(search_t) :: search
       integer :: k, most
-      logical :: was_undrained
 
-      was_undrained = self%undrained
-      tip = self%tip
-      segment = self%segment
-      network = self%network
-      call self%company%find_kinds(tip%drive%intensity/self%rules%toughness, &
-                                   max(tip%intensity%k1_error, tip%intensity%k2_error) &
-                                   /self%rules%toughness, segment%gain, tip%arrested, &
-                                   self%rules%increment, self%rivals, kind)
-      has_begun = .false.
-      self%before = self%state
-      call self%segment%restart()
-      call self%certainty%begin_step()
-      most = tries_max
-      if (may_jump) most = jump_tries_max
+      call begin_search(self, dt, is_last, may_jump, search)
+      most = merge(jump_tries_max, tries_max, may_jump)
       do k = 1, most
-         call place_tips(self)
-         call self%try_step(dt, timers, report, error)
+         call find_state(self, search, k == 1, timers, report, trial, error)
+         if (search%is_over .or. allocated(error)) exit
+         call move_tips(self, search, k, timers, any_moves, wants, error)
          if (allocated(error)) exit
-         trial%converged = report%converged
-         if (.not. trial%converged) then
-            trial%reason = report%reason
-            exit
-         end if
-         if (k == 1 .and. .not. is_last) then
-            trial%time_error = self%step_error(dt)
-            if (self%errs(trial%time_error/much)) exit
-         end if
-         call self%evaluate(timers, error)
-         if (allocated(error)) exit
-         call self%certainty%see_try(total_length(self%network), &
-                                     self%well_pressure())
-         if (k == 1) then
-            unmoved = self%tip%drive%intensity
-            if (.not. is_last) trial%onset = first_onset(self, tip%drive%intensity)
-            if (trial%onset < 1.0_rk) exit
-         end if
-         if (k == 1) self%asked = are_asked(self)
-         in_play = tips_in_play(self)
-         call lesson%tell(self)
-         call measure_rivals(self, in_play, dt, timers, has_measured, error)
-         if (allocated(error)) exit
-         call lesson%begin(self)
-         is_coupled = k <= coupled_tries_max
-         if (is_coupled) is_coupled = several_kinds(kind, in_play)
-         call judge_tips(self, kind, is_coupled, moves, wants)
-         if (.not. (any(moves) .or. has_measured)) then
-            call part_company(self, tip, wants, kind, any_parted)
-            if (any_parted) then
-               self%state = self%before
-               cycle
-            end if
-            ! Not while others are on their way: they may go back.
-            if (.not. may_jump) trial%onset = first_onset(self, tip%drive%intensity)
-            if (trial%onset < 1.0_rk) exit
-            joins = wants .and. can_join(self)
-            wants = wants .and. self%tip%heads_for == target_none
-            if (.not. (trial%has_joined .or. trial%jumps)) trial%time_error = self%step_error(dt)
-            if (any(joins)) then
-               ! The error in time is that up to the joint: what follows is a jump.
-               if (.not. may_jump) then
-                  trial%goes_too_far = any(joins .and. has_begun)
-                  trial%arrival = minval(arrivals(self, tip%drive%intensity), mask=joins)
-                  trial%is_late = (1.0_rk - trial%arrival)*dt > punctual &
-                                  *(self%before%time - last_switch(self%scene, self%before%time))
-                  if (trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)) exit
-               end if
-               call join_targets(self, joins)
-               trial%has_joined = .true.
-               self%state = self%before
-               lesson = lesson_t()
-               cycle
-            end if
-            if (.not. any(wants)) then
-               call ask_others(self, any_exceeds, timers, error)
-               if (allocated(error)) exit
-               if (any_exceeds) then
-                  self%state = self%before
-                  cycle
-               end if
-               trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
-               if (.not. is_last .and. self%errs(trial%time_error)) exit
-               call estimate_coarse_errors(self, timers, error)
-               if (allocated(error)) exit
-               call improve_windows(self, self%before%time, trial%needs_windows, error)
-               if (allocated(error) .or. trial%needs_windows) exit
-               return
-            end if
-            if (any(wants .and. doubtful(self%tip, self%rules%toughness))) then
-               call improve_windows(self, self%before%time, trial%needs_windows, error)
-               exit
-            end if
-            trial%jumps = trial%jumps .or. &
-                          any(wants .and. (has_begun .or. excesses(self) > excess_max))
-            trial%goes_too_far = trial%jumps .and. .not. may_jump
-            if (trial%jumps) trial%time_error = 0.0_rk  ! what jumps has no rates
-            if (trial%goes_too_far) then
-               trial%was_beyond = any(wants .and. tip%drive%intensity/self%rules%toughness &
-                                      > 1.0_rk + excess_max)
-               ! From where they come to the toughness on, not from the start of the step.
-               trial%onset = onset(tip%drive%intensity/self%rules%toughness, &
-                                   unmoved/self%rules%toughness, wants)
-               exit
-            end if
-            call begin_pieces(self, wants, timers, error)
-            if (allocated(error)) exit
-            ! Not those that have come to something already: nothing lies between.
-            has_begun = has_begun .or. (wants .and. .not. self%segment%stays())
-            lesson = lesson_t()  ! of other pieces
-         end if
+         if (.not. any_moves) call go_on(self, search, wants, timers, trial, error)
+         if (search%is_over .or. allocated(error)) exit
          self%state = self%before
       end do
+      if (search%is_found) return
       trial%goes_too_far = trial%goes_too_far .or. k > most
-      if (allocated(self%asked)) deallocate (self%asked)
-      ! The cells that segments were begun with stay, closed, for the next try.
-      self%state = self%before
-      self%tip = tip
-      self%segment = segment
-      self%network = network
-      self%values_are_current = .false.
+      call take_back(self, search)
       if (allocated(error) .or. .not. trial%needs_windows) return
       ! Onsets are looked for from what tips had before the step, and errors known from there; on a
       ! mesh that the step has made that state has no tractions.
-      self%undrained = was_undrained
+      self%undrained = search%was_undrained
       if (.not. allocated(self%state%tractions)) return
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine find_equilibrium
+
+   !> Remember what is before the step.
+   subroutine begin_search(self, dt, is_last, may_jump, search)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      logical, intent(in) :: is_last, may_jump
+      type(search_t), intent(out) :: search
+
+      search%dt = dt
+      search%is_last = is_last
+      search%may_jump = may_jump
+      search%tip = self%tip
+      search%segment = self%segment
+      search%network = self%network
+      search%was_undrained = self%undrained
+      allocate (search%kind(size(self%tip)))
+      allocate (search%has_begun(size(self%tip)), source=.false.)
+      associate (k => self%tip%intensity, toughness => self%rules%toughness)
+         call self%company%find_kinds(self%tip%drive%intensity/toughness, &
+                                      max(k%k1_error, k%k2_error)/toughness, self%segment%gain, &
+                                      self%tip%arrested, self%rules%increment, self%rivals, &
+                                      search%kind)
+      end associate
+      self%before = self%state
+      call self%segment%restart()
+      call self%certainty%begin_step()
+   end subroutine begin_search
+
+   !> What was before the step is again. The cells that pieces were begun with stay, closed, for the
+   !! next try.
+   subroutine take_back(self, search)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(in) :: search
+
+      if (allocated(self%asked)) deallocate (self%asked)
+      self%state = self%before
+      self%tip = search%tip
+      self%segment = search%segment
+      self%network = search%network
+      self%values_are_current = .false.
+   end subroutine take_back
+
+   !> The state and the intensities with the tips where they are tried to be.
+   subroutine find_state(self, search, is_first, timers, report, trial, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(in) :: is_first  !< try
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(trial_t), intent(inout) :: trial
+      type(error_t), allocatable, intent(out) :: error
+
+      call place_tips(self)
+      call self%try_step(search%dt, timers, report, error)
+      if (allocated(error)) return
+      trial%converged = report%converged
+      search%is_over = .not. trial%converged
+      if (search%is_over) then
+         trial%reason = report%reason
+         return
+      end if
+      if (is_first .and. .not. search%is_last) then
+         trial%time_error = self%step_error(search%dt)
+         search%is_over = self%errs(trial%time_error/much)
+         if (search%is_over) return
+      end if
+      call self%evaluate(timers, error)
+      if (allocated(error)) return
+      call self%certainty%see_try(total_length(self%network), self%well_pressure())
+      if (.not. is_first) return
+      search%unmoved = self%tip%drive%intensity
+      if (.not. search%is_last) trial%onset = first_onset(self, search%tip%drive%intensity)
+      search%is_over = trial%onset < 1.0_rk
+      if (.not. search%is_over) self%asked = are_asked(self)
+   end subroutine find_state
+
+   !> Let the tips go where their excess will probably vanish.
+   subroutine move_tips(self, search, try, timers, any_moves, wants, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      integer, intent(in) :: try  !< its number
+      type(timers_t), intent(inout) :: timers
+      logical, intent(out) :: any_moves  !< or is to be asked anew where it is
+      logical, intent(out) :: wants(:)  !< (tips) a new piece
+      type(error_t), allocatable, intent(out) :: error
+      integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
+      logical, dimension(size(self%tip)) :: in_play, moves
+      logical :: is_coupled
+
+      in_play = tips_in_play(self)
+      call search%lesson%tell(self)
+      call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
+      if (allocated(error)) return
+      call search%lesson%begin(self)
+      is_coupled = try <= coupled_tries_max
+      if (is_coupled) is_coupled = several_kinds(search%kind, in_play)
+      call judge_tips(self, search%kind, is_coupled, moves, wants)
+      any_moves = any_moves .or. any(moves)
+   end subroutine move_tips
+
+   !> All tips are at rest, or at the ends of their pieces: some leave their kind, some join what
+   !! they have come to, some begin new pieces; else the state is an equilibrium.
+   subroutine go_on(self, search, wants, timers, trial, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      type(timers_t), intent(inout) :: timers
+      type(trial_t), intent(inout) :: trial
+      type(error_t), allocatable, intent(out) :: error
+      logical :: any_parted, joins(size(self%tip))
+
+      call part_company(self, search%tip, wants, search%kind, any_parted)
+      if (any_parted) return
+      ! Not while others are on their way: they may go back.
+      if (.not. search%may_jump) trial%onset = first_onset(self, search%tip%drive%intensity)
+      search%is_over = trial%onset < 1.0_rk
+      if (search%is_over) return
+      joins = wants .and. can_join(self)
+      wants = wants .and. self%tip%heads_for == target_none
+      if (.not. (trial%has_joined .or. trial%jumps)) then
+         trial%time_error = self%step_error(search%dt)
+      end if
+      if (any(joins)) then
+         call join(self, search, joins, trial)
+      else if (any(wants)) then
+         call begin_wanted(self, search, wants, timers, trial, error)
+      else
+         call conclude(self, search, timers, trial, error)
+      end if
+   end subroutine go_on
+
+   !> Tips join what they have come to, unless that is too early in the step. The error in time is
+   !! that up to the joint: what follows is a jump.
+   subroutine join(self, search, joins, trial)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(in) :: joins(:)  !< (tips)
+      type(trial_t), intent(inout) :: trial
+
+      if (.not. search%may_jump) then
+         trial%goes_too_far = any(joins .and. search%has_begun)
+         trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=joins)
+         trial%is_late = (1.0_rk - trial%arrival)*search%dt > punctual &
+                         *(self%before%time - last_switch(self%scene, self%before%time))
+         search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
+         if (search%is_over) return
+      end if
+      call join_targets(self, joins)
+      trial%has_joined = .true.
+      search%lesson = lesson_t()
+   end subroutine join
+
+   !> Tips begin new pieces, unless they have gone too far by that, or are not known well enough.
+   subroutine begin_wanted(self, search, wants, timers, trial, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(in) :: wants(:)  !< (tips)
+      type(timers_t), intent(inout) :: timers
+      type(trial_t), intent(inout) :: trial
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (toughness => self%rules%toughness, before => search%tip%drive%intensity)
+         search%is_over = any(wants .and. doubtful(self%tip, toughness))
+         if (search%is_over) then
+            call improve_windows(self, self%before%time, trial%needs_windows, error)
+            return
+         end if
+         if (any(wants .and. (search%has_begun .or. excesses(self) > excess_max))) then
+            trial%jumps = .true.
+            trial%time_error = 0.0_rk  ! what jumps has no rates
+         end if
+         trial%goes_too_far = trial%jumps .and. .not. search%may_jump
+         search%is_over = trial%goes_too_far
+         if (search%is_over) then
+            trial%was_beyond = any(wants .and. before/toughness > 1.0_rk + excess_max)
+            ! From where they come to the toughness on, not from the start of the step.
+            trial%onset = onset(before/toughness, search%unmoved/toughness, wants)
+            return
+         end if
+      end associate
+      call begin_pieces(self, wants, timers, error)
+      if (allocated(error)) return
+      ! Not those that have come to something already: nothing lies between.
+      search%has_begun = search%has_begun .or. (wants .and. .not. self%segment%stays())
+      search%lesson = lesson_t()  ! of other pieces
+   end subroutine begin_wanted
+
+   !> No tip is to go on. If that holds for those that have not been asked too, and all are known
+   !! well enough, the state is an equilibrium.
+   subroutine conclude(self, search, timers, trial, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      type(timers_t), intent(inout) :: timers
+      type(trial_t), intent(inout) :: trial
+      type(error_t), allocatable, intent(out) :: error
+      logical :: any_exceeds
+
+      call ask_others(self, any_exceeds, timers, error)
+      if (allocated(error) .or. any_exceeds) return
+      search%is_over = .true.
+      trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
+      if (.not. search%is_last .and. self%errs(trial%time_error)) return
+      call estimate_coarse_errors(self, timers, error)
+      if (allocated(error)) return
+      call improve_windows(self, self%before%time, trial%needs_windows, error)
+      search%is_found = .not. (allocated(error) .or. trial%needs_windows)
+   end subroutine conclude
 
    !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
    !! from their toughness, known as well as that is.
@@ -252,208 +360,5 @@ contains
                                self%rules%increment)
       call self%segment%accept()
    end subroutine accept_equilibrium
-
-   !> Share of the step after which the first tip that has not grown before begins to, as tried [-].
-   pure real(rk) function first_onset(self, before)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: before(:)  !< K_eq of the tips at the start of the step [Pa m^1/2]
-
-      first_onset = onset(before/self%rules%toughness, &
-                          self%tip%drive%intensity/self%rules%toughness, &
-                          .not. (self%tip%arrested .or. self%segment%gain > 0.0_rk))
-   end function first_onset
-
-   !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
-   !! begins to grow, or where it does so at the end of the step.
-   pure function onset(before, after, counts)
-      real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
-      logical, intent(in) :: counts(:)
-      real(rk) :: onset
-      integer :: i
-
-      onset = 1.0_rk
-      do i = 1, size(before)
-         if (.not. counts(i) .or. before(i) > 1.0_rk - onset_lack) cycle
-         if (after(i) <= 1.0_rk + tolerance) cycle
-         onset = min(onset, (1.0_rk - before(i))/(after(i) - before(i)))
-      end do
-   end function onset
-
-   !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
-   !! they exceed the toughness. Tips of one kind take the largest of their excesses, and so go on
-   !! equally far.
-   subroutine judge_tips(self, kind, is_coupled, moves, wants)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      logical, intent(in) :: is_coupled  !< the kinds move together
-      logical, intent(out) :: moves(:), wants(:)  !< (tips)
-      real(rk), dimension(size(self%tip)) :: alone, excess
-      integer(ik) :: i
-
-      alone = shared_excesses(self)
-      do i = 1, size(self%tip, kind=ik)
-         excess(i) = maxval(alone, mask=kind == kind(i))
-      end do
-      ! Nothing but a rest before them: it fails as soon as they are at the toughness, before others
-      ! go on, for which they would wait else where all are at it alike.
-      where (have_come(self)) excess = excess + 2.0_rk*tolerance
-      call move_kinds(self, kind, excess, is_coupled, moves)
-      wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
-      where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
-   end subroutine judge_tips
-
-   !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
-   !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that
-   !! were on their way and at their toughness before the step: one mesh may throw them back.
-   subroutine part_company(self, before, wants, kind, any_parted)
-      class(two_levels_t), intent(inout) :: self
-      type(tip_t), intent(in) :: before(:)  !< the tips before the step
-      logical, intent(in) :: wants(:)  !< (tips) a new piece
-      integer(ik), intent(inout) :: kind(:)  !< of each tip, from 1
-      logical, intent(out) :: any_parted
-      logical :: lags(size(kind))
-      integer(ik) :: i
-
-      associate (segment => self%segment)
-         lags = (wants .or. (segment%is_open .and. segment%reached > segment%lowest())) .and. &
-                lacks(self%tip) .and. (lacks(before) .or. .not. segment%gain > 0.0_rk)
-      end associate
-      any_parted = .false.
-      do i = 1, size(kind, kind=ik)
-         if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
-         kind(i) = maxval(kind) + 1
-         call self%company%part(i)
-         if (self%segment(i)%is_open) call self%segment(i)%restart()
-         any_parted = .true.
-      end do
-
-   contains
-
-      pure elemental logical function lacks(tip)
-         type(tip_t), intent(in) :: tip
-
-         associate (k => tip%intensity, toughness => self%rules%toughness)
-            lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk, &
-                                max(k%k1_error, k%k2_error)/toughness)
-         end associate
-      end function lacks
-
-   end subroutine part_company
-
-   !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
-   pure function shared_excesses(self) result(excess)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: excess(size(self%tip))
-      integer(ik) :: i, j
-
-      excess = excesses(self)
-      do j = 1, size(excess, kind=ik)
-         do i = 1, size(excess, kind=ik)
-            if (.not. comes_to(self, i, j)) cycle
-            excess(i) = max(excess(i), excess(j))
-            excess(j) = -1.0_rk
-            exit
-         end do
-      end do
-   end function shared_excesses
-
-   !> Of tips that all exceed their toughness or may go back there are several kinds.
-   pure logical function several_kinds(kind, in_play)
-      integer(ik), intent(in) :: kind(:)  !< from 1
-      logical, intent(in) :: in_play(:)
-
-      several_kinds = any(in_play)
-      if (several_kinds) several_kinds = minval(kind, mask=in_play) < maxval(kind, mask=in_play)
-   end function several_kinds
-
-   !> The first tip of each kind moves by its own secants, or as all of them have to together; those
-   !! that are like it keep up with it.
-   subroutine move_kinds(self, kind, excess, is_coupled, moves)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
-      logical, intent(in) :: is_coupled
-      logical, intent(out) :: moves(:)
-      integer(ik), allocatable :: leader(:), number(:), on_way(:)
-      integer(ik) :: i, k
-
-      moves = .false.
-      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%segment%is_open)
-      number = numbered(kind(on_way))
-      leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
-      if (is_coupled) then
-         call move_together(self, on_way, number, leader, excess(leader), moves)
-      else
-         do k = 1, size(leader, kind=ik)
-            call self%segment(leader(k))%improve(excess(leader(k)), tolerance, moves(leader(k)))
-         end do
-      end if
-      do k = 1, size(on_way, kind=ik)
-         i = leader(number(k))
-         if (on_way(k) == i) cycle
-         call self%segment(on_way(k))%keep_up_with(self%segment(i))
-         moves(on_way(k)) = moves(i)
-      end do
-   end subroutine move_kinds
-
-   !> The first tips of the kinds move together, unless all are at rest.
-   subroutine move_together(self, on_way, number, leader, excess, moves)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik), intent(in) :: on_way(:)  !< tips
-      integer(ik), intent(in) :: number(:)  !< of the kind of each
-      integer(ik), intent(in) :: leader(:)  !< (kinds) tips
-      real(rk), intent(in) :: excess(:)  !< (kinds) of K_eq over K_IC [-]
-      logical, intent(inout) :: moves(:)  !< (all tips)
-      real(rk) :: to(size(leader))
-      integer :: k
-
-      associate (segment => self%segment)
-         do k = 1, size(leader)
-            call segment(leader(k))%learn(excess(k))
-         end do
-         if (all(segment(leader)%is_at_rest(excess, tolerance))) return
-         to = segment(leader)%reached &
-              + self%rivals%changes(on_way, number, excess, segment(leader))
-         do k = 1, size(leader)
-            call segment(leader(k))%go_to(to(k), moves(leader(k)))
-         end do
-      end associate
-   end subroutine move_together
-
-   !> Shares of the step after which tips at the ends of their pieces have probably come there, and
-   !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
-   !! Tips that have nothing left to go along exceed it when their intensity has risen so far.
-   pure function arrivals(self, before) result(share)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
-      real(rk) :: share(size(self%tip))
-      real(rk), dimension(size(self%tip)) :: beyond, room, rise
-
-      room = self%segment%length - self%segment%accepted
-      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
-      share = room/max(room + beyond, tiny(1.0_rk))
-      share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
-      rise = (self%tip%drive%intensity - before)/self%rules%toughness
-      where (self%segment%stays() .and. rise > 0.0_rk)
-         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - 2.0_rk*tolerance)/rise))
-      end where
-   end function arrivals
-
-   !> Of K_eq over K_IC [-].
-   pure function excesses(self) result(excess)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: excess(size(self%tip))
-
-      excess = self%tip%drive%intensity/self%rules%toughness - 1.0_rk
-   end function excesses
-
-   !> Tips on their way that exceed their toughness, or have advanced in the step.
-   pure function tips_in_play(self) result(in_play)
-      class(two_levels_t), intent(in) :: self
-      logical :: in_play(size(self%tip))
-
-      in_play = self%segment%is_open .and. (excesses(self) > -tolerance .or. &
-                                            self%segment%reached > self%segment%lowest())
-   end function tips_in_play
 
 end module twolevel_equilibrium

@@ -6,7 +6,7 @@ module twolevel_notes
    use growth_company, only: could_part
    use growth_network, only: total_length
    use results_chronicle, only: event_bifurcation, event_growth_onset, event_unstable
-   use twolevel_equilibrium, only: tolerance
+   use twolevel_excess, only: tolerance
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
    use twolevel_state, only: two_levels_t

@@ -1,0 +1,89 @@
+!> How far tips are beyond their toughness in a tried step, and after which share of it they have
+!! come to it, or to what lies before them.
+module twolevel_excess
+   use base_kinds, only: ik, rk
+   use twolevel_pieces, only: comes_to
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: arrivals, excesses, first_onset, onset, shared_excesses, tolerance
+
+   real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
+
+   !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
+   real(rk), parameter :: onset_lack = 5.0e-3_rk
+
+contains
+
+   !> Of K_eq over K_IC [-].
+   pure function excesses(self) result(excess)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: excess(size(self%tip))
+
+      excess = self%tip%drive%intensity/self%rules%toughness - 1.0_rk
+   end function excesses
+
+   !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
+   pure function shared_excesses(self) result(excess)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: excess(size(self%tip))
+      integer(ik) :: i, j
+
+      excess = excesses(self)
+      do j = 1, size(excess, kind=ik)
+         do i = 1, size(excess, kind=ik)
+            if (.not. comes_to(self, i, j)) cycle
+            excess(i) = max(excess(i), excess(j))
+            excess(j) = -1.0_rk
+            exit
+         end do
+      end do
+   end function shared_excesses
+
+   !> Share of the step after which the first tip that has not grown before begins to, as tried [-].
+   pure real(rk) function first_onset(self, before)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: before(:)  !< K_eq of the tips at the start of the step [Pa m^1/2]
+
+      first_onset = onset(before/self%rules%toughness, &
+                          self%tip%drive%intensity/self%rules%toughness, &
+                          .not. (self%tip%arrested .or. self%segment%gain > 0.0_rk))
+   end function first_onset
+
+   !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
+   !! begins to grow, or where it does so at the end of the step.
+   pure function onset(before, after, counts)
+      real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
+      logical, intent(in) :: counts(:)
+      real(rk) :: onset
+      integer :: i
+
+      onset = 1.0_rk
+      do i = 1, size(before)
+         if (.not. counts(i) .or. before(i) > 1.0_rk - onset_lack) cycle
+         if (after(i) <= 1.0_rk + tolerance) cycle
+         onset = min(onset, (1.0_rk - before(i))/(after(i) - before(i)))
+      end do
+   end function onset
+
+   !> Shares of the step after which tips at the ends of their pieces have probably come there, and
+   !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
+   !! Tips that have nothing left to go along exceed it when their intensity has risen so far.
+   pure function arrivals(self, before) result(share)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
+      real(rk) :: share(size(self%tip))
+      real(rk), dimension(size(self%tip)) :: beyond, room, rise
+
+      room = self%segment%length - self%segment%accepted
+      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
+      share = room/max(room + beyond, tiny(1.0_rk))
+      share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+      rise = (self%tip%drive%intensity - before)/self%rules%toughness
+      where (self%segment%stays() .and. rise > 0.0_rk)
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - 2.0_rk*tolerance)/rise))
+      end where
+   end function arrivals
+
+end module twolevel_excess
