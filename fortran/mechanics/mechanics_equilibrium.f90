@@ -215,7 +215,7 @@ contains
          call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
                            error)
          if (allocated(error)) return
-         call share_misfit(body, pack(group, advance > 0.0_rk), slope, timers, error)
+         call share_misfit(body, pack(group, advance > 0.0_rk), limit, slope, timers, error)
          if (allocated(error)) return
          intensity = body%tip(group)%drive%intensity
          lack = needed_intensity(body) - intensity

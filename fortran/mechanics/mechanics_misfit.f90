@@ -28,27 +28,32 @@ contains
    end function needed_intensity
 
    !> The largest K_eq is K_IC, and some of tips that have advanced lack more than the tolerance: a
-   !! load at which the one is too large and the others too small, all within the tolerance, if
-   !! there is one. Tips that hardly answer to the load would fix it by the errors of their K.
-   subroutine share_misfit(body, grown, slope, timers, error)
+   !! load farther along the programme at which the one is too large and the others too small, all
+   !! within the tolerance, if there is one. Tips that hardly answer to the load would fix it by the
+   !! errors of their K.
+   subroutine share_misfit(body, grown, limit, slope, timers, error)
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: grown(:)  !< tips that have advanced
+      real(rk), intent(in) :: limit  !< the last factor of the programme [-]
       real(rk), intent(in) :: slope(:)  !< (tips) dK_eq/df [Pa m^1/2]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: part_of = 0.9_rk  ! of the tolerance
-      real(rk) :: above, allowed, factor, lack(size(grown)), rise
+      real(rk) :: above, allowed, factor, lack(size(grown)), rate(size(slope)), rise, way
 
       allowed = part_of*tolerance*body%rules%toughness
       lack = needed_intensity(body) - body%tip(grown)%drive%intensity
       if (size(grown) == 0) return
       if (maxval(lack) <= tolerance*body%rules%toughness) return
-      if (any(lack > allowed .and. .not. slope(grown) > 0.0_rk)) return
-      rise = maxval((lack - allowed)/slope(grown), mask=lack > allowed)
-      above = maxval(body%tip%drive%intensity + rise*slope, mask=.not. body%tip%arrested)
+      way = sign(1.0_rk, limit - body%scene%load%from)
+      rate = way*slope
+      if (any(lack > allowed .and. .not. rate(grown) > 0.0_rk)) return
+      rise = maxval((lack - allowed)/rate(grown), mask=lack > allowed)
+      if (rise > way*(limit - body%factor)) return
+      above = maxval(body%tip%drive%intensity + rise*rate, mask=.not. body%tip%arrested)
       if (above > body%rules%toughness + allowed) return
       factor = body%factor
-      call body%respond(factor + rise, timers, error)
+      call body%respond(factor + way*rise, timers, error)
       if (allocated(error)) return
       if (body%largest_excess() > tolerance) call body%respond(factor, timers, error)
    end subroutine share_misfit

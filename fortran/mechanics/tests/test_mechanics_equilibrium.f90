@@ -18,8 +18,9 @@ program test_mechanics_equilibrium
    call check_strip("length")
    call check_strip("dead")
    call check_balance()
-   call check_shared_misfit(0.065_rk, is_shared=.true.)
-   call check_shared_misfit(0.2_rk, is_shared=.false.)
+   call check_shared_misfit(0.065_rk, 1.0_rk, is_shared=.true.)
+   call check_shared_misfit(0.065_rk, -1.0_rk, is_shared=.true.)
+   call check_shared_misfit(0.2_rk, 1.0_rk, is_shared=.false.)
    call checks%finish()
 
 contains
@@ -131,10 +132,12 @@ contains
 
    !> A crack off the middle of the strip: K of the tip that is nearer to a side is larger, and both
    !! are proportional to the load. With the larger one at K_IC the other lacks a share d. Where d
-   !! is above the tolerance but below twice that, the load rises until 0.9 of the tolerance lack;
-   !! where it is above, no load helps.
-   subroutine check_shared_misfit(off, is_shared)
+   !! is above the tolerance but below twice that, the load goes on, whichever way its programme
+   !! goes, until 0.9 of the tolerance lack, unless the programme ends before; where it is above, no
+   !! load helps.
+   subroutine check_shared_misfit(off, way, is_shared)
       real(rk), intent(in) :: off  !< the middle [m]
+      real(rk), intent(in) :: way  !< of the programme; the sides push where it is negative
       logical, intent(in) :: is_shared
       type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
@@ -145,18 +148,25 @@ contains
 
       scene = strip("length")
       scene%fractures(1)%x = scene%fractures(1)%x + off
+      scene%sides(3)%traction = way*scene%sides(3)%traction
+      scene%sides(4)%traction = way*scene%sides(4)%traction
+      scene%load%to = way*scene%load%to
       call timers%begin()
       call simulation%begin(scene, timers, error)
       call checks%no_error(error, "off the middle: begin")
       if (allocated(error)) return
-      call simulation%respond(1.0_rk, timers, error)
-      call balance_load(simulation, 1.0_rk, 100.0_rk, timers, holds, is_loose, slope, error)
+      call simulation%respond(way, timers, error)
+      call balance_load(simulation, way, 100.0_rk*way, timers, holds, is_loose, slope, error)
       call checks%no_error(error, "off the middle: balance")
       if (allocated(error)) return
       lack = 1.0_rk - minval(simulation%tip%drive%intensity)/2.0_rk
       call checks%is_true(lack > tolerance .and. (lack < 1.8_rk*tolerance .eqv. is_shared), &
                           "the tips differ as the test wants it")
-      call share_misfit(simulation, [1_ik, 2_ik], slope, timers, error)
+      associate (factor => simulation%factor)
+         call share_misfit(simulation, [1_ik, 2_ik], factor, slope, timers, error)
+         call checks%is_close(simulation%largest_excess(), 0.0_rk, 1.0e-8_rk, "not beyond its end")
+      end associate
+      call share_misfit(simulation, [1_ik, 2_ik], 100.0_rk*way, slope, timers, error)
       call checks%no_error(error, "shared misfit")
       if (allocated(error)) return
       associate (least => minval(simulation%tip%drive%intensity)/2.0_rk, &
