@@ -1,12 +1,16 @@
 !> Small scenes with both levels.
 module sample_scenes
+   use base_errors, only: error_t
    use base_kinds, only: rk
+   use base_timers, only: timers_t
+   use coarse_state, only: step_report_t
    use sample_bodies, only: porous_body
    use scene_types, only: fracture_t, scene_t
+   use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
    private
 
-   public :: add_fracture, squeezed_body
+   public :: add_fracture, evaluate_initial_state, squeezed_body
 
 contains
 
@@ -43,5 +47,18 @@ contains
       scene%fractures = [scene%fractures, fracture_t(name=name, x=x, y=y, friction=friction, &
                                                      dilation=dilation, aperture=1.0e-3_rk)]
    end subroutine add_fracture
+
+   !> Begin a scene, find its initial state, and the intensities in that.
+   subroutine evaluate_initial_state(scene, simulation, timers, error)
+      type(scene_t), intent(in) :: scene
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(step_report_t) :: report
+
+      call simulation%begin(scene, timers, error)
+      if (.not. allocated(error)) call simulation%equilibrate(timers, report, error)
+      if (.not. allocated(error)) call simulation%evaluate(timers, error)
+   end subroutine evaluate_initial_state
 
 end module sample_scenes

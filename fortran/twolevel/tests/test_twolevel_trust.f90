@@ -5,8 +5,7 @@ program test_twolevel_trust
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: step_report_t
-   use sample_scenes, only: add_fracture, squeezed_body
+   use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
@@ -32,17 +31,12 @@ contains
       real(rk), intent(in) :: friction
       type(twolevel_simulation_t), intent(inout) :: simulation
       type(scene_t) :: scene
-      type(step_report_t) :: report
       type(error_t), allocatable :: error
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call add_fracture(scene, "f", ends_x, ends_y, friction, 0.0_rk)
-      call simulation%begin(scene, timers, error)
-      call checks%no_error(error, "begin")
-      call simulation%equilibrate(timers, report, error)
+      call evaluate_initial_state(scene, simulation, timers, error)
       call checks%no_error(error, "initial state")
-      call simulation%evaluate(timers, error)
-      call checks%no_error(error, "tips")
    end subroutine start
 
    !> A sticking fracture in uniform stress: both levels are exact, so nothing is lacking.

@@ -8,9 +8,8 @@ program test_twolevel_windows
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: step_report_t
    use growth_network, only: move_end
-   use sample_scenes, only: add_fracture, squeezed_body
+   use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -44,7 +43,6 @@ contains
       type(twolevel_simulation_t), intent(inout) :: simulation
       real(rk), parameter :: along = 0.5_rk*length*sqrt(0.5_rk)
       type(scene_t) :: scene
-      type(step_report_t) :: report
       type(error_t), allocatable :: error
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
@@ -52,12 +50,8 @@ contains
       scene%discretization%window = 0.4_rk
       call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
                         0.0_rk)
-      call simulation%begin(scene, timers, error)
-      call checks%no_error(error, "begin")
-      call simulation%equilibrate(timers, report, error)
+      call evaluate_initial_state(scene, simulation, timers, error)
       call checks%no_error(error, "initial state")
-      call simulation%evaluate(timers, error)
-      call checks%no_error(error, "tips")
    end subroutine start
 
    !> The first tip goes on from where it was at first, along the crack; the coarse level stays.
