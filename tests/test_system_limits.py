@@ -34,11 +34,11 @@ def test_a_sound_run_has_no_warnings(tmp_path: Path) -> None:
 
 def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
     """A rock like gravel: the rounding errors are large, and fluid gets lost."""
-    changes = ("permeability = 5.0e-20", "permeability = 1.0e-10")
+    changes = ("permeability = 5.0e-20", "permeability = 3.0e-10")
     status, terminal, _, warnings = run(tmp_path, varied(changes))
     assert status == 0
     bound, mass = warnings
-    assert 1.0e-3 < first_value(bound, "forward error bound ") < 1.0e-2
+    assert 2.0e-6 < first_value(bound, "forward error bound ") < 1.0e-5
     assert " above 1e-06 at 3600 s; in 5 states, the worst " in bound
     assert mass.startswith("mass error ")
     assert "2 warnings:" in terminal
@@ -50,7 +50,7 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
 
 
 def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:
-    """A conductive rock in long steps: a bound of 2 %, and a pressure right within 0.1 %."""
+    """A conductive rock in long steps: the pressure after five is right within five bounds."""
     base = (TOP / "verification/stability/base.nml").read_text()
     for old, new in (
         ("permeability = 5.0e-20", "permeability = 1.0e-12"),
@@ -63,11 +63,11 @@ def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:
     status, _, _, warnings = run(tmp_path, base)
     assert status == 0
     told = [warning for warning in warnings if warning.startswith("forward error bound ")]
-    assert 0.01 < first_value(told[0], "forward error bound ") < 0.05
-    # the same body, sealed too, with k = 1e-20 m2, where the bound is 2e-13
-    assert numbers(tmp_path / "out/fractures.csv", "pressure_pa")[-1] == pytest.approx(
-        6.902057e6, rel=1e-3
-    )
+    bound = first_value(told[0], "forward error bound ")
+    assert 5.0e-5 < bound < 2.0e-4
+    # the same body, sealed too, with k = 1e-20 m2, where the bound is 4e-12
+    found = numbers(tmp_path / "out/fractures.csv", "pressure_pa")[-1]
+    assert found == pytest.approx(6.902057e6, rel=5.0 * bound)
 
 
 def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:

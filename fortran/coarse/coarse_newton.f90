@@ -6,6 +6,7 @@ module coarse_newton
    use coarse_equations, only: equations_t
    use coarse_guess, only: guess_t
    use coarse_joints, only: joints_t
+   use coarse_loops, only: flows_in_loops, unknown_flow
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
@@ -171,12 +172,35 @@ contains
       state%pressure = fluid%pressure
       state%void = fluid%void
       state%contact = reshape(eq%state, shape(state%contact))
+      report%loop_flow_error = loop_flow_error(eq, x, aperture, report)
       associate (layout => eq%layout, to_flow => eq%unit/dt)
          state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
          state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
          state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
       end associate
    end subroutine accept
+
+   !> How little is known of flows round loops, over the largest flow, or one that exchanges the
+   !! fluid of a cell in the step [-].
+   pure function loop_flow_error(eq, x, aperture, report) result(error)
+      type(equations_t), intent(in) :: eq
+      real(rk), intent(in) :: x(:)  !< the solution [Pa]
+      real(rk), intent(in) :: aperture(:)  !< (cells) [m]
+      type(step_report_t), intent(in) :: report
+      real(rk) :: error
+      real(rk) :: largest, unsolved
+
+      error = 0.0_rk
+      if (eq%settings%equilibrate .or. eq%layout%n_joints == 0) return
+      if (.not. report%condition > 0.0_rk) return
+      associate (flow => pack(x, eq%is_flow), at_first => eq%layout%at_flow(1_ik))
+         largest = max(maxval(abs(flow)), maxval(aperture*eq%condensed%length)/eq%unit)
+         unsolved = report%error_bound/report%condition*report%stress_scale
+         error = unknown_flow(eq%slopes, at_first, flows_in_loops(eq%layout%n_cells, &
+                                                                  eq%connections, eq%joints), &
+                              unsolved)/largest
+      end associate
+   end function loop_flow_error
 
    !> A joint, which holds no fluid that could become vapour, would have a pressure below that of
    !! vapour: only a well can draw it so low.

@@ -50,7 +50,8 @@ module coarse_state
       logical :: converged = .false.
       real(rk) :: contact_residual = 0.0_rk  !< relative to the largest traction [-]
       real(rk) :: condition = 0.0_rk  !< of the last Newton matrix, estimated; 0 without one [-]
-      real(rk) :: error_bound = 0.0_rk  !< of the relative error of its solution [-]
+      real(rk) :: error_bound = 0.0_rk  !< of the relative error of its jumps and pressures [-]
+      real(rk) :: loop_flow_error = 0.0_rk  !< of flows round loops of fractures, relative [-]
       real(rk) :: stress_scale = 0.0_rk  !< [Pa]
       real(rk) :: mass_error = 0.0_rk  !< [m2]
       real(rk) :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]

@@ -259,7 +259,7 @@ module output_columns
       column_t("condition_estimate", "-", with_fractures, &
                "Largest estimated condition number of the Newton matrices"), &
       column_t("forward_error_bound", "-", with_fractures, &
-               "Largest bound of the relative error of their solutions"), &
+               "Largest bound of the relative error of their jumps and pressures"), &
       column_t("smallest_angle_deg", "degree", without_fluid, &
                "Smallest angle of the triangles of all meshes"), &
       column_t("energy_error_relative", "-", with_error, &

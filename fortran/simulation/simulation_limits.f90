@@ -10,7 +10,8 @@ module simulation_limits
    public :: verdict_fine, verdict_stop, verdict_warning
    public :: limit_angle, limit_aperture, limit_contact, limit_forward_error, limit_jump
    public :: limit_keq, limit_k_error, limit_k_methods, limit_mass, limit_pressure_load
- public :: limit_k_to_grow, limit_layering, limit_pressure_stiffness, limit_strain, limit_time_error
+   public :: limit_k_to_grow, limit_layering, limit_loop_flow, limit_pressure_stiffness
+   public :: limit_strain, limit_time_error
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -34,7 +35,7 @@ module simulation_limits
                          limit_pressure_load = 7, limit_pressure_stiffness = 8, &
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
                          limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
-                         limit_layering = 15
+                         limit_layering = 15, limit_loop_flow = 16
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -42,7 +43,7 @@ module simulation_limits
    ! The table keeps its own layout.
    !&<
    type(limit_t), parameter :: limits(*) = [ &
-      limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 0.1_rk, &
+      limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 1.0e-3_rk, &
               "Bound of the rounding errors in the solution on the fractures, relative", &
               "look for values of the scene that lie too many decades apart"), &
       limit_t("mass error", "-", with_fluid, 1.0e-8_rk, 1.0e-3_rk, &
@@ -101,7 +102,12 @@ module simulation_limits
               "both; above it flow along is up to a quarter too small, and pressures may leave "// &
               "their bounds by a third", &
               "leave outlines room from fractures and each other (docs/theory.md), so that the "// &
-              "mesh follows them")]
+              "mesh follows them"), &
+      limit_t("flow round loops of fractures", "-", with_fluid, 1.0e-3_rk, never, &
+              "What is not known of it, over the largest flow, or one that exchanges the "// &
+              "fluid of a cell in the step: nothing but pressure differences below their "// &
+              "rounding decides about it", &
+              "such fractures are wide for the equations: shorter steps help, smaller apertures")]
    !&>
 
 contains

@@ -56,6 +56,9 @@ contains
       integer(ik), intent(in) :: tip  !< the doubtful one
       character(len=:), allocatable, intent(out) :: what
       real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
+      !> Beyond this [%] it is not the edge alone, and a window that differs from the body by the
+      !> edge alone would have nothing that says so.
+      real(rk), parameter :: far_off = 25.0_rk
       logical :: is_finer, takes_body
 
       takes_body = .false.
@@ -82,7 +85,8 @@ contains
             end if
          else
             if (.not. window%can_be_larger(self%scene)) return
-            takes_body = costs_as_body(self, 2.0_rk*window%edge_length(self%scene))
+            takes_body = costs_as_body(self, 2.0_rk*window%edge_length(self%scene)) .and. &
+                         uncertainty(self%tip(tip), self%rules%toughness) < far_off
             if (takes_body) then
                what = "the body as its window"
             else

@@ -6,7 +6,8 @@ module twolevel_limits
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
    use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                                limit_jump, limit_keq, limit_layering, limit_mass, &
+                                limit_jump, limit_keq, limit_layering, limit_loop_flow, &
+                                limit_mass, &
                                 limit_pressure_load, limit_pressure_stiffness, limit_strain
    use simulation_watch, only: worst_place
    use twolevel_scales, only: pressure_scale
@@ -31,6 +32,7 @@ contains
       associate (watch => self%watch, d => self%scene%domain, n => self%mesh%n_cells, &
                  u => self%state%unknowns)
          call watch%see(limit_forward_error, report%error_bound, when)
+         call watch%see(limit_loop_flow, report%loop_flow_error, when)
          ! A body without fractures may keep all its fluid where it is, and nothing has flown that
          ! the error could be compared with but what the pressure would store in the rock.
          lost = mass_error_relative
