@@ -6,7 +6,7 @@ A crack of half-length a under a uniform pressure p in a large body has K_I = p 
 2 pi a^2 p/E' beside what its faces are apart without a load, here w 2 a_0. Its fluid V, with the
 compressibility c, changes by dV + c V dp = Q dt.
 
-Until p = K/sqrt(pi a_0) the length does not change. Then that of cracks at their toughness, V(a) and
+Until p = K/sqrt(pi a_0) the length does not change. Then cracks at their toughness, with V(a) and
 p(a) = K/sqrt(pi a), would need less fluid as they grow: the crack jumps, without time for the well,
 to the next length at which the balance holds, and goes on from there.
 """
