@@ -30,6 +30,7 @@ module twolevel_windows
       integer(ik), allocatable :: window_of(:)  !< (tips)
       type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
       real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
+      logical, allocatable :: was_free(:, :)  !< (tips, windows) it had not joined anything then
    contains
       procedure :: begin
       procedure :: evaluate
@@ -59,6 +60,7 @@ contains
       allocate (self%window(n_windows), self%window_of(size(tips)))
       allocate (self%tip(size(tips)))
       allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
+      allocate (self%was_free(size(tips), n_windows), source=.true.)
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
       do i = 1, size(tips, kind=ik)
          self%window_of(i) = merge(1_ik, i, is_body)
@@ -115,6 +117,7 @@ contains
                end if
                self%built(w) = .true.
                self%projected(w) = .false.
+               self%was_free(:, w) = tips%is_free
                do i = 1, size(tips, kind=ik)
                   self%built_for(:, i, w) = tips(i)%xy
                end do
@@ -217,7 +220,9 @@ contains
          do k = 1, size(window%serves, kind=ik)
             apart = min(apart, norm2(tip%xy - tips(window%serves(k))%xy))
          end do
-         has_moved = any(window%serves == i) .or. moved > noticeable*apart
+         ! The last stretch to a joint, there or back, is short but not small.
+         has_moved = any(window%serves == i) .or. moved > noticeable*apart .or. &
+                     (tip%is_free .neqv. self%was_free(i, w))
       end associate
    end function has_moved
 
