@@ -122,7 +122,7 @@ contains
          all = reshape(rhs, [size(rhs)])
          b = all(:self%coupling%n_bulk)
          call solve_rock(self, b, error)
-         call self%coupling%forces(b, 0.0_rk*g, g)
+         call self%coupling%forces(b, spread(0.0_rk, 1, size(g)), g)
          associate (own => all(self%at_fractures:))
             call turn_to_normals(self, own)
             g = own - g

@@ -30,6 +30,7 @@ module coarse_fractures
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
+      real(rk) :: damping = 0.0_rk  !< eta of radiation damping [Pa s/m]
       !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
    end type newton_settings_t

@@ -12,6 +12,7 @@ module coarse_model
    use base_tolerances, only: same_time
    use coarse_condensed, only: condensed_t
    use contact_states, only: state_stick
+   use coarse_damping, only: dampers, jumps_of
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fractures, only: newton_settings_t
@@ -60,6 +61,7 @@ module coarse_model
       procedure :: set_mesh
       procedure :: equilibrate
       procedure :: advance
+      procedure, private :: is_damped
    end type coarse_model_t
 
 contains
@@ -88,6 +90,7 @@ contains
                                            mobility=self%rock%mobility, &
                                            compressibility=fluid%compressibility, &
                                            vapour_pressure=fluid%vapour_pressure, &
+                                           damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
@@ -286,7 +289,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: rhs(:, :), g(:), q(:)
+      real(rk), allocatable :: rhs(:, :), g(:), q(:), spring(:)
       type(state_t) :: before
       integer(ik) :: n
 
@@ -298,7 +301,9 @@ contains
          if (allocated(error)) return
       end if
       if (n > 0) then
-         call self%condensed%support(tip_springs(self%ends, self%rock, self%condensed))
+         spring = tip_springs(self%ends, self%rock, self%condensed)
+         if (self%is_damped()) spring = spring + dampers(self%condensed, self%settings%damping/dt)
+         call self%condensed%support(spring)
          call place_tips(self%ends, self%condensed%length, self%cells)
          if (allocated(self%rock_resistance)) then
             self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
@@ -318,6 +323,9 @@ contains
       call self%condensed%condense(rhs, g, error)
       call timers%stop(phase_solve)
       if (allocated(error)) return
+      if (n > 0 .and. self%is_damped()) then
+      g = g + dampers(self%condensed, self%settings%damping/dt)*jumps_of(self%condensed, state%jump)
+      end if
 
       before = state
       report%converged = .true.
@@ -345,6 +353,13 @@ contains
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
    end subroutine advance_as_is
+
+   !> Fast slip radiates energy. Not in the initial state, which takes no time.
+   pure logical function is_damped(self)
+      class(coarse_model_t), intent(in) :: self
+
+      is_damped = self%settings%damping > 0.0_rk .and. .not. self%settings%equilibrate
+   end function is_damped
 
    !> The flow of wells that was an unknown is one of the sources of the step.
    subroutine feed(self, flow)

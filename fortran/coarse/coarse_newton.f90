@@ -173,8 +173,9 @@ contains
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
                             /(dt*condensed%length(i))
       end do
-      if (allocated(state%slip_path)) state%slip_path = state%slip_path &
-                                                        + abs(state%jump(2, :, :) - state%slip_before)
+      if (allocated(state%slip_path)) then
+         state%slip_path = state%slip_path + abs(state%jump(2, :, :) - state%slip_before)
+      end if
       state%traction = eq%traction
       state%aperture = aperture
       state%pressure = fluid%pressure

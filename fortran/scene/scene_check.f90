@@ -137,6 +137,12 @@ contains
          return
       end if
       if (.not. scene%has_fluid()) return
+      if (scene%material%radiation_damping > 0.0_rk) then
+         call refuse(error, sheet, sheet%find("material"), "radiation_damping", "is "// &
+                    real_text(scene%material%radiation_damping)//" but must be left out beside "// &
+                     "stress intensity factors and growth: windows are at rest")
+         return
+      end if
       if (scene%discretization%window_is_body) return
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
       if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius

@@ -25,6 +25,7 @@ contains
       call exchange_permeability(record, material, reading)
       call exchange(record, "density", material%density, reading, nothing=0.0_rk)
       call exchange(record, "toughness", material%toughness, reading, nothing=huge(1.0_rk))
+      call exchange(record, "radiation_damping", material%radiation_damping, reading)
       plane = merge("stress", "strain", material%plane_stress)
       call exchange(record, "plane", plane, reading)
       material%plane_stress = plane == "stress"

@@ -212,6 +212,10 @@ module scene_parameters
                   meaning="Component xy of the permeability tensor"), &
       parameter_t("material", "density", unit="kg/m3", range=positive, absent="no weight", &
                   scenes=in_mechanics, meaning="Density of the rock, for gravity"), &
+      parameter_t("material", "radiation_damping", unit="Pa s/m", default="0.0", &
+                  range=at_least_zero, scenes=in_fluid, &
+                  meaning="Shear traction that slip radiates per velocity: G/(2 c_s), with the "// &
+                  "velocity of shear waves c_s; unstable slip lasts by it. Not with intensities"), &
       parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, &
                   absent="unlimited", range=positive, &
                   meaning="Fracture toughness K_IC"), &

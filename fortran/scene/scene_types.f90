@@ -33,6 +33,7 @@ module scene_types
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
       real(rk) :: density = 0.0_rk  !< [kg/m3]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
+      real(rk) :: radiation_damping = 0.0_rk  !< eta = G/(2 c_s) [Pa s/m]
       logical :: plane_stress = .false.
       character(len=name_length) :: storage = "thesis"  !< (alpha - phi)/K_dr; or "textbook"
    end type material_t

@@ -112,7 +112,9 @@ contains
 
    !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
    !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that
-   !! were on their way and at their toughness before the step: one mesh may throw them back.
+   !! were on their way and at their toughness before the step: one mesh may throw them back. Nor
+   !! those that lack no more than the first of their kind does: a first piece, which kinks, may throw
+   !! all of them back.
    subroutine part_company(self, before, wants, kind, any_parted)
       class(two_levels_t), intent(inout) :: self
       type(tip_t), intent(in) :: before(:)  !< the tips before the step
@@ -120,11 +122,15 @@ contains
       integer(ik), intent(inout) :: kind(:)  !< of each tip, from 1
       logical, intent(out) :: any_parted
       logical :: lags(size(kind))
+      real(rk) :: first(size(kind))
       integer(ik) :: i
 
+      first = [(min(0.0_rk, maxval(self%tip%drive%intensity/self%rules%toughness - 1.0_rk, &
+                                   mask=kind == kind(i))), i=1, size(kind))]
       associate (segment => self%segment)
          lags = (wants .or. (segment%is_open .and. segment%reached > segment%lowest())) .and. &
-                lacks(self%tip) .and. (lacks(before) .or. .not. segment%gain > 0.0_rk)
+                lacks(self%tip, first) .and. &
+                (lacks(before, 0.0_rk) .or. .not. segment%gain > 0.0_rk)
       end associate
       any_parted = .false.
       do i = 1, size(kind, kind=ik)
@@ -137,11 +143,12 @@ contains
 
    contains
 
-      pure elemental logical function lacks(tip)
+      pure elemental logical function lacks(tip, first)
          type(tip_t), intent(in) :: tip
+         real(rk), intent(in) :: first  !< what that of its kind lacks, as an excess [-]
 
          associate (k => tip%intensity, toughness => self%rules%toughness)
-            lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk, &
+            lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk - first, &
                                 max(k%k1_error, k%k2_error)/toughness)
          end associate
       end function lacks

@@ -13,7 +13,9 @@ program test_contact_law
    type(contact_law_t), parameter :: smooth = contact_law_t(friction=0.0_rk, dilation=0.0_rk)
    type(contact_law_t), parameter :: smooth_dilating = &
                                      contact_law_t(friction=0.0_rk, dilation=0.1_rk)
-   type(contact_law_t), parameter :: tied = contact_law_t(friction=0.5_rk, dilation=0.1_rk, bilateral=.true.)
+   type(contact_law_t), parameter :: tied = &
+                                     contact_law_t(friction=0.5_rk, dilation=0.1_rk, &
+                                                   bilateral=.true.)
    !> From 0.6 to 0.2 over 10 um; dilation ends after 3 um.
    type(contact_law_t), parameter :: weakening = &
                                      contact_law_t(friction=0.6_rk, weakening=4.0e4_rk, &
