@@ -5,6 +5,7 @@ module scene_check
    use base_kinds, only: rk
    use base_number, only: integer_text
    use base_tolerances, only: round_off
+   use scene_check_column, only: check_column
    use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
@@ -53,6 +54,8 @@ contains
       if (.not. allocated(error)) call check_support(sheet, scene, error)
       if (scene%has_fluid()) then
          if (.not. allocated(error)) call check_times(sheet, scene, error)
+         if (.not. allocated(error)) call check_weight(sheet, scene, error)
+         if (.not. allocated(error)) call check_column(sheet, scene, error)
       else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)

@@ -33,7 +33,7 @@ module twolevel_state
    implicit none(type, external)
    private
 
-   public :: coarse_spec, two_levels_t
+   public :: cell_heights, coarse_spec, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -84,6 +84,9 @@ module twolevel_state
       procedure :: errs
       procedure :: book_step
       procedure :: well_pressure
+      procedure :: rock_pressure
+      procedure :: fracture_pressure
+      procedure :: joint_pressure
       procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
@@ -265,7 +268,7 @@ contains
       logical :: between(size(self%share, 2))
       integer(ik) :: w
 
-      pressure = self%state%pressure
+      pressure = self%fracture_pressure()
       between = between_cells(self%scene%injections, self%share)
       do w = 1, size(between, kind=ik)
          if (.not. between(w)) cycle
@@ -278,8 +281,50 @@ contains
          end associate
       end do
       well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
-                                    self%state%joint_pressure)
+                                    self%joint_pressure())
    end function well_pressure
+
+   !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
+   pure function rock_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(self%mesh%n_cells)
+
+      pressure = self%state%unknowns(3, :self%mesh%n_cells)
+      if (allocated(self%model%in_situ)) then
+         pressure = pressure + self%model%in_situ%pressure_at(cell_heights(self%mesh))
+      end if
+   end function rock_pressure
+
+   !> The whole pressure in the fracture cells [Pa].
+   pure function fracture_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%pressure))
+
+      pressure = self%state%pressure
+      if (allocated(self%model%cells%pressure_in_situ)) then
+         pressure = pressure + self%model%cells%pressure_in_situ
+      end if
+   end function fracture_pressure
+
+   !> The whole pressure in the joints [Pa].
+   pure function joint_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%joint_pressure))
+
+      pressure = self%state%joint_pressure
+      if (allocated(self%model%joints%pressure_in_situ)) then
+         pressure = pressure + self%model%joints%pressure_in_situ
+      end if
+   end function joint_pressure
+
+   !> Where the middles of the cells are above y = 0 [m].
+   pure function cell_heights(mesh) result(y)
+      type(mesh_t), intent(in) :: mesh
+      real(rk) :: y(mesh%n_cells)
+      integer(ik) :: c
+
+      y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
+   end function cell_heights
 
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
