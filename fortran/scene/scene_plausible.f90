@@ -106,7 +106,7 @@ module scene_plausible
               "pressure or another y_datum"), &
       doubt_t("initial", "pressure", "Pa", &
               "above the smallest compression in situ somewhere", &
-              "fractures across it are open from the start")]
+              "fractures across that compression are open from the start")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
@@ -240,7 +240,7 @@ contains
             tension(i) = 0.5_rk*(stress(1) + stress(2)) &
                          + hypot(0.5_rk*(stress(1) - stress(2)), stress(3))
          end do
-         call add(list, fluid%density > 0.0_rk .and. .not. within(fluid%density, 1.0_rk, 3.0e3_rk), &
+        call add(list, fluid%density > 0.0_rk .and. .not. within(fluid%density, 1.0_rk, 3.0e3_rk), &
                   of_fluid_density, fluid%density)
          call add(list, any(abs(gravity) > 0.0_rk) .and. .not. fluid%density > 0.0_rk, &
                   of_weightless, fluid%density)

@@ -100,7 +100,7 @@ contains
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: lowest  !< pressure that the fluid bears [Pa]
       type(fine_loads_t), intent(inout) :: loads
-      real(rk), intent(in), optional :: in_situ(:)  !< (faces) what the state's pressures add to [Pa]
+      real(rk), intent(in), optional :: in_situ(:)  !< (faces) what pressures add to [Pa]
       integer(ik) :: i, k
 
       loads%fluid_pressure = self%pressure%on_faces(state%pressure, lowest, in_situ)

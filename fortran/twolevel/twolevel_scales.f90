@@ -11,8 +11,8 @@ module twolevel_scales
 contains
 
    !> The largest pressure that can be expected in a scene: that of its loads or of its state before
-   !! them, stress in situ included, and with growth what opens the longest fracture against its toughness [Pa]; 0 if it has
-   !! none of these.
+   !! them, stress in situ included, and with growth what opens the longest fracture against its
+   !! toughness [Pa]; 0 if it has none of these.
    pure real(rk) function pressure_scale(scene) result(scale)
       type(scene_t), intent(in) :: scene
       real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
