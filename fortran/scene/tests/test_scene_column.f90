@@ -45,8 +45,8 @@ contains
 
    !> One of the good lines is another one.
    subroutine check_faults()
-      call refuse(6, "", ":8: &in_situ: syy_per_y is 25000.0 but must carry the weight: density "// &
-                  "times gravity asks for 0.0 Pa/m"//doc)
+      call refuse(6, "", ":8: &in_situ: syy_per_y is 25000.0 but must carry the weight: "// &
+                  "density times gravity asks for 0.0 Pa/m"//doc)
       call refuse(8, "  syy_per_y=2e4 /", ":8: &in_situ: syy_per_y is 20000.0 but must carry "// &
                   "the weight: density times gravity asks for 25000.0 Pa/m"//doc)
       call refuse(8, "  syy_per_y=-2.5e4 /", ":8: &in_situ: syy_per_y is -25000.0 but must "// &
@@ -61,8 +61,8 @@ contains
       call refuse(7, "&in_situ sxx_per_x=1.7e4", ":7: &in_situ: unknown name sxx_per_x, the "// &
                   "nearest is sxx_per_y"//doc)
       call put_changed(path, good, 3, "  density=99 /", 8, "  syy_per_y=990 /")
-      call expect(":3: &material: density is 99.0 but must be at least that of the fluid in its "// &
-                  "pores, porosity times density of &fluid: 100.0"//doc)
+      call expect(":3: &material: density is 99.0 but must be at least that of the fluid in "// &
+                  "its pores, porosity times density of &fluid: 100.0"//doc)
       call check_weightless()
    end subroutine check_faults
 

@@ -249,7 +249,7 @@ contains
       call expect(s, "&initial: pressure is 1.798e7 Pa: fractures", "pressure above the stress")
       s%in_situ%stress(3) = 1.0e6_rk
       s%initial%pressure = 7.9e6_rk
-      call expect(s, "&initial: pressure is 1.788e7 Pa: fractures", "above the principal stress", .true.)
+      call expect(s, "&initial: pressure is 1.788e7 Pa: fractures", "a principal stress", .true.)
    end subroutine test_column
 
 end program test_scene_plausible

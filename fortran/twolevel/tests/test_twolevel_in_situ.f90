@@ -40,8 +40,8 @@ contains
    end function undrained_pressure
 
    !> Rock that tractions press, undrained, and rock that was so pressed in situ, at the pressure
-   !! that this makes: one fracture near a side, which its window reaches, slips at the start and under
-   !! injection. All but the displacements, which count from another state, is the same.
+   !! that this makes: one fracture near a side, which its window reaches, slips at the start and
+   !! under injection. All but the displacements, which count from another state, is the same.
    subroutine check_twins(is_sparse)
       logical, intent(in) :: is_sparse
       type(scene_t) :: scene
