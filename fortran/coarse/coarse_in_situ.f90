@@ -20,7 +20,7 @@ module coarse_in_situ
    implicit none(type, external)
    private
 
-   public :: find_in_situ, in_situ_state_t, weight
+   public :: find_in_situ, in_situ_state_t, weight_of_scene
 
    !> Where pressures and stresses count from.
    type :: in_situ_state_t
@@ -69,13 +69,13 @@ contains
 
    !> The weight of the rock with what fills its pores [N/m3]. A stress in situ that changes with y
    !! carries it, so it is what that says: the scene's numbers may be rounded.
-   pure function weight(scene)
+   pure function weight_of_scene(scene) result(weight)
       type(scene_t), intent(in) :: scene
       real(rk) :: weight(2)
 
       weight = scene%material%density*scene%gravity
       if (any(abs(scene%in_situ%per_y) > 0.0_rk)) weight = [0.0_rk, -scene%in_situ%per_y(2)]
-   end function weight
+   end function weight_of_scene
 
    !> Stress at a height: xx, yy, xy [Pa].
    pure function stress_at(self, y) result(stress)

@@ -17,7 +17,7 @@ module coarse_model
    use coarse_fractures, only: newton_settings_t
    use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
-   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_joints, only: find_joints, joints_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
@@ -27,6 +27,7 @@ module coarse_model
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
+   use coarse_wells, only: wells_t
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
@@ -48,6 +49,7 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       type(joints_t) :: joints  !< where they exchange it otherwise
+      type(wells_t) :: wells  !< whose flow is an unknown; to be kept in step with the mesh likewise
       !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
       !! regions differ [-]
       real(rk), allocatable :: rock_resistance(:)
@@ -55,6 +57,7 @@ module coarse_model
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
+      real(rk), allocatable :: weight(:, :)  !< (2, n_cells) that no stress in situ carries [N/m]
    contains
       procedure :: set_mesh
       procedure :: equilibrate
@@ -118,18 +121,18 @@ contains
 
       self%sides = scene%sides
       call find_in_situ(scene, self%rock%biot, self%in_situ)
-      force = weight(scene)
+      force = weight_of_scene(scene)
       if (allocated(self%in_situ)) then
          self%sides%pressure = self%sides%pressure - self%in_situ%pressure
          force(2) = force(2) + self%in_situ%stress_per_y(2)
          self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
                                          c=1, mesh%fracture%n_cells)]
       end if
+      if (allocated(self%weight)) deallocate (self%weight)
       if (.not. any(abs(force) > 0.0_rk)) return
-      if (allocated(self%source)) deallocate (self%source)
-      allocate (self%source(3, mesh%n_cells), source=0.0_rk)
+      allocate (self%weight(2, mesh%n_cells))
       do c = 1, mesh%n_cells
-         self%source(:2, c) = cell_area(mesh, c)*force
+         self%weight(:, c) = cell_area(mesh, c)*force
       end do
 
    contains
@@ -213,6 +216,7 @@ contains
       real(rk) :: time
       integer(ik), allocatable :: connections(:, :)
       type(joints_t) :: joints
+      type(wells_t) :: wells
 
       time = state%time
       self%settings%equilibrate = .true.
@@ -220,10 +224,13 @@ contains
       self%connections = connections(:, :0)
       joints = self%joints
       self%joints = joints_t()
+      wells = self%wells
+      self%wells = wells_t()
       call self%advance(mesh, dt, state, timers, report, error)
       self%settings%equilibrate = .false.
       self%connections = connections
       self%joints = joints
+      self%wells = wells
       state%time = time
       if (report%converged) call rest_fluid(self, state)
    end subroutine equilibrate
@@ -265,6 +272,9 @@ contains
          rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
          rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*self%source(3, :)
       end if
+      if (allocated(self%weight)) then
+         rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%weight
+      end if
       call timers%stop(phase_assemble)
       call timers%start(phase_solve)
       call self%condensed%condense(rhs, g, error)
@@ -280,10 +290,11 @@ contains
       if (n > 0) then
          call timers%start(phase_contact)
          call solve_fractures(self%condensed, self%factors, self%guess, self%cells, &
-                              self%connections, self%joints, self%settings, dt, g, state, q, &
-                              report)
+                              self%connections, self%joints, self%wells, self%settings, dt, g, &
+                              state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
+         if (self%wells%n > 0) call feed(self, state%well_flow)
       end if
       call timers%start(phase_solve)
       call self%condensed%expand(q, rhs, state%unknowns, error)
@@ -300,6 +311,16 @@ contains
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
    end subroutine advance
+
+   !> The flow of wells that was an unknown is one of the sources of the step.
+   subroutine feed(self, flow)
+      class(coarse_model_t), intent(inout) :: self
+      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+
+      self%cells%injection = self%cells%injection + matmul(self%wells%share, flow)
+      if (self%joints%n > 0) self%joints%injection = self%joints%injection &
+                                                     + matmul(self%wells%joint_share, flow)
+   end subroutine feed
 
    !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
    !! in.

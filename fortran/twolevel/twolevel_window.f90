@@ -9,7 +9,7 @@ module twolevel_window
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use contact_law, only: contact_law_t, is_same
-   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
@@ -152,7 +152,7 @@ contains
 
       rock = new_rock(scene%material, scene%fluid)
       call find_in_situ(scene, rock%biot, in_situ)
-      self%loads%body_force = weight(scene)
+      self%loads%body_force = weight_of_scene(scene)
       if (.not. allocated(in_situ)) return
       associate (fine => self%model%mesh)
          call set_in_situ_stress(fine, in_situ%stress, in_situ%stress_per_y, in_situ%y_datum, &

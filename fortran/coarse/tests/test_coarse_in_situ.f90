@@ -5,7 +5,7 @@ program test_coarse_in_situ
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_law_t
@@ -57,7 +57,7 @@ contains
       scene%material%density = 2000.0_rk
       call find_in_situ(scene, 0.5_rk, state)
       call checks%is_true(.not. allocated(state), "weight of the rock alone is a load")
-      call checks%is_close(maxval(abs(weight(scene) - [0.0_rk, -2000.0_rk*g])), 0.0_rk, 0.0_rk, &
+call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2000.0_rk*g])), 0.0_rk, 0.0_rk, &
                            "weight")
       scene%fluid%density = 1000.0_rk
       scene%in_situ%y_datum = 10.0_rk
@@ -81,7 +81,7 @@ contains
       call checks%is_close(maxval(abs(traction - [1.0_rk, 2.0_rk])), 0.0_rk, 0.0_rk, &
                            "tractions beside the stress in situ")
       scene%in_situ%per_y(2) = 2499.0_rk*g  ! rounded by the user
-      call checks%is_close(maxval(abs(weight(scene) - [0.0_rk, -2499.0_rk*g])), 0.0_rk, 0.0_rk, &
+call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])), 0.0_rk, 0.0_rk, &
                            "the weight is what the stress in situ carries")
    end subroutine check_states
 

@@ -57,7 +57,7 @@ contains
       scene%probes = [probe_t(name="p", x=0.7_rk, y=0.4_rk)]
       if (is_sparse) scene%discretization%condensation = "sparse"
       call add_fracture(scene, "f", [1.6_rk, 1.85_rk], [1.1_rk, 1.3_rk], 0.4_rk, 0.02_rk)
-      scene%injections = [injection_t(fracture=1, rate=2.0e-8_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[2.0e-8_rk])]
       call evaluate_initial_state(scene, loaded, timers, error)
       call checks%no_error(error, "tractions")
       scene%initial%pressure = undrained_pressure(scene, -15.0e6_rk)
@@ -201,7 +201,7 @@ contains
       scene%initial%pressure = 200.0e6_rk
       modulus = scene%material%young/(1.0_rk - scene%material%poisson**2)
       call add_fracture(scene, "f", [0.0_rk, 0.0_rk], [-a, a], 0.5_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=1, rate=2.0_rk*pi*a**2*net/modulus/60.0_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[2.0_rk*pi*a**2*net/modulus/60.0_rk])]
       call evaluate_initial_state(scene, simulation, timers, error)
       call checks%no_error(error, "a crack in a gradient")
       call advance(simulation)
