@@ -389,7 +389,7 @@ contains
       end if
    end function joint_pressure
 
-   !> The pressure in situ at a well: at its point, or in the mean of the fracture that it feeds [Pa].
+   !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
    pure real(rk) function well_in_situ(self, well) result(pressure)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: well  !< of the scene
