@@ -1,8 +1,9 @@
-"""Pressure and settlement of a column that drains at its top, whose load and whose pressure there rise at once.
+"""Pressure and settlement of a column whose load and pressure at its top rise at once.
 
-One-dimensional consolidation (Terzaghi 1923; Wang 2000, section 6.5.1 for the loading efficiency) with the factor of backward Euler,
-(1 + M**2 dT)**-n for exp(-M**2 T): the error in time is left out, which is that of the terzaghi case. Written without the
-solver: python make_reference.py >reference.csv prints pressures over the load, and the settlement of the top to stderr.
+One-dimensional consolidation (Terzaghi 1923; Wang 2000, section 6.5, loading efficiency) with the
+factor of backward Euler, (1 + M**2 dT)**-n for exp(-M**2 T): the error in time is left out, which
+the terzaghi case has. Written without the solver: python make_reference.py >reference.csv prints
+pressures over the load, and the settlement of the top to stderr.
 """
 
 import math
@@ -28,12 +29,19 @@ def decay(k: int) -> float:
 
 def pressure(depth: float) -> float:
     """Pressure beyond the hydrostatic one over the load; depth over the height from the top."""
-    terms = (2.0 / m * math.sin(m * depth) * decay(k) for k in range(400) for m in [(2 * k + 1) * math.pi / 2.0])
+    terms = (
+        2.0 / m * math.sin(m * depth) * decay(k)
+        for k in range(400)
+        for m in [(2 * k + 1) * math.pi / 2.0]
+    )
     return 1.0 - (1.0 - efficiency) * math.fsum(terms)
 
 
-mean = 1.0 - (1.0 - efficiency) * math.fsum(2.0 / ((2 * k + 1) * math.pi / 2.0) ** 2 * decay(k) for k in range(400))
-sys.stderr.write(f"efficiency {efficiency!r}, dT {dt!r}, settlement {LOAD * HEIGHT * (BIOT * mean - 1.0) / oedometric!r} m\n")
+mean = 1.0 - (1.0 - efficiency) * math.fsum(
+    2.0 / ((2 * k + 1) * math.pi / 2.0) ** 2 * decay(k) for k in range(400)
+)
+settlement = LOAD * HEIGHT * (BIOT * mean - 1.0) / oedometric
+sys.stderr.write(f"efficiency {efficiency!r}, dT {dt!r}, settlement {settlement!r} m\n")
 print("z_over_h,pressure")
 for tenth in range(0, 11, 2):
     print(f"{tenth / 10},{pressure(tenth / 10)!r}")
