@@ -52,6 +52,7 @@ module coarse_fractures
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
       real(rk) :: unit = 0.0_rk  !< fluid volumes are divided by it [m2/Pa]
+      real(rk), allocatable :: lowest(:)  !< (n) pressure that the fluid bears, as x counts it [Pa]
       real(rk) :: load_stress = 0.0_rk  !< traction of the faces without jumps and fluid [Pa]
       real(rk), allocatable :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
@@ -120,6 +121,8 @@ contains
       eq%dt = dt
       eq%stiffness = settings%young/reference
       eq%unit = reference**2/settings%young
+      allocate (eq%lowest(n), source=settings%vapour_pressure)
+      if (allocated(cells%pressure_in_situ)) eq%lowest = eq%lowest - cells%pressure_in_situ
       eq%load_stress = stress_without_jumps(condensed, g)
       eq%state = reshape(before%contact, [2*n])
       n_all = eq%layout%count()
@@ -334,26 +337,27 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       integer(ik), intent(in) :: cell
 
-      associate (settings => self%settings)
+      associate (lowest => self%lowest(cell))
          fluid%pressure = x(self%layout%at_pressure(cell))
-         if (.not. fluid%pressure < settings%vapour_pressure) return
-         if (.not. settings%equilibrate) then
+         if (.not. fluid%pressure < lowest) return
+         if (.not. self%settings%equilibrate) then
             fluid%void_slope = -1.0_rk/self%stiffness
-            fluid%void = (fluid%pressure - settings%vapour_pressure)*fluid%void_slope
+            fluid%void = (fluid%pressure - lowest)*fluid%void_slope
          end if
-         fluid%pressure = settings%vapour_pressure
+         fluid%pressure = lowest
          fluid%pressure_slope = 0.0_rk
       end associate
    end function fluid_at
 
    !> The unknown that says so.
-   pure real(rk) function unknown_of_fluid(self, pressure, void) result(unknown)
+   pure real(rk) function unknown_of_fluid(self, cell, pressure, void) result(unknown)
       class(fracture_system_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
       real(rk), intent(in) :: pressure  !< [Pa]
       real(rk), intent(in) :: void  !< [m]
 
       unknown = pressure
-      if (void > 0.0_rk) unknown = self%settings%vapour_pressure - void*self%stiffness
+      if (void > 0.0_rk) unknown = self%lowest(cell) - void*self%stiffness
    end function unknown_of_fluid
 
 end module coarse_fractures

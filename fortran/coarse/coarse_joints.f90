@@ -25,6 +25,8 @@ module coarse_joints
       integer(ik), allocatable :: point(:)  !< (n) fracture point
       logical, allocatable :: is_outlet(:)  !< (n) its pressure is that of the side
       real(rk), allocatable :: side_pressure(:)  !< (n) of outlets [Pa]
+      !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
+      real(rk), allocatable :: pressure_in_situ(:)
       real(rk), allocatable :: injection(:)  !< (n) Q into the joint now [m2/s]
       type(lists_t) :: branches  !< (n lists) numbers of the branches of each
       integer(ik), allocatable :: cell(:)  !< (branches) fracture cell

@@ -12,6 +12,7 @@ module coarse_matrix
    use coarse_diffusion, only: find_flux_stencil
    use coarse_elimination, only: response_t, share_t
    use coarse_geometry, only: cell_area
+   use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component
    use coarse_regions, only: find_regions, regions_t
    use coarse_rock, only: rock_t
@@ -66,13 +67,14 @@ contains
    end function elastic_forces
 
    !> Discretize Biot's equations on the mesh: responses in the regions and the global matrix.
-   subroutine discretize(mesh, rock, sides, regions, matrix, error)
+   subroutine discretize(mesh, rock, sides, regions, matrix, error, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(out) :: regions
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
+      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
       type(response_t) :: flux, traction
       type(share_t) :: elastic, flow
       integer(ik) :: c, info, r
@@ -80,7 +82,7 @@ contains
       call find_regions(mesh, regions)
       call find_pattern(mesh, regions, matrix)
       do r = 1, regions%n_regions
-         call find_stress_stencil(mesh, rock, sides, regions, r, traction, elastic, info)
+         call find_stress_stencil(mesh, rock, sides, regions, r, traction, elastic, info, in_situ)
          if (info == 0) call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, &
                                                sides%pressure, regions, r, flux, flow, info)
          if (info /= 0) then

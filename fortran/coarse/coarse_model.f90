@@ -16,7 +16,9 @@ module coarse_model
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fractures, only: newton_settings_t
+   use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_joints, only: find_joints, joints_t
    use coarse_matrix, only: discretize, matrix_t
    use coarse_newton, only: solve_fractures
@@ -38,7 +40,8 @@ module coarse_model
    !> Everything that belongs to one mesh.
    type :: coarse_model_t
       type(rock_t) :: rock
-      type(boundary_side_t) :: sides(4)
+      type(boundary_side_t) :: sides(4)  !< pressures beyond those in situ
+      type(in_situ_state_t), allocatable :: in_situ  !< beyond which pressures and stresses count
       type(regions_t) :: regions
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
@@ -57,6 +60,7 @@ module coarse_model
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
+      real(rk), allocatable :: weight(:, :)  !< (2, n_cells) that no stress in situ carries [N/m]
    contains
       procedure :: set_mesh
       procedure :: equilibrate
@@ -81,7 +85,7 @@ contains
          call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, self%rock)
          self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
       end if
-      self%sides = scene%sides
+      call place_in_situ(self, mesh, scene)
       self%drained = any(scene%sides%pressure_given)
       associate (choice => scene%discretization, fluid => scene%fluid)
          self%settings = newton_settings_t(tolerance=choice%newton_tolerance, &
@@ -93,10 +97,14 @@ contains
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
       end associate
-      call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error)
+      call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
       if (.not. allocated(error)) then
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
+         if (allocated(self%in_situ)) then
+            self%joints%pressure_in_situ = &
+               self%in_situ%pressure_at(mesh%fracture%point_xy(2, self%joints%point))
+         end if
       end if
       self%ends = free_ends(mesh%fracture)
       call self%condensed%solver%release()
@@ -107,6 +115,43 @@ contains
       self%condensed%dt = -1.0_rk
       call timers%stop(phase_discretize)
    end subroutine set_mesh
+
+   !> The state in situ of a scene that has one, and the weight that it does not carry.
+   subroutine place_in_situ(self, mesh, scene)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      real(rk) :: force(2)  ! [N/m3]
+      integer(ik) :: c
+
+      self%sides = scene%sides
+      call find_in_situ(scene, self%rock%biot, self%in_situ)
+      force = weight_of_scene(scene)
+      if (allocated(self%in_situ)) then
+         self%sides%pressure = self%sides%pressure - self%in_situ%pressure
+         force(2) = force(2) + self%in_situ%stress_per_y(2)
+         self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
+                                         c=1, mesh%fracture%n_cells)]
+      end if
+      if (allocated(self%weight)) deallocate (self%weight)
+      if (.not. any(abs(force) > 0.0_rk)) return
+      allocate (self%weight(2, mesh%n_cells))
+      do c = 1, mesh%n_cells
+         self%weight(:, c) = cell_area(mesh, c)*force
+      end do
+
+   contains
+
+      !> Of a fracture cell [m].
+      pure real(rk) function middle_height(cell)
+         integer(ik), intent(in) :: cell
+
+         associate (points => mesh%fracture%cell_points(:, cell))
+            middle_height = 0.5_rk*sum(mesh%fracture%point_xy(2, points))
+         end associate
+      end function middle_height
+
+   end subroutine place_in_situ
 
    !> Whether the rock is condensed onto its fractures as a full matrix: as asked for, or where it
    !! costs less: its elimination grows with the cube of the fracture cells, that of the sparse one
@@ -128,15 +173,18 @@ contains
       type(initial_t), intent(in) :: initial
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(out) :: state
+      real(rk) :: pressure  ! [Pa]
       integer(ik) :: c, n
 
       n = mesh%fracture%n_cells
+      pressure = initial%pressure
+      if (allocated(model%in_situ)) pressure = 0.0_rk
       allocate (state%unknowns(3, model%regions%n_blocks), source=0.0_rk)
-      state%unknowns(3, :) = initial%pressure
+      state%unknowns(3, :) = pressure
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         state%content(c) = initial%pressure*model%rock%storage*model%matrix%storage(c) &
+         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c) &
                             /(model%rock%storage + model%rock%biot**2 &
                               /(model%rock%lame + model%rock%shear))
       end do
@@ -144,7 +192,7 @@ contains
       allocate (state%slip_before(2, n), source=0.0_rk)
       if (any(cells%law%weakening > 0.0_rk)) allocate (state%slip_path(2, n), source=0.0_rk)
       state%unknowns(:2, :) = 0.0_rk
-      allocate (state%pressure(n), source=initial%pressure)
+      allocate (state%pressure(n), source=pressure)
       allocate (state%contact(2, n), source=state_stick)
       allocate (state%void(n), source=0.0_rk)
       state%aperture = cells%residual_aperture
@@ -318,13 +366,21 @@ contains
          rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
          rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*self%source(3, :)
       end if
+      if (allocated(self%weight)) then
+         rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%weight
+      end if
       call timers%stop(phase_assemble)
       call timers%start(phase_solve)
       call self%condensed%condense(rhs, g, error)
       call timers%stop(phase_solve)
       if (allocated(error)) return
       if (n > 0 .and. self%is_damped()) then
-      g = g + dampers(self%condensed, self%settings%damping/dt)*jumps_of(self%condensed, state%jump)
+         g = g + dampers(self%condensed, self%settings%damping/dt) &
+             *jumps_of(self%condensed, state%jump)
+      end if
+      if (allocated(self%in_situ)) then
+         call self%in_situ%add_contact_tractions(mesh%fracture, self%condensed%length, &
+                                                 self%condensed%normal, self%condensed%layout, g)
       end if
 
       before = state

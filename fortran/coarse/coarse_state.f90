@@ -17,6 +17,8 @@ module coarse_state
       !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
+      !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
+      real(rk), allocatable :: pressure_in_situ(:)
    end type fracture_cells_t
 
    !> Unknowns and what is remembered of them.

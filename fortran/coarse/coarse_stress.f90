@@ -22,6 +22,7 @@ module coarse_stress
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
    use coarse_geometry, only: corner_geometry, face_length
+   use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
    use coarse_regions, only: fracture_end_region, regions_t, traction_face
    use coarse_rock, only: rock_t
@@ -37,7 +38,8 @@ contains
    !> Eliminate the tractions and the rotations of one region.
    !!
    !! `info` is 0, or the local system could not be solved (degenerate cells).
-   subroutine find_stress_stencil(mesh, rock, sides, regions, region, response, share, info)
+   subroutine find_stress_stencil(mesh, rock, sides, regions, region, response, share, info, &
+                                  in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
@@ -46,6 +48,7 @@ contains
       type(response_t), intent(out) :: response  !< tractions x, y [Pa], then rotations [-]
       type(share_t), intent(out) :: share  !< forces [N/m] and contents [m2]
       integer(ik), intent(out) :: info
+      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
       type(local_system_t) :: local
       integer(ik) :: m, n_tractions
 
@@ -55,7 +58,7 @@ contains
       call add_corners(mesh, rock, regions, region, local)
       call add_jumps(mesh, regions, region, local)
       local%rhs(:, :m) = -local%coupling
-      call apply_sides(mesh, sides, regions, region, local)
+      call apply_sides(mesh, sides, regions, region, local, in_situ)
       call eliminate(local, response, share, info)
       if (info /= 0) return
       associate (rotations => response%matrix(n_tractions + 1:, :))
@@ -151,12 +154,14 @@ contains
    end subroutine add_symmetric
 
    !> Outer boundary: a component is either displaced as given or loaded as given.
-   subroutine apply_sides(mesh, sides, regions, region, local)
+   subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
+      type(in_situ_state_t), intent(in), optional :: in_situ
+      real(rk) :: traction(2)
       integer(ik) :: axis, f, j, last, n
 
       last = size(local%rhs, 2)
@@ -164,12 +169,17 @@ contains
          f = regions%faces%at(region, j)
          if (mesh%face_side(f) == 0) cycle
          associate (side => sides(mesh%face_side(f)), half_length => 0.5_rk*face_length(mesh, f))
+            traction = side%traction
+            if (present(in_situ)) then
+               traction = in_situ%side_traction(side%traction, mesh%face_side(f), &
+                                                mesh%xy(2, regions%nodes%at(region, 1_ik)))
+            end if
             do axis = 1, 2
                n = 2*(j - 1) + axis
                if (side%displacement_given(axis)) then
                   local%rhs(n, last) = local%rhs(n, last) + half_length*side%displacement(axis)
                else
-                  call fix_unknown(local, n, side%traction(axis))
+                  call fix_unknown(local, n, traction(axis))
                end if
             end do
          end associate

@@ -29,6 +29,8 @@ module coarse_wells
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
       real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]
+      !> (n_all) in situ, beyond which its pressures count; unallocated: 0 [Pa]
+      real(rk), allocatable :: pressure_in_situ(:)
       ! In the present step:
       integer(ik), allocatable :: control(:)  !< (n_all)
       real(rk), allocatable :: rate(:)  !< (n_all) asked for; negative: extraction [m2/s]

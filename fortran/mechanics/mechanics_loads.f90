@@ -4,6 +4,7 @@ module mechanics_loads
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, fine_boundary_t, &
                             free_boundary, hold_side, nearest_node
+   use fine_in_situ, only: add_in_situ_tractions, set_in_situ_stress
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use mechanics_faces, only: face_pressure
@@ -90,37 +91,15 @@ contains
       end do
    end function body_loads
 
-   !> The stress in situ, and the tractions on the outer boundary that hold it in equilibrium. It is
-   !! linear in y, and so are these along each face: their integrals with the shape functions give
-   !! each end 1/6 of its own traction and the middle 1/3 of both.
+   !> The stress in situ, and the tractions on the outer boundary that hold it in equilibrium.
    pure subroutine add_in_situ(in_situ, fine, loads)
       type(in_situ_t), intent(in) :: in_situ
       type(fine_mesh_t), intent(in) :: fine
       type(fine_loads_t), intent(inout) :: loads
-      real(rk) :: chord(2), share(2, 2)
-      integer(ik) :: face, k, node, nodes(2)
 
       if (.not. (any(abs(in_situ%stress) > 0.0_rk) .or. any(abs(in_situ%per_y) > 0.0_rk))) return
-      loads%initial_stress = spread(in_situ%stress, 2, fine%n_vertices)
-      do node = 1, fine%n_vertices
-         loads%initial_stress(1:2, node) = loads%initial_stress(1:2, node) &
-                                           + in_situ%per_y*(fine%xy(2, node) - in_situ%y_datum)
-      end do
-      do face = 1, size(fine%boundary_sides, kind=ik)
-         nodes = fine%boundary_faces(:, face)
-         ! The body is on the left: the outward normal times the length is the chord turned right.
-         chord = fine%xy(:, nodes(2)) - fine%xy(:, nodes(1))
-         do k = 1, 2
-            associate (stress => loads%initial_stress(:, nodes(k)))
-               share(:, k) = [stress(1)*chord(2) - stress(3)*chord(1), &
-                              stress(3)*chord(2) - stress(2)*chord(1)]/6.0_rk
-            end associate
-            loads%force(:, nodes(k)) = loads%force(:, nodes(k)) + share(:, k)
-         end do
-         associate (middle => fine%boundary_middles(face))
-            loads%force(:, middle) = loads%force(:, middle) + 2.0_rk*sum(share, dim=2)
-         end associate
-      end do
+      call set_in_situ_stress(fine, in_situ%stress, in_situ%per_y, in_situ%y_datum, loads)
+      call add_in_situ_tractions(fine, loads)
    end subroutine add_in_situ
 
 end module mechanics_loads

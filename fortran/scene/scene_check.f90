@@ -5,6 +5,7 @@ module scene_check
    use base_kinds, only: rk
    use base_number, only: integer_text
    use base_tolerances, only: round_off
+   use scene_check_column, only: check_column
    use scene_check_geometry, only: check_domain, check_fractures, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
@@ -52,7 +53,10 @@ contains
       end if
       if (.not. allocated(error)) call check_parts(sheet, scene, error)
       if (.not. allocated(error)) call check_support(sheet, scene, error)
-      if (.not. scene%has_fluid()) then
+      if (scene%has_fluid()) then
+         if (.not. allocated(error)) call check_weight(sheet, scene, error)
+         if (.not. allocated(error)) call check_column(sheet, scene, error)
+      else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)
          if (.not. allocated(error)) call check_restraints(sheet, scene, error)

@@ -158,7 +158,7 @@ contains
          else if (.not. abs(per_y(2) + weight) <= balance*abs(weight)) then
             call refuse(error, sheet, sheet%find("in_situ"), "syy_per_y", "is "// &
                         real_text(per_y(2))//" but must carry the weight: density times "// &
-                        "gravity asks for "//rounded_text(-weight)//" Pa/m")
+                        "gravity asks for "//rounded_text(0.0_rk - weight)//" Pa/m")
          end if
       end associate
    end subroutine check_weight

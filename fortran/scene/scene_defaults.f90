@@ -107,7 +107,9 @@ contains
       integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
       integer :: i
 
-      is_pressed = scene%initial%pressure > 0.0_rk
+      is_pressed = scene%initial%pressure > 0.0_rk .or. scene%fluid%density > 0.0_rk &
+                   .or. any(scene%in_situ%stress(1:2) < 0.0_rk) &
+                   .or. any(abs(scene%in_situ%per_y) > 0.0_rk)
       do i = 1, 4
          associate (side => scene%sides(i))
             is_pressed = is_pressed .or. outward(i)*side%traction(axis(i)) < 0.0_rk &

@@ -210,6 +210,7 @@ contains
       case ("fluid")
          call exchange(record, "compressibility", scene%fluid%compressibility, reading)
          call exchange(record, "viscosity", scene%fluid%viscosity, reading)
+         call exchange(record, "density", scene%fluid%density, reading, nothing=0.0_rk)
          call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, reading, &
                        nothing=-unlimited)
       case ("initial")

@@ -123,14 +123,16 @@ module scene_parameters
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
-      group_t("in_situ", implied=.true., scenes=in_mechanics, &
+      group_t("in_situ", implied=.true., &
               meaning="Stress in the body before the load, in equilibrium with tractions on "// &
-              "its sides, which go on acting, and with gravity where it changes with y. The "// &
-              "load factor does not scale it."), &
-      group_t("gravity", implied=.true., scenes=in_mechanics, &
+              "its sides, which go on acting beside those of &side, and with gravity where it "// &
+              "changes with y. The load factor does not scale it. With a fluid it is the total "// &
+              "stress at the initial pressure."), &
+      group_t("gravity", implied=.true., &
               meaning="Acceleration that gives the rock its weight, density times gravity, "// &
               "which the load factor does not scale. An in-situ stress that changes with y "// &
-              "carries it from the start; without one it loads the body."), &
+              "carries it from the start; without one it loads the body. A fluid with a "// &
+              "density has weight too: its pressure grows with depth from the start."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
               meaning="How the load changes: tractions, point loads and displacements are "// &
               "those of the scene times a factor, which rises, or falls where to is less than "// &
@@ -211,7 +213,7 @@ module scene_parameters
       parameter_t("material", "permeability_xy", unit="m2", absent="0", &
                   meaning="Component xy of the permeability tensor"), &
       parameter_t("material", "density", unit="kg/m3", range=positive, absent="no weight", &
-                  scenes=in_mechanics, meaning="Density of the rock, for gravity"), &
+                  meaning="Density of the rock, with a fluid in its pores, for gravity"), &
       parameter_t("material", "radiation_damping", unit="Pa s/m", default="0.0", &
                   range=at_least_zero, scenes=in_fluid, &
                   meaning="Shear traction that slip radiates per velocity: G/(2 c_s), with the "// &
@@ -229,6 +231,9 @@ module scene_parameters
                   meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
                   meaning="Dynamic viscosity mu"), &
+      parameter_t("fluid", "density", unit="kg/m3", range=positive, absent="no weight", &
+                  meaning="Density of the fluid, for gravity: pressures of &initial and &side "// &
+                  "are then those at y_datum of &in_situ"), &
       parameter_t("fluid", "vapour_pressure", unit="Pa", absent="0, or without loads no limit", &
                   derived=.true., &
                   meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
@@ -338,7 +343,8 @@ module scene_parameters
                   meaning="Traction along the side in the direction that has the body on its "// &
                   "left; as normal_traction"), &
       parameter_t("side", "pressure", unit="Pa", absent="no flow", scenes=in_fluid, &
-                  meaning="Prescribed pore pressure"), &
+                  meaning="Prescribed pore pressure; of a fluid with a density that at y_datum "// &
+                  "of &in_situ"), &
       parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
       parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
       parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &
@@ -359,8 +365,8 @@ module scene_parameters
                   meaning="Volume per time and per metre of thickness, over the whole well; "// &
                   "negative: extraction. One value, or one per stage"), &
       parameter_t("injection", "pressure", kind_reals, "Pa", absent="no limit", &
-                  meaning="Pressure of the well; beside a rate the one that it does not pass: "// &
-                  "the largest in injection, the least in extraction. As rate"), &
+               meaning="Pressure of the well, at its depth; beside a rate the one that it does "// &
+                  "not pass: the largest in injection, the least in extraction. As rate"), &
       parameter_t("injection", "time", kind_reals, "s", range=at_least_zero, &
                   absent="one stage, from start", &
                   meaning="When each stage begins, in rising order"), &
@@ -390,7 +396,8 @@ module scene_parameters
                   meaning="After loading: that of the matrix around the fracture, or what the "// &
                   "load produces in the fracture when nothing has flowed yet"), &
       parameter_t("initial", "pressure", unit="Pa", default="0.0", &
-                  meaning="Pore pressure before the load acts"), &
+                  meaning="Pore pressure before the load acts; of a fluid with a density that "// &
+                  "at y_datum of &in_situ"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
                   meaning="End of the run"), &
       parameter_t("time", "step", unit="s", range=positive, at_most="end", &
@@ -417,7 +424,8 @@ module scene_parameters
                   meaning="Change of stress yy per metre upwards; it must carry the weight: "// &
                   "density times gravity g gives density*g"), &
       parameter_t("in_situ", "y_datum", unit="m", default="0.0", &
-                  meaning="Where stress xx and yy are those given"), &
+                  meaning="Where stress xx and yy are those given, and with a density of the "// &
+                  "fluid all pressures"), &
       parameter_t("gravity", "x", unit="m/s2", default="0.0", meaning="Acceleration in x"), &
       parameter_t("gravity", "y", unit="m/s2", default="0.0", &
                   meaning="Acceleration in y, on earth -9.81"), &

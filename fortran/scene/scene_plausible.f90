@@ -32,7 +32,9 @@ module scene_plausible
                          of_viscosity = 8, of_friction = 9, of_dilation = 10, of_aperture = 11, &
                          of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
                          of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
-                         of_stub = 20, of_anisotropy = 21
+                         of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
+                         of_weightless = 23, of_uniform = 24, of_tension = 25, &
+                         of_dry = 26, of_overpressure = 27
 
    ! The table keeps its own layout.
    !&<
@@ -88,7 +90,23 @@ module scene_plausible
               "other one if that is meant"), &
       doubt_t("material", "anisotropy", "-", "above 10, with &fluid", &
               "where rock conducts so much better one way, pressures may leave their bounds: "// &
-              "by a fifth of their range where it is 100")]
+              "by a fifth of their range where it is 100"), &
+      doubt_t("fluid", "density", "kg/m3", "below 1 or above 3000, if not 0", &
+              "water has 1000 kg/m3"), &
+      doubt_t("fluid", "density", "kg/m3", "0, with &gravity", &
+              "its pressure does not grow with depth then; water has 1000 kg/m3"), &
+      doubt_t("in_situ", "syy_per_y", "Pa/m", "0, with &gravity, beside a stress, with &fluid", &
+              "the weight loads the body beside that stress then; density times gravity "// &
+              "carries it from the start"), &
+      doubt_t("in_situ", "tension", "Pa", "above 0 somewhere in the body, with &fluid", &
+              "rock at depth is compressed, and compression is negative"), &
+      doubt_t("initial", "pressure", "Pa", &
+              "below vapour_pressure somewhere, by the fluid's density", &
+              "there is no water table: fractures there begin with vapour; give a larger "// &
+              "pressure or another y_datum"), &
+      doubt_t("initial", "pressure", "Pa", &
+              "above the smallest compression in situ somewhere", &
+              "fractures across that compression are open from the start")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
@@ -109,6 +127,7 @@ contains
       call doubt_material(scene, has_fluid, list)
       call doubt_fractures(scene%fractures, has_fluid, list)
       if (has_fluid) call doubt_flow(scene, list)
+      if (has_fluid) call doubt_column(scene, list)
       if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
       if (allocated(scene%regions)) call doubt_regions(scene, list)
    end function doubts_of_scene
@@ -201,6 +220,43 @@ contains
          end associate
       end do
    end subroutine doubt_regions
+
+   !> Stress and pressure in situ, at the bottom and the top of the body.
+   pure subroutine doubt_column(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk) :: pressure(2), stress(3), tension(2), y(2)
+      logical :: has_gradient, has_stress
+      integer :: i
+
+      associate (fluid => scene%fluid, given => scene%in_situ, gravity => scene%gravity)
+         has_gradient = any(abs(given%per_y) > 0.0_rk)
+         has_stress = has_gradient .or. any(abs(given%stress) > 0.0_rk)
+         y = [scene%domain%y_min, scene%domain%y_max] - given%y_datum
+         pressure = scene%initial%pressure + fluid%density*gravity(2)*y
+         do i = 1, 2
+            stress = given%stress
+            stress(1:2) = stress(1:2) + given%per_y*y(i)
+            tension(i) = 0.5_rk*(stress(1) + stress(2)) &
+                         + hypot(0.5_rk*(stress(1) - stress(2)), stress(3))
+         end do
+        call add(list, fluid%density > 0.0_rk .and. .not. within(fluid%density, 1.0_rk, 3.0e3_rk), &
+                  of_fluid_density, fluid%density)
+         call add(list, any(abs(gravity) > 0.0_rk) .and. .not. fluid%density > 0.0_rk, &
+                  of_weightless, fluid%density)
+         call add(list, any(abs(gravity) > 0.0_rk) .and. has_stress .and. .not. has_gradient, &
+                  of_uniform, given%per_y(2))
+         call add(list, fluid%density > 0.0_rk .and. &
+                  any(pressure < fluid%vapour_pressure - round_off*maxval(abs(pressure))), of_dry, &
+                  minval(pressure))
+         if (.not. has_stress) return
+         call add(list, any(tension > round_off*maxval(abs(tension))), of_tension, maxval(tension))
+         i = maxloc(pressure + tension, dim=1)
+         call add(list, size(scene%fractures) > 0 .and. pressure(i) > -tension(i) &
+                  + round_off*maxval(abs(tension)) .and. .not. any(tension > 0.0_rk), &
+                  of_overpressure, pressure(i))
+      end associate
+   end subroutine doubt_column
 
    !> What only a scene with a fluid has: the body is a rectangle then.
    pure subroutine doubt_flow(scene, list)

@@ -31,7 +31,7 @@ module scene_types
       real(rk) :: permeability_xx = 0.0_rk  !< [m2]
       real(rk) :: permeability_yy = 0.0_rk  !< [m2]
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
-      real(rk) :: density = 0.0_rk  !< [kg/m3]
+      real(rk) :: density = 0.0_rk  !< with the fluid in its pores [kg/m3]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       real(rk) :: radiation_damping = 0.0_rk  !< eta = G/(2 c_s) [Pa s/m]
       logical :: plane_stress = .false.
@@ -57,6 +57,7 @@ module scene_types
    type :: fluid_t
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
+      real(rk) :: density = 0.0_rk  !< 0: without weight [kg/m3]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure in fractures [Pa]
    end type fluid_t
 
@@ -238,8 +239,8 @@ module scene_types
       type(point_load_t), allocatable :: point_loads(:)
       type(load_t) :: load
       type(adaptive_t) :: adaptive
-      type(in_situ_t) :: in_situ  !< mechanics only
-      real(rk) :: gravity(2) = 0.0_rk  !< acceleration; mechanics only [m/s2]
+      type(in_situ_t) :: in_situ
+      real(rk) :: gravity(2) = 0.0_rk  !< acceleration [m/s2]
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
       type(time_t) :: time

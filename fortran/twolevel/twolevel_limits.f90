@@ -58,13 +58,13 @@ contains
       real(rk) :: pressure, scale, xy(2)
       integer(ik) :: i
 
-      associate (mesh => self%mesh, p => self%state%unknowns(3, :self%mesh%n_cells))
+      associate (mesh => self%mesh, p => self%rock_pressure())
          i = worst_place(abs(p))
          pressure = abs(p(i))
          xy = sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk
       end associate
       if (self%mesh%fracture%n_cells > 0) then
-         associate (p => self%state%pressure)
+         associate (p => self%fracture_pressure())
             i = worst_place(abs(p))
             if (.not. abs(p(i)) <= pressure) then
                pressure = abs(p(i))

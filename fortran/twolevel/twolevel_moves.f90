@@ -113,8 +113,8 @@ contains
    !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
    !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that
    !! were on their way and at their toughness before the step: one mesh may throw them back. Nor
-   !! those that lack no more than the first of their kind does: a first piece, which kinks, may throw
-   !! all of them back.
+   !! those that lack no more than the first of their kind does: a first piece, which kinks, may
+   !! throw all of them back.
    subroutine part_company(self, before, wants, kind, any_parted)
       class(two_levels_t), intent(inout) :: self
       type(tip_t), intent(in) :: before(:)  !< the tips before the step

@@ -160,20 +160,25 @@ contains
    end function mean_logarithm
 
    !> Pressure on the faces. It does not rise beyond the last middle, and is not below what the
-   !! fluid bears.
-   pure function on_faces(self, pressure, lowest) result(found)
+   !! fluid bears. Where pressures count beyond those in situ, what is found is the whole one.
+   pure function on_faces(self, pressure, lowest, in_situ) result(found)
       class(pressure_map_t), intent(in) :: self
       real(rk), intent(in) :: pressure(:)  !< of the coarse fracture cells [Pa]
       real(rk), intent(in) :: lowest  !< [Pa]
+      real(rk), intent(in), optional :: in_situ(:)  !< (faces) [Pa]
       real(rk) :: found(size(self%weight))  !< [Pa]
+      real(rk) :: least(size(self%weight))  ! [Pa]
       integer(ik) :: i
 
+      least = lowest
+      if (present(in_situ)) least = lowest - in_situ
       do i = 1, size(found, kind=ik)
          associate (p => pressure(self%cell(:, i)), weight => self%weight(i))
             found(i) = p(1) + weight*(p(2) - p(1))
-            if (weight < 0.0_rk) found(i) = max(lowest, min(p(1), found(i)))
+            if (weight < 0.0_rk) found(i) = max(least(i), min(p(1), found(i)))
          end associate
       end do
+      if (present(in_situ)) found = found + in_situ
    end function on_faces
 
 end module twolevel_pressure

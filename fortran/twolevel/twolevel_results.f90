@@ -14,7 +14,7 @@ module twolevel_results
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
    use twolevel_places, only: end_cell
-   use twolevel_state, only: two_levels_t
+   use twolevel_state, only: cell_heights, two_levels_t
    implicit none(type, external)
    private
 
@@ -72,10 +72,22 @@ contains
             row%n_open = count(states == state_open)
          end if
          fluid = max(abs(simulation%injected), row%fracture_volume)
-         if (.not. fluid > 0.0_rk) fluid = max(sum(abs(state%content)), tiny(1.0_rk))
+         if (.not. fluid > 0.0_rk) fluid = max(content_in_situ(simulation), tiny(1.0_rk))
          row%mass_error_relative = abs(mass_error)/fluid
       end associate
    end function history_of_levels
+
+   !> What the pressures would store in rock that is not strained, with that in situ [m2].
+   pure real(rk) function content_in_situ(simulation) result(content)
+      class(two_levels_t), intent(in) :: simulation
+
+      content = sum(abs(simulation%state%content))
+      if (.not. allocated(simulation%model%in_situ)) return
+      associate (model => simulation%model)
+         content = content + sum(model%matrix%storage &
+                                 *abs(model%in_situ%pressure_at(cell_heights(simulation%mesh))))
+      end associate
+   end function content_in_situ
 
    !> Fluid in the fractures but for its compression; roughness holds none [m2].
    pure real(rk) function fracture_volume(simulation) result(volume)
@@ -124,22 +136,37 @@ contains
       row%displacement = values(:2, :)
       row%pressure = values(3, :)
       row%stress = stresses(:, cells)
+      if (.not. allocated(simulation%model%in_situ)) return
+      associate (in_situ => simulation%model%in_situ, y => cell_heights(simulation%mesh))
+         row%pressure = row%pressure + in_situ%pressure_at(xy(2, :))
+         do i = 1, n  ! what is in situ is known at the point itself
+            row%stress(:, i) = row%stress(:, i) + in_situ%stress_at(xy(2, i)) &
+                               - in_situ%stress_at(y(cells(i)))
+         end do
+      end associate
    end subroutine probes_of_levels
 
-   !> Stress of each cell: xx, yy, xy [Pa].
+   !> Total stress of each cell: xx, yy, xy [Pa].
    function stresses_of(simulation) result(stresses)
       class(two_levels_t), intent(in) :: simulation
       real(rk) :: stresses(3, simulation%mesh%n_cells)
+      real(rk) :: y(simulation%mesh%n_cells)
+      integer(ik) :: c
 
       call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, &
                          stresses)
+      if (.not. allocated(simulation%model%in_situ)) return
+      y = cell_heights(simulation%mesh)
+      do c = 1, simulation%mesh%n_cells
+         stresses(:, c) = stresses(:, c) + simulation%model%in_situ%stress_at(y(c))
+      end do
    end function stresses_of
 
    !> Displacement, pressure, stress, and what the fracture faces do.
    function snapshot_of_levels(simulation) result(snapshot)
       class(two_levels_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
-      real(rk), allocatable :: nodal(:, :)
+      real(rk), allocatable :: nodal(:, :), pressure(:)
       integer(ik), allocatable :: shown(:)
       integer(ik) :: k
 
@@ -152,7 +179,7 @@ contains
          call nodal_values(snapshot%mesh, simulation%model%rock, simulation%model%regions, &
                            state%unknowns, state%tractions, nodal)
          matrix%node_displacement = nodal(:2, :)
-         matrix%pressure = state%unknowns(3, :n)
+         matrix%pressure = simulation%rock_pressure()
          matrix%stress = stresses_of(simulation)
          if (allocated(simulation%scene%regions)) then
             matrix%permeability = simulation%model%rock%permeability
@@ -162,7 +189,7 @@ contains
          fracture%jump_t = 0.5_rk*sum(state%jump(2, :, :), dim=1)
          fracture%traction_n = 0.5_rk*sum(state%traction(1, :, :), dim=1)
          fracture%traction_t = 0.5_rk*sum(state%traction(2, :, :), dim=1)
-         fracture%pressure = state%pressure
+         fracture%pressure = simulation%fracture_pressure()
          fracture%void = state%void
          fracture%state = cell_states(simulation)
          fracture%flow = fracture_flow(simulation)
@@ -171,7 +198,8 @@ contains
             shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
                                                  k=1, joints%n)])
             snapshot%intersection%point = joints%point(shown)
-            snapshot%intersection%pressure = state%joint_pressure(shown)
+            pressure = simulation%joint_pressure()
+            snapshot%intersection%pressure = pressure(shown)
          end associate
       end associate
    end function snapshot_of_levels

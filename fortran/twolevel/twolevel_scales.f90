@@ -1,6 +1,7 @@
 !> What size the results of a scene with a fluid can be expected to have.
 module twolevel_scales
    use base_kinds, only: rk
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -10,11 +11,12 @@ module twolevel_scales
 contains
 
    !> The largest pressure that can be expected in a scene: that of its loads or of its state before
-   !! them, and with growth what opens the longest fracture against its toughness [Pa]; 0 if it has
-   !! none of these.
+   !! them, stress in situ included, and with growth what opens the longest fracture against its
+   !! toughness [Pa]; 0 if it has none of these.
    pure real(rk) function pressure_scale(scene) result(scale)
       type(scene_t), intent(in) :: scene
       real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
+      type(in_situ_state_t), allocatable :: in_situ
       real(rk) :: extent, longest
       integer :: i
 
@@ -29,6 +31,13 @@ contains
                         scene%material%young*maxval(abs(side%displacement))/extent)
          end associate
       end do
+      call find_in_situ(scene, scene%material%biot, in_situ)
+      if (allocated(in_situ)) then
+         associate (y => [scene%domain%y_min, scene%domain%y_max])
+            scale = max(scale, maxval(abs(in_situ%pressure_at(y))), &
+                        maxval(abs(in_situ%stress_at(y(1)))), maxval(abs(in_situ%stress_at(y(2)))))
+         end associate
+      end if
       longest = 0.0_rk
       do i = 1, size(scene%fractures)
          longest = max(longest, scene%fractures(i)%length())

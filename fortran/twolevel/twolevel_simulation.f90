@@ -87,6 +87,8 @@ contains
          call summary%note(any(scene%sides%pressure_given), "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
          call summary%note(self%model%joints%n > 0, meeting, not_meeting)
+         if (allocated(self%model%in_situ)) call summary%use_feature("stress in situ, hydrostatic")
+         if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
       end associate
    end subroutine note_features
 
@@ -97,6 +99,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: before
       type(history_row_t) :: row
+      real(rk), allocatable :: pressure(:)
       logical :: is_first
 
       is_first = .not. self%has_begun
@@ -127,7 +130,8 @@ contains
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
          if (.not. (self%owes_state .or. self%is_equilibrium())) then
-            call self%stepper%settle(self%state%pressure(self%grown))
+            pressure = self%fracture_pressure()
+            call self%stepper%settle(pressure(self%grown))
          end if
       end if
       call note_well_rows(self)
@@ -193,8 +197,8 @@ contains
          summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
          summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
          summary%lowest_pressure = min(summary%lowest_pressure, &
-                                       minval(self%state%unknowns(3, :self%mesh%n_cells)), &
-                                       minval(self%state%pressure))
+                                       minval(self%rock_pressure()), &
+                                       minval(self%fracture_pressure()))
          summary%cells = self%mesh%n_cells
          summary%fracture_cells = self%mesh%fracture%n_cells
          if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)

@@ -35,7 +35,7 @@ module twolevel_state
    implicit none(type, external)
    private
 
-   public :: coarse_spec, two_levels_t
+   public :: cell_heights, coarse_spec, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -91,6 +91,10 @@ module twolevel_state
       procedure :: errs
       procedure :: book_step
       procedure :: well_pressure
+      procedure :: rock_pressure
+      procedure :: fracture_pressure
+      procedure :: joint_pressure
+      procedure :: well_in_situ
       procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
@@ -148,6 +152,10 @@ contains
          call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
                           self%joint_share)
          call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         if (allocated(self%model%in_situ)) then
+            self%model%wells%pressure_in_situ = &
+               [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
+         end if
          self%rock_cell = spread(0_ik, 1, size(wells))
          if (.not. any(wells%fracture == 0)) return
          if (allocated(self%model%source)) deallocate (self%model%source)
@@ -361,7 +369,7 @@ contains
       logical :: between(size(self%share, 2))
       integer(ik) :: w
 
-      pressure = self%state%pressure
+      pressure = self%fracture_pressure()
       between = between_cells(self%scene%injections, self%share)
       do w = 1, size(between, kind=ik)
          if (.not. between(w)) cycle
@@ -374,8 +382,66 @@ contains
          end associate
       end do
       well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
-                                    self%state%joint_pressure)
+                                    self%joint_pressure())
    end function well_pressure
+
+   !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
+   pure function rock_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(self%mesh%n_cells)
+
+      pressure = self%state%unknowns(3, :self%mesh%n_cells)
+      if (allocated(self%model%in_situ)) then
+         pressure = pressure + self%model%in_situ%pressure_at(cell_heights(self%mesh))
+      end if
+   end function rock_pressure
+
+   !> The whole pressure in the fracture cells [Pa].
+   pure function fracture_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%pressure))
+
+      pressure = self%state%pressure
+      if (allocated(self%model%cells%pressure_in_situ)) then
+         pressure = pressure + self%model%cells%pressure_in_situ
+      end if
+   end function fracture_pressure
+
+   !> The whole pressure in the joints [Pa].
+   pure function joint_pressure(self) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%joint_pressure))
+
+      pressure = self%state%joint_pressure
+      if (allocated(self%model%joints%pressure_in_situ)) then
+         pressure = pressure + self%model%joints%pressure_in_situ
+      end if
+   end function joint_pressure
+
+   !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
+   pure real(rk) function well_in_situ(self, well) result(pressure)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< of the scene
+
+      pressure = 0.0_rk
+      if (.not. allocated(self%model%in_situ)) return
+      associate (given => self%scene%injections(well))
+         if (given%at_point .or. given%fracture == 0) then
+            pressure = self%model%in_situ%pressure_at(given%y)
+         else
+            pressure = dot_product(self%share(:, well), self%model%cells%pressure_in_situ)
+         end if
+      end associate
+   end function well_in_situ
+
+   !> Where the middles of the cells are above y = 0 [m].
+   pure function cell_heights(mesh) result(y)
+      type(mesh_t), intent(in) :: mesh
+      real(rk) :: y(mesh%n_cells)
+      integer(ik) :: c
+
+      y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
+   end function cell_heights
 
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)

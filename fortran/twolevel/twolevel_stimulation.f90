@@ -174,16 +174,18 @@ contains
    pure real(rk) function pressure_around_wells(levels) result(pressure)
       class(two_levels_t), intent(in) :: levels
       logical :: is_fed(levels%mesh%fracture%n_cells)
+      real(rk) :: rock(levels%mesh%n_cells)  ! [Pa]
       integer(ik) :: i, side
 
       pressure = 0.0_rk
+      rock = levels%rock_pressure()
       is_fed = fed_cells(levels, levels%mesh%fracture)
       associate (mesh => levels%mesh)
          do i = 1, mesh%fracture%n_cells
             if (.not. is_fed(i)) cycle
             do side = 1, 2
                associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(side, i)))
-                  pressure = pressure + 0.5_rk*levels%state%unknowns(3, cell)
+                  pressure = pressure + 0.5_rk*rock(cell)
                end associate
             end do
          end do

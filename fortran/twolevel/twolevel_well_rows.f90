@@ -82,7 +82,7 @@ contains
       if (k == 0) return
       row%flow = levels%state%well_flow(k)
       row%rate = levels%state%well_rate(k)
-      row%head_pressure = levels%state%well_head(k)
+      row%head_pressure = levels%state%well_head(k) + levels%well_in_situ(w)
       associate (well => levels%scene%injections(w))
          if (allocated(well%pressure)) row%control = "pressure"
          if (allocated(well%pressure) .and. allocated(well%rate)) row%control = &
@@ -102,12 +102,13 @@ contains
       associate (state => levels%state, model => levels%model, well => levels%scene%injections(w))
          if (well%fracture == 0) then
             cell = levels%rock_cell(w)
-            pressure = state%unknowns(3, cell) + flow/well_index(well%radius, &
-                                                                 cell_area(levels%mesh, cell), &
-                                                                 model%rock%mobility_at(cell))
+            pressure = levels%well_in_situ(w) + state%unknowns(3, cell) &
+                       + flow/well_index(well%radius, cell_area(levels%mesh, cell), &
+                                         model%rock%mobility_at(cell))
             return
          end if
-         pressure = dot_product(levels%share(:, w), state%pressure) &
+         pressure = levels%well_in_situ(w) &
+                    + dot_product(levels%share(:, w), state%pressure) &
                     + dot_product(levels%joint_share(:, w), state%joint_pressure)
          between = between_cells(levels%scene%injections, levels%share)
          if (.not. between(w)) return

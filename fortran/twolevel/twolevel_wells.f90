@@ -176,7 +176,12 @@ contains
             control = control_shut
             if (stage == 0) cycle
             control = control_pressure
-            if (allocated(well%pressure)) wells%pressure(w) = well%pressure(stage)
+            if (allocated(well%pressure)) then
+               wells%pressure(w) = well%pressure(stage)
+               if (allocated(wells%pressure_in_situ)) then
+                  wells%pressure(w) = wells%pressure(w) - wells%pressure_in_situ(w)
+               end if
+            end if
             if (.not. allocated(well%rate)) cycle
             wells%rate(w) = well%rate(stage)
             control = control_rate

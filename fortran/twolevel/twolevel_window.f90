@@ -9,6 +9,7 @@ module twolevel_window
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use contact_law, only: contact_law_t, is_same
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
@@ -16,6 +17,7 @@ module twolevel_window
    use fine_contact, only: contact_t
    use fine_contact_transfer, only: transfer_contact
    use fine_faces, only: face_conditions_t
+   use fine_in_situ, only: add_in_situ_tractions, set_in_situ_stress
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -62,6 +64,7 @@ module twolevel_window
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
+      real(rk), allocatable :: pressure_in_situ(:)  !< (fracture cells) if the scene has any [Pa]
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
       !> Of the last solution; its slip is the history of the next.
       type(contact_t), allocatable :: contact
@@ -130,6 +133,7 @@ contains
          end associate
       end do
       self%loads = no_loads(self%model%mesh)
+      call load_in_situ(self, scene)
       do side = 1, side_count
          if (on_body(self, scene, side)) then
             call add_side_traction(self%model%mesh, side, scene%sides(side)%traction, &
@@ -137,6 +141,28 @@ contains
          end if
       end do
    end subroutine build
+
+   !> The state in situ and the weight. The tractions that hold the one count where nothing is held.
+   pure subroutine load_in_situ(self, scene)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(in_situ_state_t), allocatable :: in_situ
+      type(rock_t) :: rock
+      integer(ik) :: i
+
+      rock = new_rock(scene%material, scene%fluid)
+      call find_in_situ(scene, rock%biot, in_situ)
+      self%loads%body_force = weight_of_scene(scene)
+      if (.not. allocated(in_situ)) return
+      associate (fine => self%model%mesh)
+         call set_in_situ_stress(fine, in_situ%stress, in_situ%stress_per_y, in_situ%y_datum, &
+                                 self%loads)
+         if (in_situ%is_held) call add_in_situ_tractions(fine, self%loads)
+         self%pressure_in_situ = &
+            [(in_situ%pressure_at(0.5_rk*sum(fine%xy(2, fine%face_nodes(:2, 1, i)))), &
+              i=1, fine%fracture%n_cells)]
+      end associate
+   end subroutine load_in_situ
 
    !> Of the square that the body cuts [m].
    pure real(rk) function edge_length(self, scene)
@@ -317,14 +343,17 @@ contains
       end associate
       self%loads%boundary_displacement = self%curved_edge(scene, coarse, values%displacement, &
                                                           values%gradient)
-      if (self%undrained) self%loads%pore_pressure = scene%initial%pressure
+      if (self%undrained) then
+         self%loads%pore_pressure = scene%initial%pressure
+         if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
+      end if
       if (.not. allocated(self%contact) .or. allocated(self%contact_mesh)) then
          call remember_contact(self, state)
       end if
       associate (face_condition => scene%discretization%face_condition)
          conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
          call self%faces%load(self%model%mesh, face_condition, state, &
-                              scene%fluid%vapour_pressure, self%loads)
+                              scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error, held_edge(self, scene))

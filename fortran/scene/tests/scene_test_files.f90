@@ -169,9 +169,9 @@ contains
       if (a%adaptive%passes /= b%adaptive%passes) return
       if (a%discretization%element /= b%discretization%element) return
       if (.not. same([a%in_situ%stress, a%in_situ%per_y, a%in_situ%y_datum, a%gravity, &
-                      a%material%density], &
+                      a%material%density, a%fluid%density], &
                      [b%in_situ%stress, b%in_situ%per_y, b%in_situ%y_datum, b%gravity, &
-                      b%material%density])) return
+                      b%material%density, b%fluid%density])) return
       if (.not. same_outline(a, b)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return

@@ -23,6 +23,7 @@ program test_scene_plausible
    call test_material()
    call test_fractures()
    call test_flow()
+   call test_column()
    call test_regions()
    call test_ends()
    call checks%is_true(provoked == size(doubts), "every doubt is provoked")
@@ -206,5 +207,49 @@ contains
       s%output%interval = 6.0_rk
       call expect(s, "&output: interval is 6.0 s: ", "interval")
    end subroutine test_flow
+
+   !> Stress and pressure that grow with depth, from 1 km above the body.
+   subroutine test_column()
+      type(scene_t) :: s, basin
+
+      basin = sound()
+      basin%sides(2)%traction = 0.0_rk
+      basin%sides(4)%traction = 0.0_rk
+      basin%material%density = 2500.0_rk
+      basin%fluid%density = 1000.0_rk
+      basin%fluid%vapour_pressure = 0.0_rk
+      basin%gravity = [0.0_rk, -10.0_rk]
+      basin%in_situ%per_y = [18.0e3_rk, 25.0e3_rk]
+      basin%in_situ%y_datum = 1000.0_rk
+      call expect(basin, "", "a basin")
+      s = basin
+      s%fluid%density = 3100.0_rk
+      s%in_situ%per_y(1) = 32.0e3_rk
+      s%in_situ%per_y(2) = 35.0e3_rk
+      call expect(s, "&fluid: density is 3100.0 kg/m3: water has", "a heavy fluid")
+      s = basin
+      s%fluid%density = 0.0_rk
+      call expect(s, "&fluid: density is 0.0 kg/m3: its pressure", "a fluid without weight")
+      s = basin
+      s%in_situ%stress = [-20.0e6_rk, -25.0e6_rk, 0.0_rk]
+      s%in_situ%per_y = 0.0_rk
+      call expect(s, "&in_situ: syy_per_y is 0.0 Pa/m: the weight loads", "no gradient")
+      s%in_situ%stress = 0.0_rk
+      call expect(s, "", "no stress in situ")
+      s = basin
+      s%in_situ%y_datum = -1000.0_rk
+      s%initial%pressure = 2.0e7_rk
+      call expect(s, "&in_situ: tension is 2.505e7 Pa: rock at depth", "above the datum")
+      s = basin
+      s%in_situ%stress = [-20.0e6_rk, -20.0e6_rk, 0.0_rk]
+      s%initial%pressure = -1.0e7_rk
+      call expect(s, "&initial: pressure is -20000.0 Pa: there is no water table", "a dry top")
+      s = basin
+      s%initial%pressure = 8.0e6_rk
+      call expect(s, "&initial: pressure is 1.798e7 Pa: fractures", "pressure above the stress")
+      s%in_situ%stress(3) = 1.0e6_rk
+      s%initial%pressure = 7.9e6_rk
+      call expect(s, "&initial: pressure is 1.788e7 Pa: fractures", "a principal stress", .true.)
+   end subroutine test_column
 
 end program test_scene_plausible

@@ -69,6 +69,15 @@ contains
                             "&probe name='A' x=0.123456789012345678 y=0.1 /"])
       call round_trip(path)
       call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
+                            "&material young=1e9 poisson=0.2 biot=0.5 porosity=0.1 "// &
+                            "permeability=1e-18 density=2.5e3 /", &
+                            "&fluid compressibility=1e-9 viscosity=1e-3 density=1.0001e3 /", &
+                            "&gravity y=-9.81 /", &
+                            "&in_situ sxx=-1e6 sxx_per_y=9e3 syy_per_y=24525 y_datum=1.1 /", &
+                            "&side name='left' x_displacement=0 y_displacement=0 pressure=2e5 /", &
+                            "&time end=1 /", "&coarse size_boundary=0.2 /"])
+      call round_trip(path)
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                             "&material young=1e9 poisson=0.2 /", &
                             "&side name='left' x_displacement=0 y_displacement=0 /", &
                             "&fe size_boundary=0.2 /"])

@@ -1,0 +1,143 @@
+!> The state from which a scene with a stress in situ or with a fluid that has weight counts.
+!!
+!! All pressures of the coarse level are those beyond this state: p' = p - p_0(y) with
+!!   p_0 = p_initial + rho_f g (y - y_datum),
+!! so that Darcy's and the cubic law need no gravity; and its stresses are those beyond
+!! sigma_0(y), linear in y:
+!!   sigma = sigma_0 + sigma',   sigma' = C : eps(u) - alpha p' I,   div sigma' + b = 0
+!! with b the weight that sigma_0 does not carry. A body at rest is zero then, to the last bit.
+!! On the fractures the contact traction is that of the whole stress and pressure,
+!!   f = f' + sigma_0 n + p_0 n,   f' = sigma' n + p' n.
+!!
+!! A stress in situ is the total stress at the initial pressure, which tractions on the sides hold;
+!! those of the scene count beside them. Without one the initial pressure acts on rock without
+!! strain, sigma_0 = -alpha p_0 I, and the tractions of the scene are the total ones.
+module coarse_in_situ
+   use base_kinds, only: ik, rk
+   use coarse_layout, only: condensed_layout_t
+   use mesh_types, only: fracture_mesh_t
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: find_in_situ, in_situ_state_t, weight_of_scene
+
+   !> Where pressures and stresses count from.
+   type :: in_situ_state_t
+      real(rk) :: stress(3) = 0.0_rk  !< xx, yy, xy at the datum [Pa]
+      real(rk) :: stress_per_y(2) = 0.0_rk  !< xx, yy: rise per metre upwards [Pa/m]
+      real(rk) :: pressure = 0.0_rk  !< at the datum [Pa]
+      real(rk) :: pressure_per_y = 0.0_rk  !< rise per metre upwards [Pa/m]
+      real(rk) :: y_datum = 0.0_rk  !< [m]
+      !> The sides bear the stress, beside the tractions of the scene; else these are all there is.
+      logical :: is_held = .false.
+   contains
+      procedure :: stress_at
+      procedure :: pressure_at
+      procedure :: side_traction
+      procedure :: add_contact_tractions
+   end type in_situ_state_t
+
+contains
+
+   !> The state in situ of a scene, if it has a stress in situ or a fluid with weight.
+   pure subroutine find_in_situ(scene, biot, state)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: biot  !< Biot's coefficient in the plane [-]
+      type(in_situ_state_t), allocatable, intent(out) :: state
+      real(rk) :: per_y
+      logical :: has_stress
+
+      associate (given => scene%in_situ)
+         has_stress = any(abs([given%stress, given%per_y]) > 0.0_rk)
+         per_y = scene%fluid%density*scene%gravity(2)
+         if (.not. (has_stress .or. abs(per_y) > 0.0_rk)) return
+         allocate (state)
+         state%pressure = scene%initial%pressure
+         state%pressure_per_y = per_y
+         state%y_datum = given%y_datum
+         state%is_held = has_stress
+         if (has_stress) then
+            state%stress = given%stress
+            state%stress_per_y = given%per_y
+         else
+            state%stress(1:2) = -biot*state%pressure
+            state%stress_per_y = -biot*per_y
+         end if
+      end associate
+   end subroutine find_in_situ
+
+   !> The weight of the rock with what fills its pores [N/m3]. A stress in situ that changes with y
+   !! carries it, so it is what that says: the scene's numbers may be rounded.
+   pure function weight_of_scene(scene) result(weight)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: weight(2)
+
+      weight = scene%material%density*scene%gravity
+      if (any(abs(scene%in_situ%per_y) > 0.0_rk)) weight = [0.0_rk, -scene%in_situ%per_y(2)]
+   end function weight_of_scene
+
+   !> Stress at a height: xx, yy, xy [Pa].
+   pure function stress_at(self, y) result(stress)
+      class(in_situ_state_t), intent(in) :: self
+      real(rk), intent(in) :: y  !< [m]
+      real(rk) :: stress(3)
+
+      stress = self%stress
+      stress(1:2) = stress(1:2) + self%stress_per_y*(y - self%y_datum)
+   end function stress_at
+
+   !> Pressure at a height [Pa].
+   elemental real(rk) function pressure_at(self, y)
+      class(in_situ_state_t), intent(in) :: self
+      real(rk), intent(in) :: y  !< [m]
+
+      pressure_at = self%pressure + self%pressure_per_y*(y - self%y_datum)
+   end function pressure_at
+
+   !> What acts on a side beyond the state in situ, of a traction that the scene gives [Pa].
+   pure function side_traction(self, given, side, y) result(traction)
+      class(in_situ_state_t), intent(in) :: self
+      real(rk), intent(in) :: given(2)  !< [Pa]
+      integer(ik), intent(in) :: side  !< left, right, bottom, top
+      real(rk), intent(in) :: y  !< [m]
+      real(rk) :: traction(2)
+      real(rk), parameter :: outward(2, 4) = reshape([-1.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, &
+                                                      0.0_rk, -1.0_rk, 0.0_rk, 1.0_rk], [2, 4])
+      real(rk) :: stress(3)
+
+      traction = given
+      if (self%is_held) return
+      stress = self%stress_at(y)
+      traction = traction - [dot_product(stress([1, 3]), outward(:, side)), &
+                             dot_product(stress([3, 2]), outward(:, side))]
+   end function side_traction
+
+   !> Add to the load on the condensed fractures what gives them the contact tractions of the whole
+   !! stress. The tractions of the coarse level are linear along a face and known at its ends.
+   pure subroutine add_contact_tractions(self, fracture, length, normal, layout, g)
+      class(in_situ_state_t), intent(in) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
+      real(rk), intent(in) :: normal(:, :)  !< (2, fracture cells) from side + to side - [-]
+      type(condensed_layout_t), intent(in) :: layout
+      real(rk), intent(inout) :: g(:)  !< as layout says [N/m], [m2]
+      real(rk) :: stress(3), traction(2), y
+      integer(ik) :: at, cell, end
+
+      do cell = 1, fracture%n_cells
+         do end = 1, 2
+            y = fracture%point_xy(2, fracture%cell_points(end, cell))
+            stress = self%stress_at(y)
+            associate (n => normal(:, cell))
+               traction = [dot_product(stress([1, 3]), n), dot_product(stress([3, 2]), n)]
+               traction = [dot_product(traction, n) + self%pressure_at(y), &
+                           traction(1)*n(2) - traction(2)*n(1)]
+            end associate
+            at = layout%at_jump(cell, end)
+            g(at:at + 1) = g(at:at + 1) + 0.5_rk*length(cell)*traction
+         end do
+      end do
+   end subroutine add_contact_tractions
+
+end module coarse_in_situ

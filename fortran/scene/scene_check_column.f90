@@ -1,0 +1,41 @@
+!> Checks the weight of rock and fluid in a scene with a fluid against each other.
+module scene_check_column
+   use base_errors, only: error_t
+   use base_kinds, only: rk
+   use scene_sheet, only: refuse, sheet_t
+   use scene_types, only: scene_t
+   use scene_words, only: real_text, rounded_text
+   implicit none(type, external)
+   private
+
+   public :: check_column
+
+contains
+
+   !> A fluid with a density has weight, along y, and the rock is no lighter than what fills it.
+   pure subroutine check_column(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: least  ! [kg/m3]
+
+      associate (density => scene%fluid%density, rock => scene%material, gravity => scene%gravity)
+         if (.not. density > 0.0_rk) return
+         least = rock%porosity*density
+         if (.not. any(abs(gravity) > 0.0_rk)) then
+            call refuse(error, sheet, sheet%find("fluid"), "density", "is "//real_text(density)// &
+                        " but nothing gives the fluid weight; give &gravity y, on earth "// &
+                        "-9.81, or leave the density out")
+         else if (abs(gravity(1)) > 0.0_rk) then
+            call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
+                        " but must be 0, for the pressure of a fluid with a density changes "// &
+                        "with y alone")
+         else if (.not. rock%density >= least) then
+            call refuse(error, sheet, sheet%find("material"), "density", "is "// &
+                        real_text(rock%density)//" but must be at least that of the fluid in "// &
+                        "its pores, porosity times density of &fluid: "//rounded_text(least))
+         end if
+      end associate
+   end subroutine check_column
+
+end module scene_check_column
