@@ -72,7 +72,7 @@ contains
       self%rock = new_rock(scene%material, scene%fluid)
       if (allocated(self%rock_resistance)) deallocate (self%rock_resistance)
       if (allocated(scene%regions)) then
-         call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, self%rock)
+         call place_regions(mesh, scene%regions, scene%domain, scene%fluid, self%rock)
          self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
       end if
       self%sides = scene%sides
@@ -129,9 +129,11 @@ contains
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         state%content(c) = initial%pressure*model%rock%storage*model%matrix%storage(c) &
-                            /(model%rock%storage + model%rock%biot**2 &
-                              /(model%rock%lame + model%rock%shear))
+         associate (rock => model%rock, at => min(c, size(model%rock%shear, kind=ik)))
+            state%content(c) = initial%pressure*rock%storage(at)*model%matrix%storage(c) &
+                               /(rock%storage(at) + rock%biot(at)**2 &
+                                 /(rock%lame(at) + rock%shear(at)))
+         end associate
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
@@ -203,7 +205,7 @@ contains
          if (allocated(error)) return
       end if
       if (n > 0) then
-         call self%condensed%support(tip_springs(self%ends, self%rock, self%condensed))
+         call self%condensed%support(tip_springs(self%ends, self%rock, mesh, self%condensed))
          call place_tips(self%ends, self%condensed%length, self%cells)
          if (allocated(self%rock_resistance)) then
             self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance

@@ -43,14 +43,14 @@ contains
          allocate (samples%xy(2, n_samples, n), samples%stress(3, n_samples, n))
          allocate (samples%area(n), samples%centre(2, n))
          do cell = 1, n
-            associate (nodes => fine%cell_nodes(:, cell))
+            associate (nodes => fine%cell_nodes(:, cell), rock => model%rocks%in_cell(cell))
                samples%area(cell) = triangle_area(fine%xy(:, nodes(1:3)))
                samples%centre(:, cell) = sum(fine%xy(:, nodes(1:3)), dim=2)/3.0_rk
                do k = 1, n_samples
                   call fine%evaluate(cell, points(:, k), values, gradients, area_coordinates, &
                                      determinant)
                   samples%xy(:, k, cell) = matmul(fine%xy(:, nodes), values)
-                  stress = model%elasticity%total_stress(matmul(displacement(:, nodes), &
+                  stress = rock%total_stress(matmul(displacement(:, nodes), &
                                                                 transpose(gradients)), 0.0_rk)
                   samples%stress(:, k, cell) = [stress(1, 1), stress(2, 2), stress(1, 2)]
                end do

@@ -11,6 +11,7 @@
 module fine_recovery
    use base_kinds, only: ik, rk
    use algebra_lapack, only: dpotrf, dpotrs
+   use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, &
@@ -206,14 +207,16 @@ contains
       type(tip_field_t), intent(out) :: field
       integer(ik), parameter :: n_unknowns = 5
       real(rk) :: normal(n_unknowns, n_unknowns), right(n_unknowns, 1), columns(3, n_unknowns)
+      type(elasticity_t) :: rock
       real(rk) :: weight, unit
       integer(ik) :: cell, i, info, k, mode, node
 
       node = model%mesh%fracture%tip_node(tip)
       field%origin = model%mesh%xy(:, node)
       field%ahead = model%mesh%fracture%tip_direction(:, tip)
-      field%kolosov = model%elasticity%kolosov()
-      field%shear_modulus = model%elasticity%shear_modulus()
+      rock = model%rocks%in_cell(samples%cells(samples%first(node)))
+      field%kolosov = rock%kolosov()
+      field%shear_modulus = rock%shear_modulus()
       ! The unit of the intensities that makes all columns of one size.
       associate (around => samples%cells(samples%first(node):samples%first(node + 1) - 1))
          unit = sum(samples%area(around))**0.25_rk

@@ -14,6 +14,9 @@ module growth_law
       real(rk) :: angle = 0.0_rk  !< of the kink, anticlockwise positive [rad]
       real(rk) :: intensity = 0.0_rk  !< K_eq at that angle [Pa m^1/2]
       real(rk) :: energy = 0.0_rk  !< G at that angle [J/m2]
+      !> K_IC of the rock that the tip grows in over that of the scene's rock, by which all tips are
+      !! judged: the intensity is over this [-]
+      real(rk) :: resistance = 1.0_rk
    end type growth_drive_t
 
 contains

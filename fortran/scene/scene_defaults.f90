@@ -2,6 +2,7 @@
 !! the numbers used.
 module scene_defaults
    use base_kinds, only: rk
+   use scene_exchange_rock, only: not_given
    use scene_types, only: material_t, region_t, scene_t
    implicit none(type, external)
    private
@@ -49,11 +50,27 @@ contains
       do i = 1, size(regions)
          own = regions(i)%material
          regions(i)%material = material
-         regions(i)%material%permeability_xx = own%permeability_xx
-         regions(i)%material%permeability_yy = own%permeability_yy
-         regions(i)%material%permeability_xy = own%permeability_xy
+         associate (all => regions(i)%material)
+            call take(own%young, not_given%young, all%young)
+            call take(own%poisson, not_given%poisson, all%poisson)
+            call take(own%biot, not_given%biot, all%biot)
+            call take(own%porosity, not_given%porosity, all%porosity)
+            call take(own%toughness, not_given%toughness, all%toughness)
+            if (.not. own%permeability_xx > 0.0_rk) cycle
+            all%permeability_xx = own%permeability_xx
+            all%permeability_yy = own%permeability_yy
+            all%permeability_xy = own%permeability_xy
+         end associate
       end do
    end subroutine complete
+
+   pure subroutine take(own, nothing, value)
+      real(rk), intent(in) :: own  !< what is given, or `nothing` [any unit]
+      real(rk), intent(in) :: nothing  !< [unit of own]
+      real(rk), intent(inout) :: value  !< [unit of own]
+
+      if (own < nothing) value = own
+   end subroutine take
 
    !> Steps of a given length, or such that their error is small; fields as often as they are given,
    !! or a hundred times.

@@ -8,7 +8,12 @@ module scene_exchange_rock
    implicit none(type, external)
    private
 
-   public :: exchange_material, exchange_region
+   public :: exchange_material, exchange_region, not_given
+
+   !> The rock of a region that gives nothing itself: no rock has such numbers.
+   type(material_t), parameter :: not_given = material_t(young=huge(1.0_rk), &
+                                            poisson=huge(1.0_rk), biot=huge(1.0_rk), &
+                                            porosity=huge(1.0_rk), toughness=huge(1.0_rk))
 
 contains
 
@@ -51,7 +56,15 @@ contains
          call exchange(record, "x_other", region%x_other, reading)
          call exchange(record, "y_other", region%y_other, reading)
       end if
-      call exchange_permeability(record, region%material, reading)
+      if (reading) region%material = not_given
+      associate (own => region%material)
+         call exchange(record, "young", own%young, reading)
+         call exchange(record, "poisson", own%poisson, reading)
+         call exchange(record, "biot", own%biot, reading)
+         call exchange(record, "porosity", own%porosity, reading)
+         call exchange_permeability(record, own, reading)
+         call exchange(record, "toughness", own%toughness, reading, nothing=huge(1.0_rk))
+      end associate
    end subroutine exchange_region
 
    !> Isotropic, or the components of a tensor.

@@ -5,6 +5,8 @@ module twolevel_simulation
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
+   use coarse_rock, only: shear_of
+   use coarse_solid, only: slip_moment
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_chronicle, only: event_step_cut, event_unstable
@@ -72,7 +74,7 @@ contains
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
-      call self%catalogue%begin(self%model%rock%shear, scene%output%out_of_plane_length, &
+      call self%catalogue%begin(shear_of(scene%material), scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump)
       call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
@@ -157,7 +159,8 @@ contains
       fracture = self%mesh%fracture
       if (fracture%n_cells == 0) return
       potency = slip_potency(self)
-      self%seismic_moment = self%seismic_moment + self%model%rock%shear*sum(potency)
+      self%seismic_moment = self%seismic_moment &
+                            + slip_moment(self%model%rock, self%mesh, potency)
       if (self%is_initial) return
       call end_at_tips(self, fracture)
       call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)

@@ -10,6 +10,7 @@ module twolevel_windows
    use growth_tip, only: tip_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
+   use scene_rock_places, only: rock_places_t, toughness_ahead
    use scene_types, only: scene_t
    use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
@@ -30,6 +31,8 @@ module twolevel_windows
       integer(ik), allocatable :: window_of(:)  !< (tips)
       type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
       real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
+      !> (tips) K_IC of the rock that each grows in over that of the scene's [-]
+      real(rk), allocatable :: resistance(:)
       logical, allocatable :: was_free(:, :)  !< (tips, windows) it had not joined anything then
    contains
       procedure :: begin
@@ -59,6 +62,7 @@ contains
       if (is_body) n_windows = 1
       allocate (self%window(n_windows), self%window_of(size(tips)))
       allocate (self%tip(size(tips)))
+      allocate (self%resistance(size(tips)), source=1.0_rk)
       allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
       allocate (self%was_free(size(tips), n_windows), source=.true.)
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
@@ -101,6 +105,7 @@ contains
       integer(ik) :: i, w
 
       call see_tips(self, tips)
+      if (allocated(scene%regions)) call see_rock(self, scene, network)
       do w = 1, size(self%window, kind=ik)
          associate (window => self%window(w))
             if (.not. self%is_asked(w, tips)) then
@@ -138,6 +143,33 @@ contains
       end do
    end subroutine evaluate
 
+   !> How tough the rock is that the tips grow in.
+   pure subroutine see_rock(self, scene, network)
+      class(windows_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network  !< of the fine level
+      real(rk), parameter :: share = 0.1_rk  ! of an increment, over which K_IC goes from one rock's
+      type(rock_places_t) :: places
+      real(rk) :: along(2)
+      integer(ik) :: at, before, i
+
+      if (.not. scene%material%toughness < huge(1.0_rk)) return
+      if (all(scene%regions%material%toughness >= scene%material%toughness .and. &
+              scene%regions%material%toughness <= scene%material%toughness)) return
+      call places%set(scene)
+      do i = 1, size(self%tip, kind=ik)
+         associate (first => network%first, tip => self%tip(i))
+            at = merge(first(tip%fracture), first(tip%fracture + 1) - 1_ik, tip%end == 1)
+            before = at + merge(1_ik, -1_ik, tip%end == 1)
+         end associate
+         along = network%xy(:, at) - network%xy(:, before)
+         self%resistance(i) = toughness_ahead(places, scene, network%xy(:, at), &
+                                              along/norm2(along), &
+                                              share*scene%growth%increment) &
+                              /scene%material%toughness
+      end do
+   end subroutine see_rock
+
    !> What a window has found, to the free tips that it serves.
    pure subroutine tell(self, window, tips)
       class(windows_t), intent(in) :: self
@@ -151,7 +183,8 @@ contains
             tip%intensity = self%intensity_of(t)
             tip%rosette_radius = window%mesh%fracture%tip_radius(self%tip(t)%at)
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
-                                     window%model%elasticity%crack_modulus())
+                                     window%crack_modulus(self%tip(t)%at))
+            call tip%resist(self%resistance(t))
          end associate
       end do
    end subroutine tell
@@ -163,7 +196,7 @@ contains
       type(intensity_t) :: intensity
 
       associate (window => self%window(self%window_of(tip)))
-         intensity = self%tip(tip)%with_coarse_error(window%model%elasticity%crack_modulus())
+         intensity = self%tip(tip)%with_coarse_error(window%crack_modulus(self%tip(tip)%at))
       end associate
    end function intensity_of
 
