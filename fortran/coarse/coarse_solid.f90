@@ -17,8 +17,8 @@ module coarse_solid
    implicit none(type, external)
    private
 
-   public :: any_differ, make_room, mean_solid, number_stiffnesses, set_solid, slip_moment, solid_of
-   public :: solid_t
+   public :: add_moment, any_differ, make_room, mean_solid, number_stiffnesses, set_solid
+   public :: solid_of, solid_t
 
    !> Poroelastic constants without those of flow, as in rock_t.
    type :: solid_t
@@ -140,24 +140,24 @@ contains
       end if
    end function mean_solid
 
-   !> The moment of slip on fracture cells: each with the modulus beside it [J/m].
-   pure real(rk) function slip_moment(rock, mesh, potency) result(moment)
+   !> Add the moment of slip on fracture cells: each with the modulus beside it.
+   pure subroutine add_moment(rock, mesh, potency, moment)
       type(rock_t), intent(in) :: rock
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: potency(:)  !< (fracture cells) slip times length [m2]
+      real(rk), intent(inout) :: moment  !< [J/m]
       type(solid_t) :: beside
       integer(ik) :: i
 
       if (size(rock%shear) == 1) then
-         moment = rock%shear(1)*sum(potency)
+         moment = moment + rock%shear(1)*sum(potency)
          return
       end if
-      moment = 0.0_rk
       do i = 1, mesh%fracture%n_cells
          beside = mean_solid(rock, mesh%face_cells(1, mesh%fracture%cell_faces(:, i)))
          moment = moment + beside%shear*potency(i)
       end do
-   end function slip_moment
+   end subroutine add_moment
 
    !> E', in plane strain E/(1 - nu^2) [Pa].
    elemental real(rk) function crack_modulus(self)

@@ -51,11 +51,11 @@ contains
          own = regions(i)%material
          regions(i)%material = material
          associate (all => regions(i)%material)
-            call take(own%young, not_given%young, all%young)
-            call take(own%poisson, not_given%poisson, all%poisson)
-            call take(own%biot, not_given%biot, all%biot)
-            call take(own%porosity, not_given%porosity, all%porosity)
-            call take(own%toughness, not_given%toughness, all%toughness)
+            call take(own%young, all%young)
+            call take(own%poisson, all%poisson)
+            call take(own%biot, all%biot)
+            call take(own%porosity, all%porosity)
+            call take(own%toughness, all%toughness)
             if (.not. own%permeability_xx > 0.0_rk) cycle
             all%permeability_xx = own%permeability_xx
             all%permeability_yy = own%permeability_yy
@@ -64,12 +64,11 @@ contains
       end do
    end subroutine complete
 
-   pure subroutine take(own, nothing, value)
-      real(rk), intent(in) :: own  !< what is given, or `nothing` [any unit]
-      real(rk), intent(in) :: nothing  !< [unit of own]
+   pure subroutine take(own, value)
+      real(rk), intent(in) :: own  !< what is given, or not_given [any unit]
       real(rk), intent(inout) :: value  !< [unit of own]
 
-      if (own < nothing) value = own
+      if (own < not_given) value = own
    end subroutine take
 
    !> Steps of a given length, or such that their error is small; fields as often as they are given,

@@ -10,10 +10,8 @@ module scene_exchange_rock
 
    public :: exchange_material, exchange_region, not_given
 
-   !> The rock of a region that gives nothing itself: no rock has such numbers.
-   type(material_t), parameter :: not_given = material_t(young=huge(1.0_rk), &
-                                            poisson=huge(1.0_rk), biot=huge(1.0_rk), &
-                                            porosity=huge(1.0_rk), toughness=huge(1.0_rk))
+   !> What stands for a number of a region's rock that the region does not give: no rock has it.
+   real(rk), parameter :: not_given = huge(1.0_rk)
 
 contains
 
@@ -56,8 +54,14 @@ contains
          call exchange(record, "x_other", region%x_other, reading)
          call exchange(record, "y_other", region%y_other, reading)
       end if
-      if (reading) region%material = not_given
       associate (own => region%material)
+         if (reading) then
+            own%young = not_given
+            own%poisson = not_given
+            own%biot = not_given
+            own%porosity = not_given
+            own%toughness = not_given
+         end if
          call exchange(record, "young", own%young, reading)
          call exchange(record, "poisson", own%poisson, reading)
          call exchange(record, "biot", own%biot, reading)

@@ -6,7 +6,7 @@ module twolevel_simulation
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_of
-   use coarse_solid, only: slip_moment
+   use coarse_solid, only: add_moment
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_chronicle, only: event_step_cut, event_unstable
@@ -159,8 +159,7 @@ contains
       fracture = self%mesh%fracture
       if (fracture%n_cells == 0) return
       potency = slip_potency(self)
-      self%seismic_moment = self%seismic_moment &
-                            + slip_moment(self%model%rock, self%mesh, potency)
+      call add_moment(self%model%rock, self%mesh, potency, self%seismic_moment)
       if (self%is_initial) return
       call end_at_tips(self, fracture)
       call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)
