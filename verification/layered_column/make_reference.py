@@ -1,6 +1,6 @@
 """Consolidation of a column of two layers: eigenfunctions of both, independent of the solver.
 
-Run in this folder: it writes reference.csv, which check.toml compares with. With the fixed total
+`python make_reference.py`: it writes reference.csv, which check.toml compares with. With the fixed total
 stress -s at the top, p obeys C dp/dt = d/dz (m dp/dz) in either layer, C = S + alpha^2/(lambda + 2 G),
 m = k/mu, from p0 = alpha s/((lambda + 2 G) C), which differs between the layers; p and m dp/dz are
 continuous, p = 0 at the drained top z = 0, dp/dz = 0 at the sealed bottom.
