@@ -63,32 +63,32 @@ contains
       integer :: i
 
       associate (viscosity => fluid%viscosity)
-      own(0) = conduction(rock%permeability(:, 1), viscosity)
-      solid(0) = solid_of(rock)
-      do i = 1, size(regions)
-         outlines(i)%corners = region_outline(regions(i), domain)
-         associate (m => regions(i)%material)
-            own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
-                                viscosity)
-            solid(i) = solid_of(new_rock(m, fluid))
-         end associate
-      end do
-      call number_stiffnesses(solid)
-      differ = any_differ(solid)
-      if (differ) call make_room(mesh%n_cells, rock)
-      deallocate (rock%permeability, rock%resistivity)
-      allocate (rock%permeability(3, mesh%n_cells), rock%resistivity(2, 2, mesh%n_cells))
-      do c = 1, mesh%n_cells
-         call parts_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, part, along)
-         if (differ) call set_solid(part, solid, c, rock)
-         at_cell = mixed_conduction(part, cell_area(mesh, c), along, own, viscosity)
-         rock%permeability(:, c) = at_cell%permeability
-         rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
-         if (at_cell%layering > rock%most_layered) then
-            rock%most_layered = at_cell%layering
-            rock%most_layered_cell = c
-         end if
-      end do
+         own(0) = conduction(rock%permeability(:, 1), viscosity)
+         solid(0) = solid_of(rock)
+         do i = 1, size(regions)
+            outlines(i)%corners = region_outline(regions(i), domain)
+            associate (m => regions(i)%material)
+               own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
+                                   viscosity)
+               solid(i) = solid_of(new_rock(m, fluid))
+            end associate
+         end do
+         call number_stiffnesses(solid)
+         differ = any_differ(solid)
+         if (differ) call make_room(mesh%n_cells, rock)
+         deallocate (rock%permeability, rock%resistivity)
+         allocate (rock%permeability(3, mesh%n_cells), rock%resistivity(2, 2, mesh%n_cells))
+         do c = 1, mesh%n_cells
+            call parts_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, part, along)
+            if (differ) call set_solid(part, solid, c, rock)
+            at_cell = mixed_conduction(part, cell_area(mesh, c), along, own, viscosity)
+            rock%permeability(:, c) = at_cell%permeability
+            rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
+            if (at_cell%layering > rock%most_layered) then
+               rock%most_layered = at_cell%layering
+               rock%most_layered_cell = c
+            end if
+         end do
       end associate
    end subroutine place_regions
 

@@ -50,7 +50,7 @@ contains
       if (material%plane_stress) then
          ! Without stress across the plane, strain follows there: e_zz = (alpha p - lambda (e_xx +
          ! e_yy))/(lambda + 2 G), lambda that of the solid.
-         modulus = 2.0_rk*rock%shear(1)*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
+       modulus = 2.0_rk*rock%shear(1)*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
          rock%biot = material%biot*2.0_rk*rock%shear/modulus
          rock%storage = rock%storage + material%biot**2/modulus
       end if

@@ -1,8 +1,8 @@
 !> The stiffness and storage of cells in a body with regions.
 !!
 !! A cell within one region has its constants. In one that outlines cut, stress and pressure are
-!! taken for uniform, as the mixed scheme has them, and what they make of strain and fluid content is
-!! the mean over the cell's area:
+!! taken for uniform, as the mixed scheme has them, and what they make of strain and fluid content
+!! is the mean over the cell's area:
 !!   eps = <A> sigma + <b> p I,  content = <b> tr sigma + <s> p,
 !! with the compliance A = (sigma - nu tr sigma I)/(2 G), b = alpha/(2 (lambda + G)) and
 !! s = S + alpha^2/(lambda + G). This is what exact integration of the scheme gives: the
@@ -58,7 +58,7 @@ contains
          do k = 1, i - 1
             if (abs(solid(i)%shear - solid(k)%shear) > same_value*solid(k)%shear) cycle
             if (abs(solid(i)%lame - solid(k)%lame) > same_value*(solid(k)%shear &
-                                                                + abs(solid(k)%lame))) cycle
+                                                                 + abs(solid(k)%lame))) cycle
             solid(i)%stiffness = solid(k)%stiffness
             exit
          end do

@@ -18,8 +18,8 @@
 !! vertex. The rotations times 2 G are the unknowns, of the size of a traction, so that pivots stay
 !! comparable: G of one of the cells that share the rotation.
 !!
-!! Where rocks of several stiffnesses meet at a vertex each has a rotation of its own (coarse_regions).
-!! With tractions given on both sides of an interface that ends on the boundary, two of them can
+!! Where rocks of several stiffnesses meet at a vertex each has a rotation of its own
+!! (coarse_regions). With tractions given on both sides of an interface that ends on the boundary, two of them can
 !! ask the same of the traction on the interface; one of them is left out then.
 module coarse_stress
    use base_kinds, only: ik, rk
@@ -120,7 +120,7 @@ contains
    subroutine leave_out_repeated(n_tractions, local)
       integer(ik), intent(in) :: n_tractions
       type(local_system_t), intent(inout) :: local
-      real(rk), parameter :: nothing = 1.0e-10_rk  !< of a row that is left once others are taken off
+      real(rk), parameter :: nothing = 1.0e-10_rk  !< what is left of a repeated row
       real(rk) :: rows(n_tractions, size(local%matrix, 1) - n_tractions), left(n_tractions)
       real(rk) :: whole
       integer(ik) :: i, k

@@ -154,7 +154,7 @@ contains
 
       associate (nu => solid%poisson())
          spring = solid%crack_modulus()*[-0.0471_rk + nu*(0.095_rk + 0.038_rk*nu), &
-                                       0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
+                                         0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
       end associate
    end function in_tip_cell
 
@@ -176,7 +176,7 @@ contains
 
       associate (nu => solid%poisson())
          spring = solid%crack_modulus()*[0.0133_rk + 0.049_rk*nu, &
-                                       0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
+                                         0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
       end associate
    end function in_cell_behind
 

@@ -111,7 +111,7 @@ contains
                        .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%body_force) > 0.0_rk))) cycle
             force(:, nodes) = force(:, nodes) + volume_forces(fine, cell, &
-               rocks%elasticity(rocks%index_of(cell))%biot, loads)
+                                                 rocks%elasticity(rocks%index_of(cell))%biot, loads)
          end associate
       end do
    end subroutine add_volume_forces

@@ -51,7 +51,7 @@ contains
                                      determinant)
                   samples%xy(:, k, cell) = matmul(fine%xy(:, nodes), values)
                   stress = rock%total_stress(matmul(displacement(:, nodes), &
-                                                                transpose(gradients)), 0.0_rk)
+                                                    transpose(gradients)), 0.0_rk)
                   samples%stress(:, k, cell) = [stress(1, 1), stress(2, 2), stress(1, 2)]
                end do
             end associate

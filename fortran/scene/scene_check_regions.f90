@@ -20,8 +20,8 @@ module scene_check_regions
 
    !> What makes the rock of a region another one than that of the scene.
    character(len=15), parameter :: of_rock(7) = [character(len=15) :: "young", "poisson", "biot", &
-                                                 "porosity", "permeability", "permeability_xx", &
-                                                 "toughness"]
+                                                    "porosity", "permeability", "permeability_xx", &
+                                                                                        "toughness"]
    !> Young's moduli of two rocks beside each other: beyond that rounding would decide [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
 
@@ -102,13 +102,13 @@ contains
          if (.not. scene%has_fluid()) return
          if (m%biot < m%porosity) then
             call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
-                                                      "porosity"), whose// &
+                                                     "porosity"), whose// &
                         "makes its Biot coefficient "//real_text(m%biot)// &
                         " smaller than its porosity, "//real_text(m%porosity)// &
                         ", but it must be at least that")
          else if (.not. storage(m, fluid) > 0.0_rk) then
             call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
-                                                      "porosity"), whose// &
+                                                     "porosity"), whose// &
                         "gives no storage: phi c_p and the part of the solid are both zero, "// &
                         "but their sum must be positive")
          else if (.not. fluid%compressibility > 0.0_rk .and. &

@@ -250,7 +250,7 @@ contains
          call self%chronicle%add_tip(row)
          self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
                                          over_toughness(self%scene, &
-                                                        row%keq/resistance_of(self%tip(i), any_grew)))
+                                                      row%keq/resistance_of(self%tip(i), any_grew)))
       end do
    end subroutine note_tips
 

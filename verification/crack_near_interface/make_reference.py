@@ -2,7 +2,7 @@
 
 `python make_reference.py` writes reference.csv. The stress of an edge dislocation in a plane of two
 bonded rocks follows from Muskhelishvili's potentials (Suo 1989): with Phi0, Omega0 of a dislocation
-in one rock, the rock that holds it has Phi0 + P conj(Omega0), Omega0 + L conj(Phi0), where conj(F)(z)
+in one rock, the rock that holds it has Phi0 + P conj(Omega0), Omega0 + L conj(Phi0); conj(F)(z)
 is the conjugate of F at the conjugate of z, P = (mu2 - mu1)/(kappa1 mu2 + mu1) and
 L = (kappa1 mu2 - kappa2 mu1)/(mu2 + kappa2 mu1). The crack is a distribution of dislocations with
 square roots at both ends, found by Gauss-Chebyshev collocation. Plane strain; the pressure and the
@@ -48,7 +48,9 @@ class Plane:
         return 4.0 * phi.real - traction.real, traction.real, -traction.imag
 
 
-def intensities(plane: Plane, middle: complex, way: complex, points: int) -> list[tuple[float, float]]:
+def intensities(
+    plane: Plane, middle: complex, way: complex, points: int
+) -> list[tuple[float, float]]:
     """K_I and K_II over p sqrt(pi a) at the start and at the end of a crack along a unit vector."""
     n = points
     nodes = np.cos((2 * np.arange(1, n + 1) - 1) * np.pi / (2 * n))
@@ -69,10 +71,19 @@ def intensities(plane: Plane, middle: complex, way: complex, points: int) -> lis
     result = []
     for end in (-1.0, 1.0):
         values = [
-            float(np.polynomial.chebyshev.chebval(end, np.polynomial.chebyshev.chebfit(nodes, density[k * n : k * n + n], n - 1)))
+            float(
+                np.polynomial.chebyshev.chebval(
+                    end, np.polynomial.chebyshev.chebfit(nodes, density[k * n : k * n + n], n - 1)
+                )
+            )
             for k in (0, 1)
         ]
-        result.append((2.0 * np.pi * plane.factor * values[0] * end, 2.0 * np.pi * plane.factor * values[1] * end))
+        result.append(
+            (
+                2.0 * np.pi * plane.factor * values[0] * end,
+                2.0 * np.pi * plane.factor * values[1] * end,
+            )
+        )
     return result
 
 
@@ -83,13 +94,19 @@ def main() -> None:
         for name, middle, way in (("parallel", 0.5j, 1.0 + 0j), ("perpendicular", 1.5j, 1j)):
             fine = intensities(Plane(ratio, (0.2, 0.3)), middle, way, 400)
             coarse = intensities(Plane(ratio, (0.2, 0.3)), middle, way, 200)
-            change = max(abs(a - b) for p, q in zip(fine, coarse, strict=True) for a, b in zip(p, q, strict=True))
+            change = max(
+                abs(a - b)
+                for p, q in zip(fine, coarse, strict=True)
+                for a, b in zip(p, q, strict=True)
+            )
             for tip, (k1, k2) in enumerate(fine, start=1):
                 rows.append([f"{ratio:.6f}", name, tip, f"{k1:.8f}", f"{k2:.8f}"])
             print(f"{ratio:.4f} {name} {fine} halving the points changes {change:.1e}")
     with (Path(__file__).parent / "reference.csv").open("w", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["young_ratio", "crack", "tip", "k1_over_p_sqrt_pi_a", "k2_over_p_sqrt_pi_a"])
+        table.writerow(
+            ["young_ratio", "crack", "tip", "k1_over_p_sqrt_pi_a", "k2_over_p_sqrt_pi_a"]
+        )
         table.writerows(rows)
 
 

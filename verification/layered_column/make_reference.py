@@ -1,7 +1,7 @@
 """Consolidation of a column of two layers: eigenfunctions of both, independent of the solver.
 
-`python make_reference.py`: it writes reference.csv, which check.toml compares with. With the fixed total
-stress -s at the top, p obeys C dp/dt = d/dz (m dp/dz) in either layer, C = S + alpha^2/(lambda + 2 G),
+`python make_reference.py` writes reference.csv, which check.toml compares with. With the fixed
+total stress -s, p obeys C dp/dt = d/dz (m dp/dz) in either layer, C = S + alpha^2/(lambda + 2 G),
 m = k/mu, from p0 = alpha s/((lambda + 2 G) C), which differs between the layers; p and m dp/dz are
 continuous, p = 0 at the drained top z = 0, dp/dz = 0 at the sealed bottom.
 """
@@ -20,7 +20,7 @@ STEP = 1250.0  # of the runs that vary the cells [s]
 
 
 def layer(rock: dict[str, float]) -> tuple[float, float, float, float, float]:
-    """m [m2/(Pa s)], C [1/Pa], undrained p0 [Pa], height [m], lambda + 2 G [Pa]."""
+    """Return m [m2/(Pa s)], C [1/Pa], undrained p0 [Pa], height [m], lambda + 2 G [Pa]."""
     e, nu, alpha = rock["young"], rock["poisson"], rock["biot"]
     stiff = e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
     bulk = e / (3.0 * (1.0 - 2.0 * nu))
@@ -41,7 +41,9 @@ def shapes(rate: float) -> tuple[float, float]:
 def condition(rate: float) -> float:
     """Zero at an eigenvalue: sin(a z) above meets B cos(b (H - z)) below with the same flux."""
     a, b = shapes(rate)
-    return M1 * a * math.cos(a * H1) * math.cos(b * H2) - M2 * b * math.sin(a * H1) * math.sin(b * H2)
+    return M1 * a * math.cos(a * H1) * math.cos(b * H2) - M2 * b * math.sin(a * H1) * math.sin(
+        b * H2
+    )
 
 
 def eigenvalues(count: int) -> list[float]:
@@ -81,7 +83,7 @@ def terms(count: int) -> list[tuple[float, float, float, float, float]]:
 
 
 def pressure(z: float, factor, modes) -> float:
-    """p [Pa] at the depth z [m]; factor(rate) is what time leaves of a mode."""
+    """Return p [Pa] at the depth z [m]; factor(rate) is what time leaves of a mode."""
     total = 0.0
     for rate, a, b, below, share in modes:
         shape = math.sin(a * z) if z < H1 else below * math.cos(b * (H1 + H2 - z))
@@ -114,8 +116,17 @@ def main() -> None:
         table.writerow(["depth_m", "series_pa", "series_backward_euler_pa"])
         for k in range(1, 11):
             z = 0.1 * k if k != 4 else 0.4
-            table.writerow([f"{z:.1f}"] + [f"{pressure(z, f, modes):.9e}" for f in (exact, stepped)])
-    print("undrained pressures", P1, P2, "settlement", settlement(exact, modes), settlement(stepped, modes))
+            table.writerow(
+                [f"{z:.1f}"] + [f"{pressure(z, f, modes):.9e}" for f in (exact, stepped)]
+            )
+    print(
+        "undrained pressures",
+        P1,
+        P2,
+        "settlement",
+        settlement(exact, modes),
+        settlement(stepped, modes),
+    )
     print("at rest", settlement(lambda _: 0.0, modes), "at once", settlement(lambda _: 1.0, modes))
 
 

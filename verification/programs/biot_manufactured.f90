@@ -132,8 +132,8 @@ contains
          gradient(2, 2) = length*(2.0_rk*pi*sin(2.0_rk*y)*sin(2.0_rk*x) + slope(2))
       end associate
       divergence = gradient(1, 1) + gradient(2, 2)
-      stress(1) = 2.0_rk*model%rock%shear(1)*gradient(1, 1) + model%rock%lame(1)*divergence - values(3)
-      stress(2) = 2.0_rk*model%rock%shear(1)*gradient(2, 2) + model%rock%lame(1)*divergence - values(3)
+   stress(1) = 2.0_rk*model%rock%shear(1)*gradient(1, 1) + model%rock%lame(1)*divergence - values(3)
+   stress(2) = 2.0_rk*model%rock%shear(1)*gradient(2, 2) + model%rock%lame(1)*divergence - values(3)
       stress(3) = model%rock%shear(1)*(gradient(1, 2) + gradient(2, 1))
    end subroutine solution
 
@@ -153,7 +153,7 @@ contains
          laplacian = laplacian - 2.0_rk*pi**2*share*s
          ! div u = U t pi share (cos x sin y + sin x cos y) = U t pi share sin(x + y)
          gradient = pi**2*share*cos(x + y)
-         density(1:2) = -length*(rock%shear(1)*laplacian + (rock%lame(1) + rock%shear(1))*gradient) &
+        density(1:2) = -length*(rock%shear(1)*laplacian + (rock%lame(1) + rock%shear(1))*gradient) &
                         + pressure*pi*[cos(x)*sin(y), sin(x)*cos(y)]
          density(1:2) = time*density(1:2)
          density(3) = length*pi*share*sin(x + y) + rock%storage(1)*pressure*s &

@@ -51,7 +51,8 @@ program coarse_mandel
    call set_up(scene, moved)
    call new_state(mesh, rest%cells, initial_t(), rest, state)
    associate (rock => rest%rock)
-      diffusivity = rock%mobility/(rock%storage(1) + rock%biot(1)**2/(rock%lame(1) + 2.0_rk*rock%shear(1)))
+      diffusivity = rock%mobility/(rock%storage(1) + rock%biot(1)**2 &
+                                   /(rock%lame(1) + 2.0_rk*rock%shear(1)))
    end associate
    dt = dt_relative*a**2/diffusivity
 

@@ -105,7 +105,7 @@ contains
       type(matrix_t) :: matrix
       type(error_t), allocatable :: error
       real(rk), allocatable :: content(:), rows(:, :), stresses(:, :), tractions(:), unknowns(:, :)
-      real(rk) :: biot(2), gradient(2, 2, 2), lack(2), lame(2), shear(2), storage(2), stress(2, 2, 2)
+     real(rk) :: biot(2), gradient(2, 2, 2), lack(2), lame(2), shear(2), storage(2), stress(2, 2, 2)
       real(rk) :: across, scale
       integer(ik) :: c
       integer :: side
