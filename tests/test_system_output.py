@@ -32,8 +32,8 @@ MECHANICS = {
     "without a fluid, with growth",
     "without a fluid, with &adaptive",
 }
-SLIP = "slip_events.csv"  # with a fluid only
-TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv", SLIP)
+SLIP, WELLS = "slip_events.csv", "wells.csv"  # with a fluid only
+TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv", SLIP, WELLS)
 ROW = re.compile(r"\| `(?P<name>\S+)` \| (?P<unit>[^|]+) \| (?P<runs>[^|]+) \| (?P<meaning>.+) \|")
 WORD = re.compile(r"\* `(?P<word>\S+)`: .+")
 
@@ -132,7 +132,7 @@ def test_every_run_that_the_page_names_is_tested(described: dict[str, list[Entry
 
 def test_tables(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set[str]]) -> None:
     out, runs = out_and_runs
-    tables = [file for file in TABLES if file != SLIP or runs != MECHANICS]
+    tables = [file for file in TABLES if file not in (SLIP, WELLS) or runs != MECHANICS]
     assert {path.name for path in out.glob("*.csv")} == set(tables)
     for file in tables:
         expected = names(described[file], runs)
@@ -222,7 +222,12 @@ def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str
         file: {m["word"] for m in map(WORD.fullmatch, lines) if m}
         for file, lines in sections.items()
     }
-    for file, column in (("fractures.csv", "state"), ("events.csv", "kind"), (SLIP, "ended_by")):
+    for file, column in (
+        ("fractures.csv", "state"),
+        ("events.csv", "kind"),
+        (SLIP, "ended_by"),
+        (WELLS, "control"),
+    ):
         if not (out / file).exists():
             continue
         header, lines = table(out / file)

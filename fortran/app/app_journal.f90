@@ -101,6 +101,9 @@ contains
          do i = 1, size(chronicle%tips, kind=ik)
             call self%files%tip_row(chronicle%tips(i))
          end do
+         do i = 1, size(chronicle%wells, kind=ik)
+            call self%files%well_row(chronicle%wells(i))
+         end do
          do i = 1, size(chronicle%slip_events, kind=ik)
             call self%files%slip_event_row(chronicle%slip_events(i))
          end do

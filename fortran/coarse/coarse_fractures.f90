@@ -13,6 +13,7 @@ module coarse_fractures
    use coarse_state, only: fracture_cells_t, state_t
    use coarse_full_step, only: find_full_step
    use coarse_sparse_step, only: sparse_step_t
+   use coarse_wells, only: wells_t
    use contact_newton, only: contact_system_t, step_quality_t
    implicit none(type, external)
    private
@@ -39,6 +40,7 @@ module coarse_fractures
       type(fracture_cells_t), pointer :: cells => null()
       integer(ik), pointer :: connections(:, :) => null()  !< (2, m) cells that exchange fluid
       type(joints_t), pointer :: joints => null()
+      type(wells_t), pointer :: wells => null()  !< whose flow is an unknown
       !> Factors of the linear step where the condensed matrix is not formed
       type(sparse_step_t), pointer :: factors => null()
       real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system [N/m], [m2]
@@ -86,11 +88,12 @@ module coarse_fractures
 contains
 
    !> Units, and what does not change within the step.
-   subroutine prepare(condensed, cells, connections, joints, settings, dt, g, before, eq)
+   subroutine prepare(condensed, cells, connections, joints, wells, settings, dt, g, before, eq)
       type(condensed_t), intent(inout), target :: condensed
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
+      type(wells_t), intent(in), target :: wells
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
@@ -105,10 +108,12 @@ contains
       eq%cells => cells
       eq%connections => connections
       eq%joints => joints
+      eq%wells => wells
       eq%g => g
       eq%before => before
       eq%settings = settings
-      eq%layout = fracture_layout(n, size(connections, 2, kind=ik), joints%branch_count(), joints%n)
+      eq%layout = fracture_layout(n, size(connections, 2, kind=ik), joints%branch_count(), &
+                                  wells%n, joints%n)
       eq%dt = dt
       eq%stiffness = settings%young/reference
       eq%unit = reference**2/settings%young
@@ -140,7 +145,7 @@ contains
          end do
       end do
       allocate (eq%is_flow(eq%layout%count()), source=.false.)
-      eq%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_branch(eq%layout%n_branches)) = .true.
+      eq%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)) = .true.
    end subroutine link_unknowns
 
    !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
@@ -292,6 +297,9 @@ contains
          if (all(self%joints%is_shut(self%joints%branches%of(i)))) cycle
          balance = balance + self%residual(self%layout%at_joint(i))*self%unit
          fluid = fluid + self%dt*abs(self%joints%injection(i))
+      end do
+      do i = 1, self%wells%n
+         fluid = fluid + abs(self%wells%rate(i))*self%dt
       end do
       is_balanced = abs(balance) <= least*fluid
    end function is_balanced

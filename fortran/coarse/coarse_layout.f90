@@ -8,7 +8,7 @@
 !!   [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-
 !! All unknowns on the fractures, x: per fracture cell the same and p_F; after the last cell the
 !! flows along the fractures, one per pair of cells that exchange fluid; then those into joints, one
-!! per branch; then the pressures of the joints.
+!! per branch, and those of wells; then the pressures of the joints.
 module coarse_layout
    use base_kinds, only: ik
    use mesh_types, only: mesh_t
@@ -32,6 +32,7 @@ module coarse_layout
    type, extends(condensed_layout_t) :: fracture_layout_t
       integer(ik) :: n_flows = 0  !< pairs of cells that exchange fluid
       integer(ik) :: n_branches = 0  !< cells that reach a joint, by joint
+      integer(ik) :: n_wells = 0  !< whose flow is an unknown
       integer(ik) :: n_joints = 0
    contains
       procedure :: count => fracture_count
@@ -39,6 +40,7 @@ module coarse_layout
       procedure :: at_pressure
       procedure :: at_flow
       procedure :: at_branch
+      procedure :: at_well
       procedure :: at_joint
    end type fracture_layout_t
 
@@ -52,16 +54,19 @@ contains
    end function condensed_layout
 
    !> The layout of x.
-   pure type(fracture_layout_t) function fracture_layout(n_cells, n_flows, n_branches, n_joints)
+   pure type(fracture_layout_t) function fracture_layout(n_cells, n_flows, n_branches, n_wells, &
+                                                         n_joints)
       integer(ik), intent(in) :: n_cells  !< fracture cells
       integer(ik), intent(in) :: n_flows  !< pairs of cells that exchange fluid
       integer(ik), intent(in) :: n_branches  !< flows into joints
+      integer(ik), intent(in) :: n_wells  !< whose flow is an unknown
       integer(ik), intent(in) :: n_joints
 
       fracture_layout%n_cells = n_cells
       fracture_layout%per_cell = 7
       fracture_layout%n_flows = n_flows
       fracture_layout%n_branches = n_branches
+      fracture_layout%n_wells = n_wells
       fracture_layout%n_joints = n_joints
    end function fracture_layout
 
@@ -76,7 +81,8 @@ contains
    pure integer(ik) function fracture_count(self)
       class(fracture_layout_t), intent(in) :: self
 
-      fracture_count = self%cell_count() + self%n_flows + self%n_branches + self%n_joints
+      fracture_count = self%cell_count() + self%n_flows + self%n_branches + self%n_wells &
+                       + self%n_joints
    end function fracture_count
 
    !> How many of the unknowns belong to a single cell; they come first.
@@ -128,12 +134,20 @@ contains
       at_branch = self%at_flow(self%n_flows) + branch
    end function at_branch
 
+   !> Flow of a well into what it feeds.
+   elemental integer(ik) function at_well(self, well)
+      class(fracture_layout_t), intent(in) :: self
+      integer(ik), intent(in) :: well
+
+      at_well = self%at_branch(self%n_branches) + well
+   end function at_well
+
    !> Pressure of a joint.
    elemental integer(ik) function at_joint(self, joint)
       class(fracture_layout_t), intent(in) :: self
       integer(ik), intent(in) :: joint
 
-      at_joint = self%at_branch(self%n_branches) + joint
+      at_joint = self%at_well(self%n_wells) + joint
    end function at_joint
 
    !> How many blocks the whole body has.

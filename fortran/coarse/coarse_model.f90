@@ -25,6 +25,7 @@ module coarse_model
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
+   use coarse_wells, only: wells_t
    use mesh_types, only: mesh_t, point_interior
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
@@ -45,6 +46,7 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       type(joints_t) :: joints  !< where they exchange it otherwise
+      type(wells_t) :: wells  !< whose flow is an unknown; to be kept in step with the mesh likewise
       !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
       !! regions differ [-]
       real(rk), allocatable :: rock_resistance(:)
@@ -168,6 +170,7 @@ contains
       real(rk) :: time
       integer(ik), allocatable :: connections(:, :)
       type(joints_t) :: joints
+      type(wells_t) :: wells
 
       time = state%time
       self%settings%equilibrate = .true.
@@ -175,10 +178,13 @@ contains
       self%connections = connections(:, :0)
       joints = self%joints
       self%joints = joints_t()
+      wells = self%wells
+      self%wells = wells_t()
       call self%advance(mesh, dt, state, timers, report, error)
       self%settings%equilibrate = .false.
       self%connections = connections
       self%joints = joints
+      self%wells = wells
       state%time = time
       if (report%converged) call rest_fluid(self, state)
    end subroutine equilibrate
@@ -231,10 +237,11 @@ contains
       if (n > 0) then
          call timers%start(phase_contact)
          call solve_fractures(self%condensed, self%factors, self%guess, self%cells, &
-                              self%connections, self%joints, self%settings, dt, g, state, q, &
-                              report)
+                              self%connections, self%joints, self%wells, self%settings, dt, g, &
+                              state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
+         if (self%wells%n > 0) call feed(self, state%well_flow)
       end if
       call timers%start(phase_solve)
       call self%condensed%expand(q, rhs, state%unknowns, error)
@@ -251,6 +258,16 @@ contains
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
    end subroutine advance
+
+   !> The flow of wells that was an unknown is one of the sources of the step.
+   subroutine feed(self, flow)
+      class(coarse_model_t), intent(inout) :: self
+      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+
+      self%cells%injection = self%cells%injection + matmul(self%wells%share, flow)
+      if (self%joints%n > 0) self%joints%injection = self%joints%injection &
+                                                     + matmul(self%wells%joint_share, flow)
+   end subroutine feed
 
    !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
    !! in.

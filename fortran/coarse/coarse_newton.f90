@@ -9,6 +9,8 @@ module coarse_newton
    use coarse_loops, only: flows_in_loops, unknown_flow
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_sparse_step, only: sparse_step_t
+   use coarse_well_flow, only: well_head
+   use coarse_wells, only: wells_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
@@ -24,14 +26,15 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, settings, dt, &
-                              g, state, q, report)
+   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, wells, &
+                              settings, dt, g, state, q, report)
       type(condensed_t), intent(inout), target :: condensed
       type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
       type(guess_t), intent(inout) :: guess  !< from earlier solutions
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
+      type(wells_t), intent(in), target :: wells
       type(newton_settings_t), intent(in) :: settings
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
@@ -44,7 +47,7 @@ contains
       real(rk), allocatable :: start(:), x(:)
       integer(ik) :: spent
 
-      call prepare(condensed, cells, connections, joints, settings, dt, g, state, eq)
+      call prepare(condensed, cells, connections, joints, wells, settings, dt, g, state, eq)
       eq%factors => factors
       how = iteration_settings_t(tolerance=settings%tolerance, &
                                  iterations_max=settings%iterations_max, with_condition=.true., &
@@ -102,6 +105,9 @@ contains
             x(eq%layout%at_face_pressure(i, k)) = state%pressure(i)
          end do
          x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%void(i))
+      end do
+      do i = 1, eq%layout%n_wells
+         x(eq%layout%at_well(i)) = state%well_flow(i)*eq%dt/eq%unit
       end do
       do i = 1, eq%layout%n_joints
          x(eq%layout%at_joint(i)) = eq%joints%mean_pressure(i, state%pressure)
@@ -176,6 +182,13 @@ contains
       associate (layout => eq%layout, to_flow => eq%unit/dt)
          state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
          state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
+         if (layout%n_wells > 0) then
+            state%well_flow = x(layout%at_well([(i, i=1, layout%n_wells)]))*to_flow
+            state%well_rate = -eq%wells%storage*state%well_head/dt
+            state%well_head = [(well_head(i, x, eq), i=1, layout%n_wells)]
+            state%well_rate = state%well_rate + state%well_flow &
+                              + eq%wells%storage*state%well_head/dt
+         end if
          state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
       end associate
    end subroutine accept

@@ -41,6 +41,10 @@ module coarse_state
       real(rk), allocatable :: flow(:)  !< (pairs) from the first cell to the second [m2/s]
       real(rk), allocatable :: branch_flow(:)  !< (branches) into the joints [m2/s]
       real(rk), allocatable :: joint_pressure(:)  !< (joints) [Pa]
+      ! Wells whose flow is an unknown; unallocated: there are none.
+      real(rk), allocatable :: well_flow(:)  !< into the fracture [m2/s]
+      real(rk), allocatable :: well_head(:)  !< pressure at the head [Pa]
+      real(rk), allocatable :: well_rate(:)  !< into the well at its head, mean of the step [m2/s]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
    end type state_t
 

@@ -14,10 +14,10 @@ module output_columns
    public :: without_fluid
    public :: applies, column_t, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns
-   public :: slip_event_columns, tip_columns
+   public :: slip_event_columns, tip_columns, well_columns
    public :: fracture_fields, intersection_fields, matrix_fields
    public :: network_keys, record_keys
-   public :: contact_words, end_words, event_words, joint_words, status_words
+   public :: contact_words, end_words, event_words, joint_words, status_words, well_words
 
    ! Runs in which a column, key or field is written.
    character(len=*), parameter :: always = "always"
@@ -183,6 +183,31 @@ module output_columns
       column_t("y_m", "m", always, "Where; empty where that has no meaning"), &
       column_t("detail", "-", always, "A few words for people")]
 
+   type(column_t), parameter :: well_columns(*) = [ &
+      column_t("time_s", "s", with_wells, "Time"), &
+      column_t("well", "-", with_wells, "Name of the well"), &
+      column_t("stage", "-", with_wells, "Number of its stage, from 1; 0: none, it is shut"), &
+      column_t("control", "-", with_wells, "What it keeps to, see below"), &
+      column_t("rate_m2_s", "m2/s", with_wells, "Into the well at its head, mean of the step"), &
+      column_t("flow_m2_s", "m2/s", with_wells, &
+               "Out of the well into fracture or rock: rate_m2_s less what the well stores"), &
+      column_t("pressure_pa", "Pa", with_wells, &
+            "Fluid pressure where the well meets fracture or rock; mean over the cells that it "// &
+               "feeds"), &
+      column_t("head_pressure_pa", "Pa", with_wells, &
+          "The same at its head, with what is lost on the way; the weight of its fluid is left "// &
+               "out"), &
+      column_t("injected_m2", "m2", with_wells, "Fluid into the well at its head so far"), &
+      column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
+               "flow_m2_s over the rise of pressure_pa since the start")]
+
+   type(word_t), parameter :: well_words(*) = [ &
+      word_t("rate", "its rate"), &
+      word_t("pressure", "its pressure"), &
+      word_t("limit", "the pressure that bounds its rate; nothing flows where that beside "// &
+             "the well is beyond it"), &
+      word_t("shut", "nothing flows: before its start, or after its end")]
+
    type(column_t), parameter :: slip_event_columns(*) = [ &
     column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of their ends"), &
       column_t("time_s", "s", with_fluid, "When the patch began to slip"), &
@@ -347,6 +372,8 @@ module output_columns
       word_t("bifurcation", "tips grow together, but any difference between them would grow: "// &
              "one of them could run ahead of the others"), &
       word_t("remesh", "the mesh has followed the growth"), &
+    word_t("well", "a stage of a well begins, it is shut, or it reaches or leaves its pressure "// &
+             "limit, as `detail` says"), &
       word_t("window", "stress intensity factors of a tip that would grow are not known well "// &
              "enough: its window becomes larger or finer, as `detail` says")]
 

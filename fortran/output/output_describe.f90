@@ -4,7 +4,7 @@ module output_describe
                              fracture_columns, fracture_fields, history_columns, &
                              intersection_fields, joint_words, matrix_fields, network_keys, &
                              probe_columns, record_keys, slip_event_columns, status_words, &
-                             tip_columns, word_t
+                             tip_columns, well_columns, well_words, word_t
    implicit none(type, external)
    private
 
@@ -116,6 +116,9 @@ contains
                     "state, times `out_of_plane_length`, but for the events left out.", &
                     slip_event_columns)
       call describe_words(unit, "ended_by", end_words)
+      call describe(unit, "wells.csv", "With wells: a row per well and row of history.csv.", &
+                    well_columns)
+      call describe_words(unit, "control", well_words)
       call describe(unit, "run.json", "How the run went. A dot in a name leads into an object.", &
                     record_keys)
       call describe_words(unit, "status", status_words)

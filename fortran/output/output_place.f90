@@ -11,9 +11,9 @@ module output_place
 
    public :: place_t
 
-   character(len=*), parameter :: top_files(10) = [character(len=15) :: "scene.nml", "run.json", &
+   character(len=*), parameter :: top_files(11) = [character(len=15) :: "scene.nml", "run.json", &
       & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
-      & "slip_events.csv", "run.log"]
+      & "slip_events.csv", "wells.csv", "run.log"]
 
    integer(c_int), parameter :: is_held = -1  !< by another run; as in output_place.c
    integer(c_int), parameter :: no_hold = -2

@@ -8,7 +8,7 @@ module output_run
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
-   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
    use output_files, only: write_text_file
    use output_network, only: network_record_t
    use output_place, only: place_t
@@ -50,6 +50,7 @@ module output_run
       procedure :: probe_row
       procedure :: event_row
       procedure :: slip_event_row
+      procedure :: well_row
       procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
@@ -143,6 +144,14 @@ contains
 
       call self%tables%event_row(time, kind, detail, fracture, xy)
    end subroutine event_row
+
+   !> Add a well to wells.csv.
+   subroutine well_row(self, row)
+      class(run_output_t), intent(inout) :: self
+      type(well_row_t), intent(in) :: row
+
+      call self%tables%well_row(row)
+   end subroutine well_row
 
    !> Add a slip event to slip_events.csv.
    subroutine slip_event_row(self, event)

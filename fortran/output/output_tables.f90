@@ -6,10 +6,10 @@ module output_tables
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
    use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
-                             probe_columns, slip_event_columns, tip_columns
+                             probe_columns, slip_event_columns, tip_columns, well_columns
    use output_series, only: series_t
    use results_fields, only: fracture_fields_t
-   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t
+   use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
    private
@@ -27,6 +27,7 @@ module output_tables
       type(series_t) :: probes
       type(series_t) :: events
       type(series_t) :: slip_events
+      type(series_t) :: wells
       type(text_t), allocatable, private :: probe_names(:)
    contains
       procedure :: open => open_tables
@@ -36,6 +37,7 @@ module output_tables
       procedure :: probe_row
       procedure :: event_row
       procedure :: slip_event_row
+      procedure :: well_row
       procedure :: flush => flush_tables
    end type tables_t
 
@@ -57,6 +59,7 @@ contains
          if (scene%has_fluid()) call open_table(self%slip_events, &
             & directory//"/slip_events.csv", slip_event_columns, scene)
       end if
+    if (scene%has_wells()) call open_table(self%wells, directory//"/wells.csv", well_columns, scene)
       if (allocated(scene%probes)) then
          if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
       end if
@@ -260,6 +263,27 @@ contains
       end associate
    end subroutine slip_event_row
 
+   !> Add a well after a step.
+   subroutine well_row(self, row)
+      class(tables_t), intent(inout) :: self
+      type(well_row_t), intent(in) :: row
+
+      if (.not. self%wells%is_open()) return
+      associate (table => self%wells)
+         call table%put("time_s", row%time)
+         call table%put("well", row%name)
+         call table%put("stage", row%stage)
+         call table%put("control", row%control)
+         call table%put("rate_m2_s", row%rate)
+         call table%put("flow_m2_s", row%flow)
+         call table%put("pressure_pa", row%pressure)
+         call table%put("head_pressure_pa", row%head_pressure)
+         call table%put("injected_m2", row%injected)
+         call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%end_row()
+      end associate
+   end subroutine well_row
+
    !> Write all tables that have changed, each of them though another one fails; the first error.
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
@@ -271,6 +295,7 @@ contains
       call flush_one(self%probes)
       call flush_one(self%events)
       call flush_one(self%slip_events)
+      call flush_one(self%wells)
 
    contains
 

@@ -2,14 +2,15 @@
 module results_chronicle
    use base_kinds, only: ik, rk
    use base_texts, only: add_text, text_t
-   use results_rows, only: slip_event_t, tip_row_t
+   use results_rows, only: slip_event_t, tip_row_t, well_row_t
    implicit none(type, external)
    private
 
    public :: chronicle_t, event_t
    public :: event_arrest, event_bifurcation, event_growth, event_growth_onset
    public :: event_joint, event_opening
-   public :: event_remesh, event_slip_onset, event_step_cut, event_unstable, event_window
+   public :: event_remesh, event_slip_onset, event_step_cut, event_unstable, event_well
+   public :: event_window
 
    ! Kinds of events.
    character(len=*), parameter :: event_slip_onset = "slip_onset"
@@ -23,6 +24,7 @@ module results_chronicle
    character(len=*), parameter :: event_bifurcation = "bifurcation"
    character(len=*), parameter :: event_remesh = "remesh"
    character(len=*), parameter :: event_window = "window"
+   character(len=*), parameter :: event_well = "well"
 
    !> A row of events.csv. What does not apply to it is left empty.
    type :: event_t
@@ -38,6 +40,7 @@ module results_chronicle
    type :: chronicle_t
       type(event_t), allocatable :: events(:)
       type(tip_row_t), allocatable :: tips(:)
+      type(well_row_t), allocatable :: wells(:)
       type(slip_event_t), allocatable :: slip_events(:)  !< that are over
       type(text_t), allocatable :: remarks(:)  !< lines for the log
       logical :: has_new_network = .false.  !< the mesh has followed growth
@@ -56,6 +59,7 @@ contains
 
       self%events = [event_t ::]
       self%tips = [tip_row_t ::]
+      self%wells = [well_row_t ::]
       self%slip_events = [slip_event_t ::]
       self%remarks = [text_t ::]
       self%has_new_network = .false.

@@ -4,7 +4,7 @@ module results_rows
    implicit none(type, external)
    private
 
-   public :: history_row_t, probe_row_t, slip_event_t, tip_row_t
+   public :: history_row_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
 
    !> An accepted time step, a row of history.csv.
    type :: history_row_t
@@ -59,6 +59,20 @@ module results_rows
       real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
       logical :: sticks = .false.  !< it has ended before the run
    end type slip_event_t
+
+   !> A well after a step, a row of wells.csv.
+   type :: well_row_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      character(len=:), allocatable :: name
+      integer(ik) :: stage = 0  !< 0: it is shut
+      character(len=:), allocatable :: control  !< of the well_words of output_columns
+      real(rk) :: rate = 0.0_rk  !< into it at its head, mean of the step [m2/s]
+      real(rk) :: flow = 0.0_rk  !< out of it into fracture or rock [m2/s]
+      real(rk) :: pressure = 0.0_rk  !< where it meets these [Pa]
+      real(rk) :: head_pressure = 0.0_rk  !< [Pa]
+      real(rk) :: injected = 0.0_rk  !< at its head so far [m2]
+      real(rk) :: injectivity = 0.0_rk  !< flow over the pressure's rise since the start [m2/s/Pa]
+   end type well_row_t
 
    !> A state at the probes, a row of probes.csv.
    type :: probe_row_t

@@ -5,19 +5,20 @@ module scene_check
    use base_kinds, only: rk
    use base_number, only: integer_text
    use base_tolerances, only: round_off
-   use scene_check_geometry, only: check_domain, check_fractures, check_probes, check_wells
+   use scene_check_geometry, only: check_domain, check_fractures, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_permeability, only: check_given_permeability, check_tensor
    use scene_check_regions, only: check_given_regions, check_regions
    use scene_check_sides, only: check_parts, check_sides
    use scene_check_table, only: check_table
+   use scene_check_wells, only: check_given_wells, check_wells
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_storage, only: least_compressibility, skempton, storage
-   use scene_types, only: name_length, scene_t
+   use scene_types, only: scene_t
    use scene_values, only: value_t
-   use scene_words, only: nearest_word, real_text, rounded_text
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
@@ -35,7 +36,7 @@ contains
       if (.not. allocated(error) .and. sheet%has("region")) call check_given_regions(sheet, error)
       if (.not. allocated(error)) call check_sides(sheet, error)
       if (.not. allocated(error)) call check_table(sheet, error)
-      if (.not. allocated(error)) call check_injections(sheet, error)
+      if (.not. allocated(error)) call check_given_wells(sheet, error)
    end subroutine check_sheet
 
    !> The numbers must go together.
@@ -51,9 +52,7 @@ contains
       end if
       if (.not. allocated(error)) call check_parts(sheet, scene, error)
       if (.not. allocated(error)) call check_support(sheet, scene, error)
-      if (scene%has_fluid()) then
-         if (.not. allocated(error)) call check_times(sheet, scene, error)
-      else
+      if (.not. scene%has_fluid()) then
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)
          if (.not. allocated(error)) call check_restraints(sheet, scene, error)
@@ -65,7 +64,7 @@ contains
       if (.not. allocated(error)) call check_levels(sheet, scene, error)
    end subroutine check_scene
 
-   !> No two fractures, regions, sides or probes have the same name.
+   !> No two fractures, regions, sides, wells or probes have the same name.
    pure subroutine check_names(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -74,14 +73,16 @@ contains
 
       do i = 1, sheet%length
          select case (groups(sheet%records(i)%group)%name)
-         case ("fracture", "region", "side", "probe")
+         case ("fracture", "region", "side", "probe", "injection")
             name = sheet%records(i)%value("name")
          case default
             cycle
          end select
+         if (.not. name%is_set) cycle  ! a well, called after its number
          do j = 1, i - 1
             if (sheet%records(j)%group /= sheet%records(i)%group) cycle
             other = sheet%records(j)%value("name")
+            if (.not. other%is_set) cycle
             if (name%text /= other%text) cycle
             call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on line "// &
                         integer_text(other%line)//" but must be unique")
@@ -89,39 +90,6 @@ contains
          end do
       end do
    end subroutine check_names
-
-   !> Wells belong to a fracture.
-   pure subroutine check_injections(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: value, wanted
-      character(len=name_length), allocatable :: names(:)
-      character(len=:), allocatable :: reason, likely
-      integer :: i, k
-
-      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, &
-                              sheet%length)])))
-      do k = 1, size(names)
-         value = sheet%records(sheet%find("fracture", k))%value("name")
-         names(k) = value%text
-      end do
-      do i = 1, sheet%length
-         associate (record => sheet%records(i))
-            if (groups(record%group)%name /= "injection") cycle
-            wanted = record%value("fracture")
-            if (size(names) == 0) then
-               call refuse(error, sheet, i, "fracture", "is '"//wanted%text// &
-                           "', but the scene has no fracture")
-            else if (.not. any(names == wanted%text)) then
-               reason = "is '"//wanted%text//"', which is no fracture of the scene"
-               likely = nearest_word(wanted%text, names)
-               if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
-               call refuse(error, sheet, i, "fracture", reason)
-            end if
-         end associate
-         if (allocated(error)) return
-      end do
-   end subroutine check_injections
 
    !> The storage coefficient is positive, the pressure that a load makes at once no larger than the
    !! load, and the permeability positive definite.
@@ -151,21 +119,6 @@ contains
          end if
       end associate
    end subroutine check_material
-
-   pure subroutine check_times(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i
-
-      do i = 1, size(scene%injections)
-         if (scene%injections(i)%end > scene%injections(i)%start) cycle
-         call refuse(error, sheet, sheet%find("injection", i), "end", "is "// &
-                     real_text(scene%injections(i)%end)//" but must be after start, "// &
-                     real_text(scene%injections(i)%start))
-         return
-      end do
-   end subroutine check_times
 
    !> Fine level and growth go with the fractures and the coarse level.
    pure subroutine check_levels(sheet, scene, error)

@@ -13,7 +13,7 @@ module scene_check_geometry
    implicit none(type, external)
    private
 
-   public :: check_domain, check_fractures, check_probes, check_wells
+   public :: check_domain, check_fractures, check_probes, contains_point, distance_to, point_text
 
 contains
 
@@ -131,29 +131,6 @@ contains
                      "two, the ends of the fracture")
       end if
    end subroutine check_vertices
-
-   !> A point of injection lies on its fracture, within a cell.
-   pure subroutine check_wells(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      real(rk) :: distance
-      integer :: i
-
-      do i = 1, size(scene%injections)
-         associate (well => scene%injections(i))
-            if (.not. well%at_point) cycle
-            distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
-            if (distance <= scene%discretization%size_fracture) cycle
-            call refuse(error, sheet, sheet%find("injection", i), "x", "and y are "// &
-                        point_text(well%x, well%y)//", "//rounded_text(distance)// &
-                        " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
-                        "', but must be within size_fracture, "// &
-                        real_text(scene%discretization%size_fracture)//" m")
-         end associate
-         return
-      end do
-   end subroutine check_wells
 
    pure subroutine check_probes(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet

@@ -1,9 +1,10 @@
 !> Defaults that follow from other values: resolved here and nowhere else, so that scene.nml shows
 !! the numbers used.
 module scene_defaults
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use scene_exchange_rock, only: not_given
-   use scene_types, only: material_t, region_t, scene_t
+   use scene_types, only: injection_t, material_t, region_t, scene_t
    implicit none(type, external)
    private
 
@@ -33,12 +34,37 @@ contains
             call default(d%rosette_radius, d%size_boundary)  ! without fractures
          end if
       end associate
+      if (allocated(scene%injections)) call name_wells(scene%injections)
       if (allocated(scene%regions)) call complete(scene%material, scene%regions)
       do i = 1, size(scene%fractures)
          if (scene%fractures(i)%law /= "slip") cycle
          call default(scene%fractures(i)%slip_taper, 0.5_rk*scene%fractures(i)%length())
       end do
    end subroutine resolve_defaults
+
+   !> Wells without a name are called after their number; with stages they begin with the first,
+   !! and one rate or pressure is that of all.
+   pure subroutine name_wells(wells)
+      type(injection_t), intent(inout) :: wells(:)
+      integer(ik) :: i
+
+      do i = 1, size(wells, kind=ik)
+         if (wells(i)%name == "") wells(i)%name = "well_"//integer_text(i)
+         if (.not. allocated(wells(i)%time)) cycle
+         wells(i)%start = wells(i)%time(1)
+         call repeat_value(wells(i)%rate, size(wells(i)%time))
+         call repeat_value(wells(i)%pressure, size(wells(i)%time))
+      end do
+   end subroutine name_wells
+
+   !> One value is that of all stages.
+   pure subroutine repeat_value(list, n)
+      real(rk), allocatable, intent(inout) :: list(:)  !< [any unit]
+      integer, intent(in) :: n
+
+      if (.not. allocated(list)) return
+      if (size(list) == 1) list = spread(list(1), 1, n)
+   end subroutine repeat_value
 
    !> The rock of regions is that of the scene but for what they give themselves.
    pure subroutine complete(material, regions)

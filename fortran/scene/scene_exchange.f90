@@ -88,6 +88,7 @@ contains
       end do
       do i = 1, size(scene%injections)  ! the fractures may come after the wells
          value = sheet%records(sheet%find("injection", i))%value("fracture")
+         if (.not. value%is_set) cycle
          do n_fractures = 1, size(scene%fractures)
             if (scene%fractures(n_fractures)%name == value%text) then
                scene%injections(i)%fracture = int(n_fractures, ik)
@@ -155,8 +156,8 @@ contains
          case ("injection")
             do i = 1, size(source%injections)
                record = empty_record(group, 0_ik)
-               call set_text(record, "fracture", &
-                             trim(source%fractures(source%injections(i)%fracture)%name))
+               if (source%injections(i)%fracture > 0) call set_text(record, "fracture", &
+                  & trim(source%fractures(source%injections(i)%fracture)%name))
                call exchange_injection(record, source%injections(i), .false.)
                call add_record(sheet, record)
             end do
@@ -311,14 +312,33 @@ contains
       type(injection_t), intent(inout) :: injection
       logical, intent(in) :: reading
 
-      call exchange(record, "rate", injection%rate, reading)
-      call exchange(record, "start", injection%start, reading)
+      call exchange(record, "name", injection%name, reading)
+      call exchange_list(record, "time", injection%time, reading)
+      call exchange_list(record, "rate", injection%rate, reading)
+      call exchange_list(record, "pressure", injection%pressure, reading)
+      if (reading .or. .not. allocated(injection%time)) then
+         call exchange(record, "start", injection%start, reading)
+      end if
       call exchange(record, "end", injection%end, reading, nothing=unlimited)
+      call exchange(record, "storage", injection%storage, reading)
+      call exchange(record, "friction", injection%friction, reading)
+      call exchange(record, "turbulence", injection%turbulence, reading)
       if (injection%at_point) then
          call exchange(record, "x", injection%x, reading)
          call exchange(record, "y", injection%y, reading)
       end if
+      if (injection%fracture == 0) call exchange(record, "radius", injection%radius, reading)
    end subroutine exchange_injection
+
+   !> A list that may be absent.
+   pure subroutine exchange_list(record, name, list, reading)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout) :: list(:)  !< [unit of the name]
+      logical, intent(in) :: reading
+
+      if (reading .or. allocated(list)) call exchange(record, name, list, reading)
+   end subroutine exchange_list
 
    pure subroutine exchange_discretization(record, discretization, reading)
       type(record_t), intent(inout) :: record

@@ -5,6 +5,7 @@ module scene_namelist
    use scene_defaults, only: resolve_defaults
    use scene_exchange, only: sheet_to_scene
    use scene_parse, only: parse_scene
+   use scene_schedule, only: load_schedules
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    implicit none(type, external)
@@ -24,6 +25,8 @@ contains
       type(sheet_t) :: sheet
 
       call parse_scene(path, sheet, error)
+      if (allocated(error)) return
+      call load_schedules(sheet, error)
       if (allocated(error)) return
       call check_sheet(sheet, error)
       if (allocated(error)) return

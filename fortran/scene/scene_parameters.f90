@@ -115,11 +115,11 @@ module scene_parameters
               "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &
               "unless at a tip: each face has nodes of its own."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
-              meaning="A well: fluid injected into a fracture, spread over the fracture as it "// &
-              "is at the start, or into its cell nearest to a point (two that are equally "// &
-              "near: half each). That point must lie "// &
-              "within `size_fracture` of the fracture; where fractures meet, the place where "// &
-              "they do is fed, and all of them."), &
+              meaning="A well, at a rate, at a pressure, or at a rate up to a pressure, in "// &
+              "stages. It feeds a fracture as it is at the start, or the cell nearest to a "// &
+              "point of it (two equally near: half each), where fractures meet all of them; or "// &
+              "the rock around a point. No step straddles the beginning of a stage, or its "// &
+              "reaching or leaving of a limit."), &
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
@@ -348,19 +348,40 @@ module scene_parameters
       parameter_t("point_load", "y_force", unit="N/m", default="0.0", meaning="Force in y")]
 
    type(parameter_t), parameter :: process_parameters(*) = [ &
-      parameter_t("injection", "fracture", kind_name, need=need_always, &
+      parameter_t("injection", "name", kind_name, absent="well_ and its number", derived=.true., &
+                  meaning="Name, different from that of every other well"), &
+      parameter_t("injection", "fracture", kind_name, absent="in the rock, at x and y", &
                   meaning="Name of the fracture"), &
-      parameter_t("injection", "rate", unit="m2/s", need=need_always, &
+      parameter_t("injection", "rate", kind_reals, "m2/s", absent="what pressure makes of it", &
                   meaning="Volume per time and per metre of thickness, over the whole well; "// &
-                  "negative: extraction"), &
+                  "negative: extraction. One value, or one per stage"), &
+      parameter_t("injection", "pressure", kind_reals, "Pa", absent="no limit", &
+                  meaning="Pressure of the well; beside a rate the one that it does not pass: "// &
+                  "the largest in injection, the least in extraction. As rate"), &
+      parameter_t("injection", "time", kind_reals, "s", range=at_least_zero, &
+                  absent="one stage, from start", &
+                  meaning="When each stage begins, in rising order"), &
+      parameter_t("injection", "schedule", kind_text, absent="no table", &
+                  meaning="CSV file with a row per stage instead of time, rate and pressure: "// &
+                  "columns time_s, rate_m2_s, pressure_pa; beside the scene file"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
-                  meaning="Time when it begins"), &
+                  meaning="Time when it begins; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
-                  meaning="Time when it ends, after start"), &
+                  meaning="Time when it is shut, after start and after the last stage's"), &
       parameter_t("injection", "x", unit="m", absent="over the whole fracture", &
                   with="y", meaning="x of the point of injection"), &
       parameter_t("injection", "y", unit="m", absent="over the whole fracture", &
                   with="x", meaning="y of the point of injection"), &
+      parameter_t("injection", "storage", unit="m2/Pa", default="0.0", range=at_least_zero, &
+                  meaning="Wellbore storage: fluid that the well itself holds, per metre of "// &
+                  "thickness and per pressure at its head"), &
+      parameter_t("injection", "friction", unit="Pa s/m2", default="0.0", range=at_least_zero, &
+                  meaning="Pressure lost between the well's head and the fracture, per rate"), &
+      parameter_t("injection", "turbulence", unit="Pa s2/m4", default="0.0", &
+                  range=at_least_zero, &
+                  meaning="The same per square of the rate"), &
+      parameter_t("injection", "radius", unit="m", default="0.1", range=positive, &
+                 meaning="Radius of a well in the rock, for its pressure; not one in a fracture"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
                   choices="equilibrated|undrained", &
                   meaning="After loading: that of the matrix around the fracture, or what the "// &

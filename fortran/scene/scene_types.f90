@@ -130,14 +130,30 @@ module scene_types
       character(len=name_length) :: control = "length"
    end type load_t
 
-   !> A well: fluid injected into a fracture.
+   !> A well: fluid injected into a fracture or into the rock, or drawn from it, in stages.
    type :: injection_t
-      integer(ik) :: fracture = 0  !< index into scene%fractures
+      character(len=name_length) :: name = ""
+      integer(ik) :: fracture = 0  !< index into scene%fractures; 0: in the rock
       !> Into the cell nearest to (x, y), else spread over the fracture as it is at the start.
       logical :: at_point = .false.
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
-      real(rk) :: rate = 0.0_rk  !< Q [m2/s] per metre of thickness, over the whole well
       real(rk) :: start = 0.0_rk, end = huge(1.0_rk)  !< [s]
+      real(rk), allocatable :: time(:)  !< when stages begin; unallocated: one, from start [s]
+      !> (stages) Q per metre of thickness, over the whole well; unallocated: what pressure makes of
+      !! it [m2/s]
+      real(rk), allocatable :: rate(:)
+      !> (stages) at the well's head, which it has, or beside a rate does not pass; unallocated: no
+      !! limit [Pa]
+      real(rk), allocatable :: pressure(:)
+      real(rk) :: storage = 0.0_rk  !< fluid that the well holds per pressure [m2/Pa]
+      real(rk) :: friction = 0.0_rk  !< pressure that the flow to the fracture loses [Pa s/m2]
+      real(rk) :: turbulence = 0.0_rk  !< the same for the flow's square [Pa s2/m4]
+      real(rk) :: radius = 0.0_rk  !< of a well in the rock [m]
+   contains
+      procedure :: stage_count
+      procedure :: stage_at
+      procedure :: stage_start
+      procedure :: is_controlled
    end type injection_t
 
    !> State before the first step.
@@ -262,6 +278,41 @@ contains
       has_wells = allocated(self%injections)
       if (has_wells) has_wells = size(self%injections) > 0
    end function has_wells
+
+   pure integer(ik) function stage_count(self)
+      class(injection_t), intent(in) :: self
+
+      stage_count = 1
+      if (allocated(self%time)) stage_count = size(self%time, kind=ik)
+   end function stage_count
+
+   !> When a stage begins [s].
+   pure real(rk) function stage_start(self, stage)
+      class(injection_t), intent(in) :: self
+      integer(ik), intent(in) :: stage
+
+      stage_start = self%start
+      if (allocated(self%time)) stage_start = self%time(stage)
+   end function stage_start
+
+   !> The stage that a time belongs to; 0: the well is shut, before its start or after its end.
+   pure integer(ik) function stage_at(self, time) result(stage)
+      class(injection_t), intent(in) :: self
+      real(rk), intent(in) :: time  !< [s]
+
+      stage = 0
+      if (time >= self%end) return
+      do stage = self%stage_count(), 1, -1
+         if (time >= self%stage_start(stage)) return
+      end do
+   end function stage_at
+
+   !> What flows depends on pressures: its rate is not simply what the scene says.
+   elemental logical function is_controlled(self)
+      class(injection_t), intent(in) :: self
+
+      is_controlled = allocated(self%pressure) .or. self%storage > 0.0_rk
+   end function is_controlled
 
    !> Along the polyline, as far as it has both coordinates [m].
    pure real(rk) function fracture_length(self) result(length)

@@ -27,6 +27,7 @@ module twolevel_equilibrium
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_well_limits, only: share_before_switch
    use twolevel_wells, only: last_switch
    implicit none(type, external)
    private
@@ -314,7 +315,11 @@ contains
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
-      if (.not. search%is_last .and. self%errs(trial%time_error)) return
+      if (.not. search%is_last) then
+         if (self%errs(trial%time_error)) return
+         call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
+         if (allocated(error) .or. trial%switch < 1.0_rk) return
+      end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error)) return
       call improve_windows(self, self%before%time, trial%needs_windows, error)

@@ -2,29 +2,24 @@
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_of
    use coarse_solid, only: add_moment
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
-   use results_chronicle, only: event_step_cut, event_unstable
-   use results_rows, only: history_row_t, probe_row_t
+   use results_rows, only: history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
-   use simulation_limits, only: limit_time_error
    use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
-   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_notes, only: note_certainty, note_excess, notes_t
+   use twolevel_notes, only: note_certainty, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
-   use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_steps, only: stepping_levels_t
    use twolevel_stimulation, only: stimulation_t
    use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_wells, only: last_switch, next_switch
+   use twolevel_well_rows, only: well_books_t
    implicit none(type, external)
    private
 
@@ -35,18 +30,12 @@ module twolevel_simulation
                                   "or out of the body"
    character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
 
-   !> Both levels, the last step, and how the next one is chosen.
-   type, extends(two_levels_t) :: twolevel_simulation_t
+   !> The scene in progress.
+   type, extends(stepping_levels_t) :: twolevel_simulation_t
       logical :: has_begun = .false.  !< the first state has been asked for
-      logical :: is_after_switch = .false.  !< of a well: the last step
-      logical :: ends_at_switch = .false.  !< the last step
       logical :: is_initial = .false.  !< the present state is the one before the first step
-      logical :: is_unstable = .false.  !< tips grew without equilibrium in the last step
-      real(rk) :: dt = 0.0_rk  !< of the last step [s]
-      type(step_report_t) :: report  !< of it
-      type(stepper_t) :: stepper
-      type(notes_t) :: notes  !< of growth in equilibrium
       type(stimulation_t) :: stimulation
+      type(well_books_t) :: well_books
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
    contains
@@ -58,7 +47,6 @@ module twolevel_simulation
       procedure :: probes
       procedure :: snapshot
       procedure :: time
-      procedure :: last_state
    end type twolevel_simulation_t
 
 contains
@@ -120,8 +108,11 @@ contains
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
       else
-         if (is_first) call self%stimulation%begin(self)
-         call take_step(self, timers, error)
+         if (is_first) then
+            call self%stimulation%begin(self)
+            call self%well_books%begin(self)
+         end if
+         call self%take_step(timers, error)
       end if
       if (allocated(error)) return
       call book_change(self)
@@ -137,10 +128,11 @@ contains
       self%has_new_mesh = .false.
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
-         if (.not. (self%owes_state .or. is_equilibrium(self))) then
+         if (.not. (self%owes_state .or. self%is_equilibrium())) then
             call self%stepper%settle(self%state%pressure(self%grown))
          end if
       end if
+      call note_well_rows(self)
       call note_state(self, row%mass_error_relative)
    end subroutine next_state
 
@@ -179,135 +171,16 @@ contains
       call raise_error(error, "", "the initial state was not found: "//self%report%reason)
    end subroutine find_initial_state
 
-   !> Tips grow in equilibrium, else by the law of advances at the ends of steps.
-   pure logical function is_equilibrium(self)
-      class(twolevel_simulation_t), intent(in) :: self
-
-      is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
-   end function is_equilibrium
-
-   !> One accepted step, cut as often as it takes. Where tips find no equilibrium in a step that is
-   !! short beside the time since the wells were switched, or in the shortest one, in which errors
-   !! in time are not judged either, growth is unstable: nothing but that happens, until it arrests.
-   subroutine take_step(self, timers, error)
+   !> What the wells have done.
+   subroutine note_well_rows(self)
       class(twolevel_simulation_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      type(trial_t) :: trial
-      logical :: is_last, is_too_short, is_unstable, may_jump
-      real(rk) :: wanted
+      type(well_row_t), allocatable :: rows(:)
 
-      if (self%scene%growth%intensities) then
-         call self%windows%accept()
-         call self%reference%accept()
-      end if
-      self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
-      wanted = self%dt
-      self%is_after_switch = self%ends_at_switch
-      is_too_short = .false.
-      is_last = .false.
-      is_unstable = .false.
-      may_jump = .false.
-      do
-         call try_length(self, is_last, may_jump, trial, timers, error)
-         if (allocated(error)) return
-         if (trial%needs_windows) cycle
-         if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
-         if (is_last .or. (is_too_short .and. .not. trial%converged)) then
-            call raise_error(error, "", trial%why_cut()//", even with a time step of " &
-                             //brief_text(self%dt, 4)//" s")
-            return
-         end if
-         is_last = is_too_short
-         is_unstable = is_last .and. trial%goes_too_far
-         if (.not. is_last) call cut_step(self, trial, is_too_short)
-         may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
-      end do
-      is_unstable = is_unstable .or. trial%jumps
-      if (self%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
-         call self%watch%see(limit_time_error, trial%time_error, last_state(self))
-      end if
-      call accept_step(self, trial, is_unstable)
-      if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
-   end subroutine take_step
-
-   !> The present step is so short that it does not matter when in it tips jump.
-   pure logical function is_moment(self)
-      class(twolevel_simulation_t), intent(in) :: self
-
-      is_moment = self%dt <= punctual*(self%state%time - last_switch(self%scene, self%state%time))
-   end function is_moment
-
-   !> The equations are solved and tips in equilibrium, whatever the error in time.
-   pure logical function solves(trial)
-      type(trial_t), intent(in) :: trial
-
-      solves = trial%converged .and. .not. trial%goes_too_far
-   end function solves
-
-   !> Try a step of the present length. The last try is taken if its equations are solved.
-   subroutine try_length(self, is_last, may_jump, trial, timers, error)
-      class(twolevel_simulation_t), intent(inout) :: self
-      logical, intent(in) :: is_last, may_jump
-      type(trial_t), intent(out) :: trial
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-
-      if (is_equilibrium(self)) then
-         call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
-                               error)
-      else
-         self%before = self%state
-         call self%try_step(self%dt, timers, self%report, error)
-         trial%converged = self%report%converged
-         if (allocated(error)) return
-         if (trial%converged) then
-            trial%time_error = self%step_error(self%dt)
-            if (.not. is_last .and. self%errs(trial%time_error)) self%state = self%before
-         else
-            trial%reason = self%report%reason
-         end if
-      end if
-   end subroutine try_length
-
-   !> A tried step was not taken.
-   subroutine cut_step(self, trial, is_too_short)
-      class(twolevel_simulation_t), intent(inout) :: self
-      type(trial_t), intent(in) :: trial
-      logical, intent(out) :: is_too_short
-
-      call self%stepper%cut(trial, self%dt, is_too_short)
-      self%summary%step_cuts = self%summary%step_cuts + 1
-      self%summary%newton_total = self%summary%newton_total + self%report%iterations
-      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
-                                    //brief_text(self%dt, 4)//" s: "//trial%why_cut())
-   end subroutine cut_step
-
-   !> A tried step is taken.
-   subroutine accept_step(self, trial, is_unstable)
-      class(twolevel_simulation_t), intent(inout) :: self
-      type(trial_t), intent(in) :: trial
-      logical, intent(in) :: is_unstable
-
-      self%ends_at_switch = next_switch(self%scene, self%before%time) &
-                            <= self%state%time*(1.0_rk + same_time)
-      call self%book_step(self%dt)
-      self%is_unstable = is_unstable
-      self%tip%advance = 0.0_rk
-      if (is_equilibrium(self)) then
-         call accept_equilibrium(self)
-         call self%notes%note_competition(self)
-      end if
-      call self%stepper%step_done(trial, self%dt)
-      call self%trend%accept(self%before, self%state, self%dt)
-      ! The rates of a step in which cracks have joined mean nothing for the next.
-      if (trial%has_joined) call self%follow_trend(at_rest=.false.)
-      if (.not. is_unstable) return
-      call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
-                                    //brief_text(sum(self%tip%advance), 4)//" m in all")
-      ! The rates of such a step mean nothing for the next.
-      call self%follow_trend(at_rest=.false.)
-   end subroutine accept_step
+      if (size(self%scene%injections) == 0) return
+      if (self%is_initial) call self%well_books%begin(self)
+      call self%well_books%book(self, merge(0.0_rk, self%dt, self%is_initial), rows)
+      self%chronicle%wells = [self%chronicle%wells, rows]
+   end subroutine note_well_rows
 
    !> An accepted state: contact and the run's largest values.
    subroutine note_state(self, mass_error_relative)
@@ -343,7 +216,7 @@ contains
       may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
       self%owes_state = .false.
       if (self%scene%growth%intensities) then
-         if (may_grow .and. is_equilibrium(self)) then
+         if (may_grow .and. self%is_equilibrium()) then
             call note_equilibrium(self, error)
          else
             call evaluate_tips(self, timers, error)
@@ -356,8 +229,8 @@ contains
             end if
          end if
          if (allocated(error)) return
-         if (is_equilibrium(self)) call self%notes%note_onsets(self)
-         if (is_equilibrium(self) .and. self%is_initial) call note_excess(self)
+         if (self%is_equilibrium()) call self%notes%note_onsets(self)
+         if (self%is_equilibrium() .and. self%is_initial) call note_excess(self)
          call count_unknowns(self, self%summary)
          call watch_windows(self, may_grow)
          call self%heed_limits(error)
@@ -381,7 +254,7 @@ contains
          call self%evaluate(timers, error)
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
-         if (allocated(error) .or. .not. is_equilibrium(self)) return
+         if (allocated(error) .or. .not. self%is_equilibrium()) return
          call improve_windows(self, self%state%time, any_improved, error)
          if (allocated(error) .or. .not. any_improved) return
       end do
@@ -405,7 +278,7 @@ contains
    pure logical function states_errors(self)
       class(twolevel_simulation_t), intent(in) :: self
 
-      states_errors = is_equilibrium(self) .or. .not. self%scene%growth%enabled
+      states_errors = self%is_equilibrium() .or. .not. self%scene%growth%enabled
    end function states_errors
 
    !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
@@ -445,7 +318,7 @@ contains
 
       network = self%coarse_network
       mesh = self%mesh
-      if (.not. is_equilibrium(self)) return
+      if (.not. self%is_equilibrium()) return
       network = self%network
       call end_at_tips(self, mesh%fracture)
    end subroutine present_network
@@ -492,13 +365,5 @@ contains
 
       time = self%state%time
    end function time
-
-   !> The time of the last good state.
-   pure function last_state(self) result(words)
-      class(twolevel_simulation_t), intent(in) :: self
-      character(len=:), allocatable :: words
-
-      words = brief_text(self%state%time, 6)//" s"
-   end function last_state
 
 end module twolevel_simulation

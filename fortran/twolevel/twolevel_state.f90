@@ -14,7 +14,7 @@ module twolevel_state
    use growth_prepared, only: prepared_t
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
-   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_types, only: domain_t, scene_t
    use simulation_laws, only: law_of_fracture
@@ -26,8 +26,8 @@ module twolevel_state
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
-   use twolevel_wells, only: between_cells, feed_joints, mean_pressure, rate, share_wells, &
-                             transfer_shares
+   use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
+                             rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
@@ -64,6 +64,11 @@ module twolevel_state
       logical :: undrained = .false.  !< the state is the undrained response to the load
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
+      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
+      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
+      integer(ik) :: held_well = 0  !< a controlled well that a try holds as it was; 0: none
+      integer(ik) :: held_control = 0  !< of coarse_wells: how
+      integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(prepared_t), allocatable :: prepared(:)  !< (tips) pieces that the coarse mesh has
@@ -112,9 +117,10 @@ contains
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, scene, timers, error)
       if (allocated(error)) return
-      call feed_joints(self%scene%injections, self%mesh%fracture, self%model%joints, self%share, &
-                       self%joint_share)
+      call feed_wells(self, error)
+      if (allocated(error)) return
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
+      call rest_wells(self)
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) then
          ! The body beside windows has elements as large as the coarse cells: at the tips, where it
@@ -129,6 +135,44 @@ contains
       call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
+
+   !> What the wells feed on the present mesh.
+   subroutine feed_wells(self, error)
+      class(two_levels_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: cell(1), w
+
+      associate (wells => self%scene%injections)
+         call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
+                          self%joint_share)
+         call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         if (.not. any(wells%fracture == 0)) return
+         if (allocated(self%model%source)) deallocate (self%model%source)
+         allocate (self%model%source(3, self%mesh%n_cells), source=0.0_rk)
+         self%rock_cell = spread(0_ik, 1, size(wells))
+         do w = 1, size(wells, kind=ik)
+            if (wells(w)%fracture > 0) cycle
+            call locate(self%mesher, reshape([wells(w)%x, wells(w)%y], [2, 1]), cell, error)
+            if (allocated(error)) return
+            self%rock_cell(w) = cell(1)
+         end do
+      end associate
+   end subroutine feed_wells
+
+   !> Nothing flows in wells, whose heads have the pressure of what they feed.
+   subroutine rest_wells(self)
+      class(two_levels_t), intent(inout) :: self
+
+      associate (wells => self%model%wells, state => self%state)
+         self%at_limit = spread(.false., 1, int(wells%n))
+         self%given = spread(0.0_rk, 1, int(wells%n))
+         if (wells%n == 0) return
+         state%well_flow = spread(0.0_rk, 1, int(wells%n))
+         state%well_rate = state%well_flow
+         state%well_head = matmul(state%pressure, wells%share) &
+                           + matmul(state%joint_pressure, wells%joint_share)
+      end associate
+   end subroutine rest_wells
 
    !> Rates are known from now on: none at rest, else those of the next step.
    subroutine follow_trend(self, at_rest)
@@ -211,6 +255,7 @@ contains
       self%undrained = .true.
      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%longest(), self%state, &
                                   timers, report, error)
+      call rest_wells(self)
    end subroutine equilibrate
 
    !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
@@ -226,12 +271,30 @@ contains
          if (self%model%joints%n > 0) then
             self%model%joints%injection = matmul(self%joint_share, rates)
          end if
+         if (allocated(self%rock_cell)) call feed_rock(self, rates)
       end associate
+      call ask_wells(self%scene%injections, self%state%time, dt, self%model%wells)
+      if (self%held_well > 0) self%model%wells%control(self%held_well) = self%held_control
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
       self%values_are_current = .false.
       self%undrained = .false.
    end subroutine try_step
+
+   !> Wells in the rock.
+   pure subroutine feed_rock(self, rates)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: rates(:)  !< (wells) [m2/s]
+      integer(ik) :: w
+
+      self%model%source = 0.0_rk
+      do w = 1, size(rates, kind=ik)
+         if (self%rock_cell(w) == 0) cycle
+         associate (fluid => self%model%source(3, self%rock_cell(w)))
+            fluid = fluid + rates(w)
+         end associate
+      end do
+   end subroutine feed_rock
 
    !> Error in time of the state that a step of length dt has led to, relative [-].
    function step_error(self, dt) result(error)
@@ -245,6 +308,10 @@ contains
          area(c) = cell_area(self%mesh, c)
       end do
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
+      if (self%model%wells%n > 0 .and. self%trend%is_known()) then
+         error = max(error, self%trend%volume_error(self%before%well_flow, self%state%well_flow, &
+                                                    self%given, dt))
+      end if
    end function step_error
 
    !> The error of a step is larger than the scene tolerates.
@@ -287,6 +354,8 @@ contains
       real(rk), intent(in) :: dt  !< [s]
 
       self%injected = self%injected + dt*sum(self%model%cells%injection)
+      if (self%model%wells%n > 0) self%given = self%given + dt*abs(self%state%well_flow)
+      if (allocated(self%rock_cell)) self%injected = self%injected + dt*sum(self%model%source(3, :))
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
          if (self%model%joints%n > 0) then
@@ -379,8 +448,8 @@ contains
       call timers%stop(phase_transfer)
       call self%model%set_mesh(self%mesh, self%scene, timers, error)
       if (allocated(error)) return
-      call feed_joints(self%scene%injections, self%mesh%fracture, self%model%joints, self%share, &
-                       self%joint_share)
+      call feed_wells(self, error)
+      if (allocated(error)) return
       call rest_fluid(self%model, self%state)
    end subroutine remesh_coarse
 

@@ -42,6 +42,7 @@ module twolevel_stepping
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
       real(rk) :: arrival = 1.0_rk  !< share of the step after which it does [-]
+      real(rk) :: switch = 1.0_rk  !< share of the step after which a well comes to its limit [-]
       real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
       real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
       character(len=:), allocatable :: reason  !< why the equations were not solved
@@ -103,7 +104,7 @@ contains
       type(trial_t), intent(in) :: trial
 
       takes = trial%converged .and. .not. trial%goes_too_far .and. .not. trial%onset < 1.0_rk
-      takes = takes .and. .not. trial%is_late
+      takes = takes .and. .not. (trial%is_late .or. trial%switch < 1.0_rk)
       if (self%tolerance > 0.0_rk) takes = takes .and. trial%time_error <= self%tolerance
    end function takes
 
@@ -117,6 +118,8 @@ contains
 
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
+      else if (trial%converged .and. trial%switch < 1.0_rk) then
+         dt = max(0.01_rk, trial%switch)*dt
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
          dt = max(soonest, trial%arrival)*dt
       else if (trial%converged .and. .not. trial%goes_too_far) then
@@ -218,6 +221,8 @@ contains
          words = "growth finds no equilibrium within a segment"
       else if (self%onset < 1.0_rk) then
          words = "a tip begins to grow in it"
+      else if (self%switch < 1.0_rk) then
+         words = "a well reaches or leaves its limit in it"
       else if (self%is_late) then
          words = "a tip comes to a joint in it"
       else

@@ -69,6 +69,11 @@ contains
       overlaps = fracture_overlaps(mesh_before%fracture, mesh%fracture)
       n = mesh%fracture%n_cells
       after%time = before%time
+      if (allocated(before%well_flow)) then
+         after%well_flow = before%well_flow
+         after%well_head = before%well_head
+         after%well_rate = before%well_rate
+      end if
       allocate (after%unknowns(3, block_count(mesh)), after%content(mesh%n_cells), source=0.0_rk)
       do c = 1, mesh%n_cells
          old = map%cell_old(c)

@@ -34,6 +34,7 @@ module twolevel_trend
       procedure :: is_known
       procedure :: pressure_rise
       procedure :: step_error
+      procedure :: volume_error
       procedure :: accept
       procedure :: transfer
    end type trend_t
@@ -101,6 +102,21 @@ contains
       step_error = max(step_error, relative(error, max(self%least_jump, width(seen%jumps))))
       step_error = dt/(dt + self%dt)*step_error
    end function step_error
+
+   !> Error of the fluid that wells give in a step, relative to all since they were switched [-]:
+   !! in a step of length h after one of length h_b it is h/(h + h_b) h times the flow's change.
+   pure real(rk) function volume_error(self, before, after, given, dt)
+      class(trend_t), intent(in) :: self
+      real(rk), intent(in) :: before(:), after(:)  !< (wells) flow [m2/s]
+      real(rk), intent(in) :: given(:)  !< (wells) before the step [m2]
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: all(size(given)), error(size(given))
+
+      error = dt/(dt + self%dt)*dt*abs(after - before)
+      all = given + dt*abs(after)
+      volume_error = 0.0_rk
+      if (any(all > 0.0_rk)) volume_error = maxval(error/all, mask=all > 0.0_rk)
+   end function volume_error
 
    !> A step has been accepted.
    pure subroutine accept(self, before, after, dt)

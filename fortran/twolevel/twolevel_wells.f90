@@ -1,8 +1,9 @@
-!> Wells: which fracture cells they feed, at which rate, and when they start and end.
+!> Wells: which fracture cells they feed, what they are asked for, and when that changes.
 module twolevel_wells
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place, same_time, same_value
    use coarse_joints, only: joints_t
+   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
    use base_plane, only: nearest_place
    use mesh_types, only: fracture_mesh_t
    use scene_types, only: injection_t, scene_t
@@ -10,8 +11,8 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-   public :: between_cells, feed_joints, last_switch, mean_pressure, next_switch, rate
-   public :: share_wells, transfer_shares
+   public :: ask_wells, between_cells, control_wells, feed_joints, last_switch, mean_pressure
+   public :: next_switch, rate, share_wells, transfer_shares
 
 contains
 
@@ -27,6 +28,7 @@ contains
 
       allocate (share(fracture%n_cells, size(wells)), source=0.0_rk)
       do w = 1, size(wells, kind=ik)
+         if (wells(w)%fracture == 0) cycle
          associate (well => wells(w))
             do i = 1, fracture%n_cells
                distance(i) = huge(1.0_rk)
@@ -55,7 +57,7 @@ contains
 
       allocate (joint_share(joints%n, size(wells)), source=0.0_rk)
       do w = 1, size(wells, kind=ik)
-         if (.not. wells(w)%at_point) cycle
+         if (.not. wells(w)%at_point .or. wells(w)%fracture == 0) cycle
          do b = 1, joints%branch_count()
             associate (cell => joints%cell(b), joint => joints%joint(b))
                if (joints%is_outlet(joint)) cycle
@@ -117,15 +119,69 @@ contains
       end do
    end function transfer_shares
 
-   !> Rate of a well in the step that begins at a time; steps do not straddle its start or end.
+   !> Rate of a well in the step that begins at a time; steps do not straddle its stages. That of
+   !! one whose rate depends on pressures is none of these.
    elemental function rate(well, time, dt) result(q)
       type(injection_t), intent(in) :: well
       real(rk), intent(in) :: time, dt  !< [s]
       real(rk) :: q  !< [m2/s]
+      integer(ik) :: stage
 
       q = 0.0_rk
-      if (time + 0.5_rk*dt > well%start .and. time + 0.5_rk*dt < well%end) q = well%rate
+      if (well%is_controlled()) return
+      stage = well%stage_at(time + 0.5_rk*dt)
+      if (stage > 0) q = well%rate(stage)
    end function rate
+
+   !> The wells whose rate depends on pressures: what they feed, and what they are.
+   pure subroutine control_wells(given, share, joint_share, wells)
+      type(injection_t), intent(in) :: given(:)
+      real(rk), intent(in) :: share(:, :)  !< (fracture cells, given) [-]
+      real(rk), intent(in) :: joint_share(:, :)  !< (joints, given) [-]
+      type(wells_t), intent(out) :: wells
+      logical :: between(size(given))
+      integer(ik), allocatable :: number(:)
+      integer(ik) :: w
+
+     number = pack([(w, w=1, size(given, kind=ik))], given%is_controlled() .and. given%fracture > 0)
+      wells%n = size(number, kind=ik)
+      if (wells%n == 0) return
+      between = between_cells(given, share)
+      wells%number = number
+      wells%share = share(:, number)
+      wells%joint_share = joint_share(:, number)
+      wells%is_between = between(number)
+      wells%storage = given(number)%storage
+      wells%friction = given(number)%friction
+      wells%turbulence = given(number)%turbulence
+      wells%control = spread(control_shut, 1, int(wells%n))
+      wells%rate = spread(0.0_rk, 1, int(wells%n))
+      wells%pressure = wells%rate
+   end subroutine control_wells
+
+   !> What these wells are asked for in the step that begins at a time.
+   pure subroutine ask_wells(given, time, dt, wells)
+      type(injection_t), intent(in) :: given(:)
+      real(rk), intent(in) :: time, dt  !< [s]
+      type(wells_t), intent(inout) :: wells
+      integer(ik) :: stage, w
+
+      do w = 1, wells%n
+         associate (well => given(wells%number(w)), control => wells%control(w))
+            stage = well%stage_at(time + 0.5_rk*dt)
+            wells%rate(w) = 0.0_rk
+            control = control_shut
+            if (stage == 0) cycle
+            control = control_pressure
+            if (allocated(well%pressure)) wells%pressure(w) = well%pressure(stage)
+            if (.not. allocated(well%rate)) cycle
+            wells%rate(w) = well%rate(stage)
+            control = control_rate
+            ! A stage without a rate has no limit: nothing is driven.
+           if (allocated(well%pressure) .and. abs(wells%rate(w)) > 0.0_rk) control = control_limited
+         end associate
+      end do
+   end subroutine ask_wells
 
    !> Mean pressure of the cells and joints that wells feed; 0 without any [Pa].
    pure real(rk) function mean_pressure(share, pressure, joint_share, joint_pressure) result(mean)
@@ -144,35 +200,39 @@ contains
       end if
    end function mean_pressure
 
-   !> The last time at which a well started or ended, or the scene did [s].
+   !> The last time at which a stage of a well began or one ended, or the scene began [s].
    pure function last_switch(scene, now) result(time)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: now  !< [s]
       real(rk) :: time
-      integer(ik) :: w
+      integer(ik) :: k, w
 
       time = 0.0_rk
       do w = 1, size(scene%injections, kind=ik)
          associate (well => scene%injections(w))
-            if (well%start <= now) time = max(time, well%start)
+            do k = 1, well%stage_count()
+               if (well%stage_start(k) <= now) time = max(time, well%stage_start(k))
+            end do
             if (well%end <= now) time = max(time, well%end)
          end associate
       end do
    end function last_switch
 
-   !> The next time at which a well starts or ends, or the scene does [s].
+   !> The next time at which a stage of a well begins or one ends, or the scene does [s].
    pure function next_switch(scene, now) result(time)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: now  !< [s]
       real(rk) :: time
       real(rk) :: later
-      integer(ik) :: w
+      integer(ik) :: k, w
 
       time = scene%time%end
       later = now*(1.0_rk + same_time)
       do w = 1, size(scene%injections, kind=ik)
          associate (well => scene%injections(w))
-            if (well%start > later) time = min(time, well%start)
+            do k = 1, well%stage_count()
+               if (well%stage_start(k) > later) time = min(time, well%stage_start(k))
+            end do
             if (well%end > later) time = min(time, well%end)
          end associate
       end do

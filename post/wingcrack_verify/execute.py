@@ -132,6 +132,8 @@ class Runner:
         output.mkdir(parents=True)
         if text is not None:
             (folder / "input.nml").write_text(text, encoding="utf-8")
+            for table in _tables(run, text):
+                shutil.copy(table, folder)
             command = [str(program), "run", "../input.nml", "--out", ".", "--quiet"]
         else:
             command = [str(program), *run.args]
@@ -224,8 +226,15 @@ def _read_record(folder: Path) -> Outcome | None:
 def _key(program: Path, text: str | None, run: Run) -> str:
     """Short hash of all that a run's files depend on."""
     limit = str(run.time_limit_s)
-    content = "\0".join((_file_hash(program), _own_hash(), limit, text or "", *run.args))
+    tables = (_file_hash(table) for table in _tables(run, text or "") if table.is_file())
+    content = "\0".join((_file_hash(program), _own_hash(), limit, text or "", *run.args, *tables))
     return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+def _tables(run: Run, text: str) -> list[Path]:
+    """CSV files that a scene names: they lie beside it."""
+    names = re.findall(r"^\s*schedule\s*=\s*'([^']+)'", text, re.MULTILINE)
+    return [run.scene.parent / name for name in names] if run.scene is not None else []
 
 
 def _file_hash(path: Path) -> str:

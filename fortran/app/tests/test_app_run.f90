@@ -30,7 +30,7 @@ contains
       scene%output%vtu = .false.
       scene%time%end = 240.0_rk
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 1.0_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=1, rate=1.0e-9_rk, start=90.0_rk, end=170.0_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[1.0e-9_rk], start=90.0_rk, end=170.0_rk)]
       call resolve_defaults(scene)
    end function well_scene
 
@@ -107,7 +107,7 @@ contains
       scene = well_scene("failure")
       scene%discretization%newton_max = 1
       scene%time%smallest_factor = 0.1_rk
-      scene%injections%rate = 1.0e-5_rk
+      scene%injections(1)%rate = [1.0e-5_rk]
       call run(scene, error)
       call checks%fails_with(error, "even with a time step of", "the run fails")
       call read_times(scene, times, steps)

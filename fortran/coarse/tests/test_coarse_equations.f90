@@ -5,6 +5,7 @@ program test_coarse_equations
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    use coarse_equations, only: equations_t
    use coarse_fractures, only: newton_settings_t, prepare
    use coarse_full_step, only: full_slopes
@@ -79,7 +80,36 @@ contains
          model%cells%share(n) = 0.4_rk
          model%cells%has_tip(n) = .true.
       end associate
+      call add_wells()
    end subroutine start
+
+   !> Wells of all kinds, with storage and losses, fed in by one cell, by all, and between two.
+   subroutine add_wells()
+      integer(ik), parameter :: n_wells = 5
+      integer(ik) :: w
+
+      associate (wells => model%wells, n => mesh%fracture%n_cells)
+         wells%n = n_wells
+         allocate (wells%share(n, n_wells), source=0.0_rk)
+         allocate (wells%joint_share(0, n_wells))
+         wells%share(1, 1) = 1.0_rk
+         wells%share(2:3, 2) = 0.5_rk
+         wells%share(:, 3) = 1.0_rk/n
+         wells%share(3:4, 4) = 0.5_rk
+         wells%share(5, 5) = 1.0_rk
+         wells%is_between = [.false., .true., .false., .true., .false.]
+         wells%control = [control_rate, control_pressure, control_limited, control_limited, &
+                          control_shut]
+         wells%rate = 1.0e-6_rk*[1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 0.0_rk]
+         ! About the pressures of the cells, so that either side of a limit is compared.
+         wells%pressure = 6.0e6_rk + 2.0e6_rk*scattered(n_wells)
+         wells%storage = 1.0e-13_rk*[1.0_rk, 2.0_rk, 3.0_rk, 4.0_rk, 5.0_rk]
+         wells%friction = 1.0e11_rk*[(real(w, rk), w=1, n_wells)]
+         wells%turbulence = 1.0e16_rk*[(real(w, rk), w=1, n_wells)]
+         state%well_flow = spread(0.0_rk, 1, int(n_wells))
+         state%well_head = spread(6.0e6_rk, 1, int(n_wells))
+      end associate
+   end subroutine add_wells
 
    !> Unknowns of the size that they have in rock under some 10 MPa.
    subroutine some_unknowns(variant, x)
@@ -100,12 +130,16 @@ contains
       end do
       ! Flows that the cubic law takes some MPa for.
       x(layout%at_flow(1_ik):) = 5.0e-5_rk*x(layout%at_flow(1_ik):)
+      ! Losses of turbulent wells have a kink at no flow.
+      associate (flow => x(layout%at_well(1_ik):layout%at_well(layout%n_wells)))
+         flow = flow + sign(1.0e3_rk, flow)
+      end associate
    end subroutine some_unknowns
 
    type(fracture_layout_t) function layout_of_model()
       layout_of_model = fracture_layout(mesh%fracture%n_cells, &
                                         size(model%connections, 2, kind=ik), &
-                                        model%joints%branch_count(), model%joints%n)
+                                        model%joints%branch_count(), model%wells%n, model%joints%n)
    end function layout_of_model
 
    !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial
@@ -149,8 +183,8 @@ contains
       settings = model%settings
       settings%equilibrate = equilibrate
       settings%vapour_pressure = vapour_pressure
-      call prepare(model%condensed, model%cells, model%connections, model%joints, settings, dt, g, &
-                   state, eq)
+      call prepare(model%condensed, model%cells, model%connections, model%joints, model%wells, &
+                   settings, dt, g, state, eq)
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

@@ -36,15 +36,15 @@ contains
       call checks%is_true(all(found == [(i, i=1, 18)]), "jump at start, p+, jump at end, p-")
    end subroutine test_condensed
 
-   !> Cells, then flows, then branches and joints.
+   !> Cells, then flows, then branches, wells and joints.
    subroutine test_fractures()
       type(fracture_layout_t) :: layout
       integer(ik) :: i, k
       integer(ik), allocatable :: found(:)
 
-      layout = fracture_layout(3_ik, 2_ik, 4_ik, 1_ik)
+      layout = fracture_layout(3_ik, 2_ik, 4_ik, 2_ik, 1_ik)
       call checks%is_true(layout%cell_count() == 21, "seven numbers per cell")
-      call checks%is_true(layout%count() == 28, "and one per flow, branch, joint")
+      call checks%is_true(layout%count() == 30, "and one per flow, branch, well, joint")
       found = [integer(ik) ::]
       do i = 1, 3
          do k = 1, 2
@@ -59,8 +59,11 @@ contains
       do k = 1, 4
          found = [found, layout%at_branch(k)]
       end do
+      do k = 1, 2
+         found = [found, layout%at_well(k)]
+      end do
       found = [found, layout%at_joint(1_ik)]
- call checks%is_true(all(found == [(i, i=1, 28)]), "those of the cells as in q, p_F; flows; joints")
+ call checks%is_true(all(found == [(i, i=1, 30)]), "those of the cells as in q, p_F; flows; joints")
    end subroutine test_fractures
 
    !> Cells, then two blocks per fracture cell; three components each.

@@ -9,7 +9,7 @@ program test_output_describe
    use results_chronicle, only: event_arrest, event_bifurcation, event_growth, &
                                 event_growth_onset, event_joint, &
                                 event_opening, event_remesh, event_slip_onset, event_step_cut, &
-                                event_unstable, event_window
+                                event_unstable, event_well, event_window
    use testing_checks, only: checks_t
    use testing_pages, only: check_page
    implicit none(type, external)
@@ -29,7 +29,7 @@ program test_output_describe
                                                 event_growth, event_joint, &
                                                 event_arrest, event_step_cut, &
                                                 event_unstable, event_bifurcation, &
-                                                event_remesh, event_window]), &
+                                                event_remesh, event_well, event_window]), &
                        "the kinds of events")
    call checks%is_true(all(status_words%word == [character(len=10) :: status_finished, &
                                                  status_stopped, status_failed]), "how runs end")

@@ -263,8 +263,22 @@ contains
       type(injection_t), intent(in) :: a, b
 
       same_injection = a%fracture == b%fracture .and. (a%at_point .eqv. b%at_point) .and. &
-                       same([a%x, a%y, a%rate, a%start, a%end], [b%x, b%y, b%rate, b%start, b%end])
+                       a%name == b%name .and. same_list(a%time, b%time) .and. &
+                       same_list(a%rate, b%rate) .and. same_list(a%pressure, b%pressure) .and. &
+                       same([a%x, a%y, a%start, a%end, a%storage, a%friction, a%turbulence], &
+                            [b%x, b%y, b%start, b%end, b%storage, b%friction, b%turbulence])
+      if (a%fracture == 0) same_injection = same_injection .and. same([a%radius], [b%radius])
    end function same_injection
+
+   !> Both are absent, or alike.
+   pure logical function same_list(a, b)
+      real(rk), allocatable, intent(in) :: a(:), b(:)
+
+      same_list = allocated(a) .eqv. allocated(b)
+      if (.not. (same_list .and. allocated(a))) return
+      same_list = size(a) == size(b)
+      if (same_list) same_list = same(a, b)
+   end function same_list
 
    pure logical function same_probe(a, b)
       type(probe_t), intent(in) :: a, b

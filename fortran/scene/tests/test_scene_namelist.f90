@@ -91,8 +91,8 @@ contains
       associate (w => scene%injections(1))
          call checks%is_true(w%fracture == 2 .and. w%at_point, "the well finds a fracture "// &
                              "given after it")
-         call exactly([w%rate, w%start, w%end, w%x, w%y], [1.0e-7_rk, 10.0_rk, 20.0_rk, 0.5_rk, &
-                                                           0.25_rk], "well")
+         call exactly([w%rate(1), w%start, w%end, w%x, w%y], [1.0e-7_rk, 10.0_rk, 20.0_rk, 0.5_rk, &
+                                                              0.25_rk], "well")
       end associate
       call checks%is_true(scene%initial%fracture_pressure == "undrained", &
                           "initial fracture pressure")

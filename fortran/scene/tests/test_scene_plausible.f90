@@ -99,7 +99,7 @@ contains
                                 friction=0.5_rk, dilation=radians, aperture=1.0e-3_rk)]
       s%sides(2)%traction(1) = -20.0e6_rk
       s%sides(4)%traction(2) = -10.0e6_rk
-      s%injections = [injection_t(fracture=1, rate=5.0e-9_rk)]
+      s%injections = [injection_t(fracture=1, rate=[5.0e-9_rk])]
       s%time%end = 3600.0_rk
       s%time%step = 60.0_rk
       s%output%interval = 60.0_rk

@@ -39,7 +39,7 @@ contains
       scene%growth%increment = increment
       scene%initial%fracture_pressure = "equilibrated"
       scene%time = time_t(end=30.0_rk, tolerance=0.05_rk, smallest_factor=1.0e-9_rk)
-      scene%injections = [injection_t(fracture=1, rate=1.0e-6_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[1.0e-6_rk])]
    end function injected_body
 
    !> March until something has joined, or for so many states.

@@ -45,10 +45,10 @@ contains
       call add_fracture(scene, "two", [0.5_rk, 1.0_rk, 1.5_rk], [1.5_rk, 1.5_rk, 1.6_rk], &
                         0.5_rk, 0.0_rk)
       scene%injections = [injection_t(fracture=1, at_point=.true., x=0.91_rk, y=0.97_rk, &
-                                      rate=1.0e-6_rk, start=10.0_rk, end=30.0_rk), &
-                          injection_t(fracture=2, rate=2.0e-6_rk, start=20.0_rk), &
+                                      rate=[1.0e-6_rk], start=10.0_rk, end=30.0_rk), &
+                          injection_t(fracture=2, rate=[2.0e-6_rk], start=20.0_rk), &
                           injection_t(fracture=1, at_point=.true., x=1.2_rk, y=1.0_rk, &
-                                      rate=-3.0e-6_rk, start=0.0_rk, end=25.0_rk)]
+                                      rate=[-3.0e-6_rk], start=0.0_rk, end=25.0_rk)]
       call simulation%begin(scene, timers, error)
       call checks%no_error(error, "wells")
       n = simulation%mesh%fracture%n_cells
@@ -100,7 +100,7 @@ contains
       scene%growth%increment = increment
       scene%time%step = 100.0_rk
       call add_fracture(scene, "middle", [0.85_rk, 1.15_rk], [0.85_rk, 1.15_rk], 0.3_rk, 0.01_rk)
-      scene%injections = [injection_t(fracture=1, rate=1.0e-7_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[1.0e-7_rk])]
    end function symmetric_scene
 
    !> A step that does not converge leaves everything as it is.

@@ -250,9 +250,9 @@ contains
       type(scene_t) :: scene
 
       scene%time%end = 100.0_rk
-      scene%injections = [injection_t(rate=1.0e-6_rk, start=10.0_rk, end=30.0_rk), &
-                          injection_t(rate=2.0e-6_rk, start=20.0_rk), &
-                          injection_t(rate=-3.0e-6_rk, start=0.0_rk, end=25.0_rk)]
+      scene%injections = [injection_t(rate=[1.0e-6_rk], start=10.0_rk, end=30.0_rk), &
+                          injection_t(rate=[2.0e-6_rk], start=20.0_rk), &
+                          injection_t(rate=[-3.0e-6_rk], start=0.0_rk, end=25.0_rk)]
       call rates_are(scene, 0.0_rk, 10.0_rk, 0.0_rk, "before its start")
       call rates_are(scene, 10.0_rk, 1.0_rk, 1.0e-6_rk, "from its start")
       call rates_are(scene, 29.0_rk, 1.0_rk, 1.0e-6_rk, "to its end")

@@ -40,7 +40,7 @@ contains
       scene%output%stimulated_jump = 1.0e-6_rk
       call add_fracture(scene, "fed", [0.85_rk, 1.15_rk], [0.85_rk, 1.15_rk], 0.3_rk, 0.01_rk)
       call add_fracture(scene, "far", [0.2_rk, 0.5_rk], [1.8_rk, 1.8_rk], 2.0_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=1, rate=rate)]
+      scene%injections = [injection_t(fracture=1, rate=[rate])]
    end function growing_scene
 
    !> Next state, with its growth.
@@ -139,7 +139,7 @@ contains
       call add_fracture(scene, "bar", [0.5_rk, 0.9_rk], [1.0_rk, 1.0_rk], 1.0_rk, 0.0_rk)
       call add_fracture(scene, "stem", [0.7_rk, 0.7_rk], [1.3_rk, 1.0_rk], 1.0_rk, 0.0_rk)
       call add_fracture(scene, "alone", [1.2_rk, 1.5_rk], [1.0_rk, 1.0_rk], 1.0_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=well, rate=1.0e-8_rk)]
+      scene%injections = [injection_t(fracture=well, rate=[1.0e-8_rk])]
       call simulation%begin(scene, timers, error)
       if (.not. allocated(error)) call go_on(simulation, error)
       if (.not. allocated(error)) call go_on(simulation, error)
@@ -163,7 +163,7 @@ contains
       scene = squeezed_body(20.0e6_rk, 20.0e6_rk)
       scene%growth%intensities = .false.
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [1.0_rk, 1.0_rk], 1.0_rk, 0.0_rk)
-      scene%injections = [injection_t(fracture=1, rate=rate, start=60.0_rk, end=120.0_rk)]
+      scene%injections = [injection_t(fracture=1, rate=[rate], start=60.0_rk, end=120.0_rk)]
       scene%initial%fracture_pressure = "undrained"  ! the first state comes with the first step
       call simulation%begin(scene, timers, error)
       if (.not. allocated(error)) call go_on(simulation, error)

@@ -1,0 +1,178 @@
+!> The equations of wells whose rate depends on pressures (coarse_wells), one per well, for its flow
+!! q into the fracture. With r = q + C (p_w - p_w,before)/dt, what goes into the well at its head,
+!!   at a rate Q          r = Q
+!!   at a pressure P      p_w = P
+!!   at Q as far as P     0 <= r <= Q, p_w <= P where r > 0, p_w >= P where r < Q: in one equation
+!!                        max(r - Q, min(p_w - P, r)) = 0; in extraction with all signs changed
+!!   shut                 q = 0
+!! with the storage C and the pressure at the head p_w = p + (R + R2 |q|) q. p is that of the cells
+!! or the joint that the well feeds, by their shares; a well between two cells is half a cell away
+!! from their middles. All terms rise with q, so that Newton's method on the active one ends.
+module coarse_well_flow
+   use base_kinds, only: ik, rk
+   use coarse_fracture_flow, only: conducting_aperture
+   use coarse_fractures, only: fracture_system_t
+   use coarse_wells, only: control_limited, control_pressure, control_shut
+   implicit none(type, external)
+   private
+
+   public :: fill_well, well_head
+
+   integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends of a cell
+
+contains
+
+   !> The equation of a well, and its part in the balances of what it feeds, which must be there
+   !! already.
+   pure subroutine fill_well(w, x, eq)
+      integer(ik), intent(in) :: w
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      class(fracture_system_t), intent(inout) :: eq
+      real(rk) :: by_flow, by_pressure, flow, per_head, per_flow, residual, head
+      integer(ik) :: at, i, j, row
+
+      row = eq%layout%at_well(w)
+      flow = x(row)*eq%unit/eq%dt
+      call find_head(w, x, eq, head, by_flow)
+      call choose(w, eq, flow, head, residual, per_flow, per_head)
+      eq%residual(row) = residual
+      ! The places of the derivatives are the same in every state (coarse_slopes).
+      call eq%slopes%add(row, row, per_flow*eq%unit/eq%dt + per_head*by_flow)
+      do i = 1, eq%layout%n_cells
+         if (.not. eq%wells%share(i, w) > 0.0_rk) cycle
+         associate (share => eq%wells%share(i, w))
+            at = eq%layout%at_pressure(i)
+            eq%residual(at) = eq%residual(at) - share*x(row)
+            call eq%slopes%add(at, row, -share)
+            by_pressure = per_head*share
+            call eq%slopes%add(row, at, by_pressure)
+            if (eq%wells%is_between(w)) call add_opening(w, i, x, per_head, eq)
+         end associate
+      end do
+      do j = 1, eq%layout%n_joints
+         if (.not. eq%wells%joint_share(j, w) > 0.0_rk) cycle
+         associate (share => eq%wells%joint_share(j, w))
+            at = eq%layout%at_joint(j)
+            eq%residual(at) = eq%residual(at) - share*x(row)
+            call eq%slopes%add(at, row, -share)
+            call eq%slopes%add(row, at, per_head*share)
+         end associate
+      end do
+   end subroutine fill_well
+
+   !> Which of the conditions holds: its residual, and its derivatives.
+   pure subroutine choose(w, eq, flow, head, residual, per_flow, per_head)
+      integer(ik), intent(in) :: w
+      class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(in) :: flow  !< [m2/s]
+      real(rk), intent(in) :: head  !< [Pa]
+      real(rk), intent(out) :: residual  !< [Pa]
+      real(rk), intent(out) :: per_flow  !< [Pa s/m2]
+      real(rk), intent(out) :: per_head  !< [-]
+      real(rk) :: beyond, given, rest, way
+      logical :: has_pressure
+
+      associate (wells => eq%wells, scale => eq%dt/eq%unit)
+         per_flow = scale
+         per_head = wells%storage(w)/eq%unit
+         given = scale*flow + per_head*(head - eq%before%well_head(w))
+         rest = given - scale*wells%rate(w)
+         beyond = head - wells%pressure(w)
+         residual = rest
+         has_pressure = .false.
+         select case (wells%control(w))
+         case (control_shut)
+            residual = scale*flow
+            per_head = 0.0_rk
+         case (control_pressure)
+            has_pressure = .true.
+         case (control_limited)
+            way = sign(1.0_rk, wells%rate(w))
+            if (way*rest < min(way*beyond, way*given)) then
+               residual = given
+               has_pressure = way*beyond < way*given
+            end if
+         case default  ! control_rate
+            continue
+         end select
+         if (.not. has_pressure) return
+         residual = beyond
+         per_flow = 0.0_rk
+         per_head = 1.0_rk
+      end associate
+   end subroutine choose
+
+   !> The pressure at the well's head [Pa].
+   pure real(rk) function well_head(w, x, eq) result(head)
+      integer(ik), intent(in) :: w
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      class(fracture_system_t), intent(in) :: eq
+      real(rk) :: by_flow
+
+      call find_head(w, x, eq, head, by_flow)
+   end function well_head
+
+   !> The same with its derivative by the unknown of the flow.
+   pure subroutine find_head(w, x, eq, head, by_flow)
+      integer(ik), intent(in) :: w
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(out) :: head  !< [Pa]
+      real(rk), intent(out) :: by_flow  !< [-]
+      real(rk) :: resistance, slope
+      integer(ik) :: i, j
+
+      associate (per_x => eq%unit/eq%dt, flow => x(eq%layout%at_well(w))*eq%unit/eq%dt)
+         call eq%wells%lost(w, flow, head, by_flow)
+         do i = 1, eq%layout%n_cells
+            associate (share => eq%wells%share(i, w))
+               if (.not. share > 0.0_rk) cycle
+               head = head + share*x(eq%layout%at_pressure(i))
+               if (.not. eq%wells%is_between(w)) cycle
+               call half_cell(i, x, eq, resistance, slope)
+               head = head + share**2*resistance*flow
+               by_flow = by_flow + share**2*resistance
+            end associate
+         end do
+         do j = 1, eq%layout%n_joints
+            head = head + eq%wells%joint_share(j, w)*x(eq%layout%at_joint(j))
+         end do
+         by_flow = by_flow*per_x
+      end associate
+   end subroutine find_head
+
+   !> Resistance of half a cell, and its derivative by the opening.
+   pure subroutine half_cell(i, x, eq, resistance, slope)
+      integer(ik), intent(in) :: i
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(out) :: resistance  !< [Pa s/m2]
+      real(rk), intent(out) :: slope  !< [Pa s/m3]
+      real(rk) :: aperture
+
+      call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
+                               eq%opening(x, i), aperture, slope)
+      resistance = 6.0_rk*eq%settings%viscosity*eq%condensed%length(i)/aperture**3
+      slope = -3.0_rk*resistance/aperture*slope
+   end subroutine half_cell
+
+   !> How the resistance of half a cell follows its opening.
+   pure subroutine add_opening(w, i, x, per_head, eq)
+      integer(ik), intent(in) :: w
+      integer(ik), intent(in) :: i  !< cell
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk), intent(in) :: per_head  !< [-]
+      class(fracture_system_t), intent(inout) :: eq
+      real(rk) :: by_jump, resistance, slope
+      integer(ik) :: end, jumps(2)
+
+      jumps = eq%layout%at_jump(i, both)
+      call half_cell(i, x, eq, resistance, slope)
+      by_jump = 0.5_rk*eq%wells%share(i, w)**2*slope*x(eq%layout%at_well(w))*eq%unit/eq%dt &
+                /eq%stiffness
+      do end = 1, 2
+         call eq%slopes%add(eq%layout%at_well(w), jumps(end), per_head*by_jump)
+      end do
+   end subroutine add_opening
+
+end module coarse_well_flow

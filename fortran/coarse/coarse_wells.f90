@@ -1,0 +1,66 @@
+!> Wells in fractures whose rate depends on pressures: a pressure is given, or bounds a rate, or the
+!! well itself holds fluid. Each has its flow into the fracture as an unknown of the step
+!! (coarse_well_flow). Wells that inject at a given rate are none of these, but sources of their
+!! cells.
+!!
+!! The well's pressure is that at its head, without the weight of its fluid: what the fracture has
+!! at the well, and what the flow to there loses.
+module coarse_wells
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: wells_t
+   public :: control_limited, control_pressure, control_rate, control_shut
+
+   integer(ik), parameter :: control_shut = 0  !< nothing flows
+   integer(ik), parameter :: control_rate = 1  !< into the well at its head
+   integer(ik), parameter :: control_pressure = 2
+   integer(ik), parameter :: control_limited = 3  !< a rate, as far as pressure allows
+
+   type :: wells_t
+      integer(ik) :: n = 0
+      integer(ik), allocatable :: number(:)  !< (n) among all wells of the scene
+      real(rk), allocatable :: share(:, :)  !< (fracture cells, n) of its flow, into each [-]
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, n) [-]
+      !> (n) it stands between two cells, half a cell away from the middles of both
+      logical, allocatable :: is_between(:)
+      real(rk), allocatable :: storage(:)  !< (n) [m2/Pa]
+      real(rk), allocatable :: friction(:)  !< (n) pressure lost per flow [Pa s/m2]
+      real(rk), allocatable :: turbulence(:)  !< (n) and per its square [Pa s2/m4]
+      ! In the present step:
+      integer(ik), allocatable :: control(:)  !< (n)
+      real(rk), allocatable :: rate(:)  !< (n) asked for; negative: out of the fracture [m2/s]
+      real(rk), allocatable :: pressure(:)  !< (n) asked for, or the limit [Pa]
+   contains
+      procedure :: lost
+      procedure :: is_at_limit
+   end type wells_t
+
+contains
+
+   !> Pressure that a flow loses on its way through the well, and its derivative.
+   pure subroutine lost(self, well, flow, pressure, slope)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well
+      real(rk), intent(in) :: flow  !< into the fracture [m2/s]
+      real(rk), intent(out) :: pressure  !< [Pa]
+      real(rk), intent(out) :: slope  !< [Pa s/m2]
+
+      pressure = (self%friction(well) + self%turbulence(well)*abs(flow))*flow
+      slope = self%friction(well) + 2.0_rk*self%turbulence(well)*abs(flow)
+   end subroutine lost
+
+   !> A limited well has the pressure of its limit, and less than its rate.
+   pure logical function is_at_limit(self, well, rate)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well
+      real(rk), intent(in) :: rate  !< into the well, at its head [m2/s]
+      real(rk), parameter :: rounding = 1.0e-9_rk
+
+      is_at_limit = .false.
+      if (self%control(well) /= control_limited) return
+      is_at_limit = rate/self%rate(well) < 1.0_rk - rounding
+   end function is_at_limit
+
+end module coarse_wells

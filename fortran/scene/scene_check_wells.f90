@@ -1,0 +1,172 @@
+!> Checks what a scene says of its wells.
+module scene_check_wells
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text
+   use scene_check_geometry, only: contains_point, distance_to, point_text
+   use scene_parameters, only: groups
+   use scene_sheet, only: refuse, sheet_t
+   use scene_types, only: injection_t, name_length, scene_t
+   use scene_values, only: value_t
+   use scene_words, only: nearest_word, real_text, rounded_text
+   implicit none(type, external)
+   private
+
+   public :: check_given_wells, check_wells
+
+contains
+
+   !> What is given of each: a fracture of the scene or a point, a rate or a pressure.
+   pure subroutine check_given_wells(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (groups(record%group)%name /= "injection") cycle
+            if (record%is_given("fracture")) then
+               call check_target(sheet, i, error)
+               if (allocated(error)) return
+               if (record%is_given("radius")) then
+                 call refuse(error, sheet, i, "radius", "is given, but only a well in the rock "// &
+                              "has one, and this one is in a fracture")
+               end if
+            else if (.not. record%is_given("x")) then
+             call refuse(error, sheet, i, "fracture", "is missing: a well needs a fracture, or "// &
+                           "x and y in the rock")
+            end if
+            if (allocated(error)) return
+            if (.not. (record%is_set("rate") .or. record%is_set("pressure"))) then
+               call refuse(error, sheet, i, "rate", "is missing: a well needs a rate, a "// &
+                           "pressure, or both")
+            else if (record%is_given("time") .and. record%is_given("start")) then
+               call refuse(error, sheet, i, "start", "is given beside time, whose first value "// &
+                           "it would be, but must not be")
+            end if
+            if (allocated(error)) return
+         end associate
+      end do
+   end subroutine check_given_wells
+
+   !> The fracture that a well names is one of the scene.
+   pure subroutine check_target(sheet, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: well  !< index into sheet%records
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: value, wanted
+      character(len=name_length), allocatable :: names(:)
+      character(len=:), allocatable :: reason, likely
+      integer :: i, k
+
+      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, &
+                              sheet%length)])))
+      do k = 1, size(names)
+         value = sheet%records(sheet%find("fracture", k))%value("name")
+         names(k) = value%text
+      end do
+      wanted = sheet%records(well)%value("fracture")
+      if (size(names) == 0) then
+         call refuse(error, sheet, well, "fracture", "is '"//wanted%text// &
+                     "', but the scene has no fracture")
+      else if (.not. any(names == wanted%text)) then
+         reason = "is '"//wanted%text//"', which is no fracture of the scene"
+         likely = nearest_word(wanted%text, names)
+         if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
+         call refuse(error, sheet, well, "fracture", reason)
+      end if
+   end subroutine check_target
+
+   !> Stages go on in time, and a well is where the scene says.
+   pure subroutine check_wells(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      do i = 1, size(scene%injections)
+         record = sheet%find("injection", i)
+         call check_stages(sheet, record, scene%injections(i), error)
+         if (.not. allocated(error)) call check_place(sheet, record, scene, i, error)
+         if (.not. allocated(error) .and. any(scene%injections(:i - 1)%name &
+                                              == scene%injections(i)%name)) then
+            call refuse(error, sheet, record, "name", "is '"//trim(scene%injections(i)%name)// &
+                        "', as another well is called, but must be unique")
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine check_wells
+
+   pure subroutine check_stages(sheet, record, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(injection_t), intent(in) :: well
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: k, n
+      character(len=:), allocatable :: last
+
+      n = well%stage_count()
+      if (allocated(well%rate)) call check_count(sheet, record, "rate", size(well%rate, kind=ik), &
+                                                 n, error)
+      if (allocated(well%pressure) .and. .not. allocated(error)) then
+         call check_count(sheet, record, "pressure", size(well%pressure, kind=ik), n, error)
+      end if
+      if (allocated(error)) return
+      do k = 2, n
+         if (well%time(k) > well%time(k - 1)) cycle
+         call refuse(error, sheet, record, "time", "goes back: stage "//integer_text(k)// &
+                     " begins at "//real_text(well%time(k))//", but must begin after stage "// &
+                     integer_text(k - 1_ik)//", "//real_text(well%time(k - 1)))
+         return
+      end do
+      if (well%end > well%stage_start(n)) return
+      last = "start, "
+      if (n > 1) last = "the beginning of the last stage, "
+      call refuse(error, sheet, record, "end", "is "//real_text(well%end)//" but must be after "// &
+                  last//real_text(well%stage_start(n)))
+   end subroutine check_stages
+
+   !> One value for all stages, or one each.
+   pure subroutine check_count(sheet, record, name, given, stages, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: given, stages
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: right
+
+      if (given == stages) return
+      right = "one"
+      if (stages > 1) right = "as many as time, "//integer_text(stages)
+      call refuse(error, sheet, record, name, "has "//integer_text(given)// &
+                  " values but must have "//right)
+   end subroutine check_count
+
+   !> A point lies on its fracture, within a cell, or in the rock.
+   pure subroutine check_place(sheet, record, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< well
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: distance
+
+      associate (well => scene%injections(i))
+         if (.not. well%at_point) return
+         if (well%fracture == 0) then
+            if (contains_point(scene%domain, well%x, well%y)) return
+            call refuse(error, sheet, record, "x", "and y are "//point_text(well%x, well%y)// &
+                        " but must lie within the domain")
+            return
+         end if
+         distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
+         if (distance <= scene%discretization%size_fracture) return
+         call refuse(error, sheet, record, "x", "and y are "// &
+                     point_text(well%x, well%y)//", "//rounded_text(distance)// &
+                     " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
+                     "', but must be within size_fracture, "// &
+                     real_text(scene%discretization%size_fracture)//" m")
+      end associate
+   end subroutine check_place
+
+end module scene_check_wells

@@ -1,0 +1,183 @@
+!> From one accepted state of both levels to the next: a time step is tried, cut as often as it
+!! takes, and accepted.
+module twolevel_steps
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: rk
+   use base_number, only: brief_text
+   use base_timers, only: timers_t
+   use base_tolerances, only: same_time
+   use coarse_state, only: step_report_t
+   use results_chronicle, only: event_step_cut, event_unstable
+   use simulation_limits, only: limit_time_error
+   use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
+   use twolevel_notes, only: notes_t
+   use twolevel_state, only: two_levels_t
+   use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_well_limits, only: note_wells, share_before_switch
+   use twolevel_wells, only: last_switch, next_switch
+   implicit none(type, external)
+   private
+
+   public :: stepping_levels_t
+
+   !> Both levels, the last step, and how the next one is chosen.
+   type, abstract, extends(two_levels_t) :: stepping_levels_t
+      logical :: is_after_switch = .false.  !< of a well: the last step
+      logical :: ends_at_switch = .false.  !< the last step
+      logical :: is_unstable = .false.  !< tips grew without equilibrium in the last step
+      real(rk) :: dt = 0.0_rk  !< of the last step [s]
+      type(step_report_t) :: report  !< of it
+      type(stepper_t) :: stepper
+      type(notes_t) :: notes  !< of growth in equilibrium
+   contains
+      procedure :: take_step
+      procedure :: is_equilibrium
+      procedure :: last_state
+   end type stepping_levels_t
+
+contains
+
+   !> Tips grow in equilibrium, else by the law of advances at the ends of steps.
+   pure logical function is_equilibrium(self)
+      class(stepping_levels_t), intent(in) :: self
+
+      is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
+   end function is_equilibrium
+
+   !> One accepted step, cut as often as it takes. Where tips find no equilibrium in a step that is
+   !! short beside the time since the wells were switched, or in the shortest one, in which errors
+   !! in time are not judged either, growth is unstable: nothing but that happens, until it arrests.
+   subroutine take_step(self, timers, error)
+      class(stepping_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(trial_t) :: trial
+      logical :: is_last, is_too_short, is_unstable, may_jump
+      real(rk) :: wanted
+
+      if (self%scene%growth%intensities) then
+         call self%windows%accept()
+         call self%reference%accept()
+      end if
+      self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
+      wanted = self%dt
+      self%is_after_switch = self%ends_at_switch
+      is_too_short = .false.
+      is_last = .false.
+      is_unstable = .false.
+      may_jump = .false.
+      do
+         call try_length(self, is_last, may_jump, trial, timers, error)
+         if (allocated(error)) return
+         if (trial%needs_windows) cycle
+         if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
+         if (is_last .or. (is_too_short .and. .not. trial%converged)) then
+            call raise_error(error, "", trial%why_cut()//", even with a time step of " &
+                             //brief_text(self%dt, 4)//" s")
+            return
+         end if
+         is_last = is_too_short
+         is_unstable = is_last .and. trial%goes_too_far
+         if (.not. is_last) call cut_step(self, trial, is_too_short)
+         may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
+      end do
+      is_unstable = is_unstable .or. trial%jumps
+      if (self%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
+         call self%watch%see(limit_time_error, trial%time_error, self%last_state())
+      end if
+      call accept_step(self, trial, is_unstable)
+      if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
+   end subroutine take_step
+
+   !> The present step is so short that it does not matter when in it tips jump.
+   pure logical function is_moment(self)
+      class(stepping_levels_t), intent(in) :: self
+
+      is_moment = self%dt <= punctual*(self%state%time - last_switch(self%scene, self%state%time))
+   end function is_moment
+
+   !> The equations are solved and tips in equilibrium, whatever the error in time.
+   pure logical function solves(trial)
+      type(trial_t), intent(in) :: trial
+
+      solves = trial%converged .and. .not. trial%goes_too_far
+   end function solves
+
+   !> Try a step of the present length. The last try is taken if its equations are solved.
+   subroutine try_length(self, is_last, may_jump, trial, timers, error)
+      class(stepping_levels_t), intent(inout) :: self
+      logical, intent(in) :: is_last, may_jump
+      type(trial_t), intent(out) :: trial
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%is_equilibrium()) then
+         call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
+                               error)
+      else
+         self%before = self%state
+         call self%try_step(self%dt, timers, self%report, error)
+         trial%converged = self%report%converged
+         if (allocated(error)) return
+         if (trial%converged) then
+            trial%time_error = self%step_error(self%dt)
+            if (.not. is_last) then
+               call share_before_switch(self, self%dt, punctual, trial%switch, timers, error)
+               if (allocated(error)) return
+               if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) self%state = self%before
+            end if
+         else
+            trial%reason = self%report%reason
+         end if
+      end if
+   end subroutine try_length
+
+   !> A tried step was not taken.
+   subroutine cut_step(self, trial, is_too_short)
+      class(stepping_levels_t), intent(inout) :: self
+      type(trial_t), intent(in) :: trial
+      logical, intent(out) :: is_too_short
+
+      call self%stepper%cut(trial, self%dt, is_too_short)
+      self%summary%step_cuts = self%summary%step_cuts + 1
+      self%summary%newton_total = self%summary%newton_total + self%report%iterations
+      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
+                                    //brief_text(self%dt, 4)//" s: "//trial%why_cut())
+   end subroutine cut_step
+
+   !> A tried step is taken.
+   subroutine accept_step(self, trial, is_unstable)
+      class(stepping_levels_t), intent(inout) :: self
+      type(trial_t), intent(in) :: trial
+      logical, intent(in) :: is_unstable
+
+      call note_wells(self, self%dt, self%ends_at_switch)
+      self%ends_at_switch = self%ends_at_switch .or. next_switch(self%scene, self%before%time) &
+                            <= self%state%time*(1.0_rk + same_time)
+      call self%book_step(self%dt)
+      self%is_unstable = is_unstable
+      self%tip%advance = 0.0_rk
+      if (self%is_equilibrium()) then
+         call accept_equilibrium(self)
+         call self%notes%note_competition(self)
+      end if
+      call self%stepper%step_done(trial, self%dt)
+      call self%trend%accept(self%before, self%state, self%dt)
+      ! The rates of a step in which cracks have joined mean nothing for the next.
+      if (trial%has_joined) call self%follow_trend(at_rest=.false.)
+      if (.not. is_unstable) return
+      call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
+                                    //brief_text(sum(self%tip%advance), 4)//" m in all")
+      ! The rates of such a step mean nothing for the next.
+      call self%follow_trend(at_rest=.false.)
+   end subroutine accept_step
+
+   !> The time of the last good state.
+   pure function last_state(self) result(words)
+      class(stepping_levels_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = brief_text(self%state%time, 6)//" s"
+   end function last_state
+
+end module twolevel_steps

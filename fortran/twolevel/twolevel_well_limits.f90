@@ -1,0 +1,193 @@
+!> When wells reach the pressure that bounds their rate, or leave it, so that no step straddles
+!! that.
+!!
+!! Within a step such a well flows at its rate, or at what its pressure limit lets through,
+!! whichever is less (coarse_well_flow). A step in which that changes is tried once more with the
+!! well held as it was before: what passes its bound then says at which share of the step it did.
+module twolevel_well_limits
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text, integer_text
+   use base_timers, only: timers_t
+   use base_tolerances, only: same_time
+   use coarse_state, only: state_t, step_report_t
+   use coarse_wells, only: control_limited, control_pressure, control_rate
+   use results_chronicle, only: event_well
+   use scene_types, only: injection_t
+   use twolevel_state, only: two_levels_t
+   use twolevel_wells, only: last_switch
+   implicit none(type, external)
+   private
+
+   public :: note_wells, share_before_switch
+
+   !> A step whose end, or all of it but this share, lies beyond the switch straddles nothing [-].
+   real(rk), parameter :: negligible = 0.01_rk
+
+contains
+
+   !> Wells that flow at less than their rate now, (controlled wells).
+   pure function are_at_limit(self) result(at_limit)
+      class(two_levels_t), intent(in) :: self
+      logical :: at_limit(self%model%wells%n)
+      integer(ik) :: w
+
+      associate (wells => self%model%wells, now => self%state)
+         at_limit = [(wells%is_at_limit(w, now%well_rate(w)), w=1, wells%n)]
+      end associate
+   end function are_at_limit
+
+   !> The share of a tried step, from the state before to the present one, after which the first
+   !! well reaches or leaves its limit; 1: none does, or so near to an end of the step, or the step
+   !! is so short beside the time since the wells were switched, that it does not matter.
+   subroutine share_before_switch(self, dt, punctual, share, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: punctual  !< share of that time [-]
+      real(rk), intent(out) :: share  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: changes(self%model%wells%n)
+      real(rk) :: later
+      integer(ik) :: w
+
+      share = 1.0_rk
+      if (size(changes) == 0) return
+      changes = are_at_limit(self) .neqv. self%at_limit
+      changes = changes .and. self%model%wells%control == control_limited
+      do w = 1, size(changes, kind=ik)
+         if (.not. changes(w)) cycle
+         call find_share(self, w, dt, later, timers, error)
+         if (allocated(error)) return
+         share = min(share, later)
+      end do
+      if (share < negligible .or. share > 1.0_rk - negligible .or. (1.0_rk - share)*dt <= &
+          punctual*(self%before%time - last_switch(self%scene, self%before%time))) share = 1.0_rk
+   end subroutine share_before_switch
+
+   !> A step of length dt is accepted: which wells have begun a stage, and which have come to their
+   !! limits or left them, with its end or in it.
+   subroutine note_wells(self, dt, any_changed)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      logical, intent(out) :: any_changed  !< at a limit
+      logical :: at_limit(self%model%wells%n)
+      character(len=:), allocatable :: words
+      integer(ik) :: stage, stage_before, w
+
+      do w = 1, size(self%scene%injections, kind=ik)
+         associate (well => self%scene%injections(w))
+            stage = well%stage_at(self%state%time - 0.5_rk*dt)
+            stage_before = 0
+            associate (before => self%before%time)
+               if (before > 0.0_rk) stage_before = well%stage_at(before*(1.0_rk - same_time))
+               if (stage == stage_before .or. (stage == 1 .and. .not. before > 0.0_rk)) cycle
+               call self%chronicle%add_event(before, event_well, what_begins(well, stage))
+            end associate
+            if (self%model%wells%n == 0) cycle
+            where (self%model%wells%number == w)
+               self%at_limit = .false.
+               self%given = 0.0_rk
+            end where
+         end associate
+      end do
+      any_changed = .false.
+      if (self%model%wells%n == 0) return
+      at_limit = are_at_limit(self)
+      do w = 1, size(at_limit, kind=ik)
+         if (at_limit(w) .eqv. self%at_limit(w)) cycle
+         any_changed = .true.
+         self%given(w) = 0.0_rk
+         words = " is at its rate again"
+         if (at_limit(w)) words = " has reached its pressure limit"
+         call self%chronicle%add_event(self%state%time, event_well, &
+                                      trim(self%scene%injections(self%model%wells%number(w))%name) &
+                                       //words)
+      end do
+      self%at_limit = at_limit
+   end subroutine note_wells
+
+   !> What begins with a stage of a well, in words.
+   pure function what_begins(well, stage) result(words)
+      type(injection_t), intent(in) :: well
+      integer(ik), intent(in) :: stage  !< 0: it is shut
+      character(len=:), allocatable :: words
+
+      words = trim(well%name)//" is shut"
+      if (stage == 0) return
+      words = trim(well%name)//" begins stage "//integer_text(stage)//":"
+      if (allocated(well%rate)) words = words//" "//brief_text(well%rate(stage), 4)//" m2/s"
+      if (allocated(well%rate) .and. allocated(well%pressure)) words = words//" up to"
+      if (allocated(well%pressure)) words = words//" "//brief_text(well%pressure(stage), 4)//" Pa"
+   end function what_begins
+
+   !> Try the step with one well held as it was. What it gives is forgotten again.
+   subroutine find_share(self, w, dt, share, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: w  !< controlled well
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(out) :: share  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(state_t) :: state
+      type(step_report_t) :: report
+      real(rk), allocatable :: injection(:), into_joints(:)
+      logical :: is_current, is_undrained
+
+      state = self%state
+      is_current = self%values_are_current
+      is_undrained = self%undrained
+      injection = self%model%cells%injection
+      if (self%model%joints%n > 0) into_joints = self%model%joints%injection
+      self%held_well = w
+      self%held_control = merge(control_pressure, control_rate, self%at_limit(w))
+      self%state = self%before
+      call self%try_step(dt, timers, report, error)
+      self%held_well = 0
+      share = 0.5_rk
+      if (.not. allocated(error) .and. report%converged) then
+         associate (wells => self%model%wells, held => self%state)
+            if (self%at_limit(w)) then
+               share = part(self%before%well_rate(w), wells%rate(w), held%well_rate(w))
+            else
+               share = part(head_at_rate(self, w), wells%pressure(w), held%well_head(w))
+               ! Right after a switch pressures rise as the root of time does.
+               if (.not. self%before%time > last_switch(self%scene, self%before%time)) then
+                  share = share**2
+               end if
+            end if
+         end associate
+      end if
+      self%state = state
+      self%values_are_current = is_current
+      self%undrained = is_undrained
+      self%model%cells%injection = injection
+      if (self%model%joints%n > 0) self%model%joints%injection = into_joints
+      self%model%wells%control(w) = control_limited
+   end subroutine find_share
+
+   !> The pressure at the head of a well when it has just begun to flow at its rate [Pa]: what it
+   !! loses is there at once, unless the well itself takes the fluid.
+   pure real(rk) function head_at_rate(self, w) result(head)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: w  !< controlled well
+      real(rk) :: lost_now, lost_then, slope
+
+      associate (wells => self%model%wells, before => self%before)
+         head = before%well_head(w)
+         if (wells%storage(w) > 0.0_rk) return
+         call wells%lost(w, before%well_flow(w), lost_then, slope)
+         call wells%lost(w, wells%rate(w), lost_now, slope)
+         head = head - lost_then + lost_now
+      end associate
+   end function head_at_rate
+
+   !> How far a value on its way from one to another is when it passes a bound [-].
+   pure real(rk) function part(from, bound, to)
+      real(rk), intent(in) :: from, bound, to  !< [the same unit]
+
+      part = 1.0_rk
+      if (abs(to - from) > 0.0_rk) part = min(1.0_rk, max(0.0_rk, (bound - from)/(to - from)))
+   end function part
+
+end module twolevel_well_limits

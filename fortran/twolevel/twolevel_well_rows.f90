@@ -1,0 +1,129 @@
+!> What wells do, well by well: rows of wells.csv.
+module twolevel_well_rows
+   use base_kinds, only: ik, rk
+   use coarse_rock, only: mean_mobility
+   use coarse_geometry, only: cell_area
+   use results_rows, only: well_row_t
+   use twolevel_state, only: two_levels_t
+   use twolevel_wells, only: between_cells, rate
+   implicit none(type, external)
+   private
+
+   public :: equivalent_radius, well_books_t
+
+   real(rk), parameter :: pi = acos(-1.0_rk)
+
+   !> The pressure of a triangle that is fed is that at this distance from a well in it, over the
+   !! root of its area: a mean over places and meshes, within 0.03 (verification/wells_in_rock).
+   real(rk), parameter :: equivalent_radius = 0.30_rk
+
+   !> Sums and first values, (wells).
+   type :: well_books_t
+      real(rk), allocatable, private :: injected(:)  !< at their heads so far [m2]
+      real(rk), allocatable, private :: first_pressure(:)  !< [Pa]
+   contains
+      procedure :: begin
+      procedure :: book
+   end type well_books_t
+
+contains
+
+   !> The state before the first step.
+   subroutine begin(self, levels)
+      class(well_books_t), intent(out) :: self
+      class(two_levels_t), intent(in) :: levels
+      integer(ik) :: w
+
+      associate (n => size(levels%scene%injections, kind=ik))
+         allocate (self%injected(n), source=0.0_rk)
+         self%first_pressure = [(pressure_at(levels, w, 0.0_rk), w=1, n)]
+      end associate
+   end subroutine begin
+
+   !> The state after a step of length dt; dt = 0: there has been none.
+   subroutine book(self, levels, dt, rows)
+      class(well_books_t), intent(inout) :: self
+      class(two_levels_t), intent(in) :: levels
+      real(rk), intent(in) :: dt  !< [s]
+      type(well_row_t), allocatable, intent(out) :: rows(:)
+      integer(ik) :: w
+
+      associate (wells => levels%scene%injections)
+         allocate (rows(size(wells)))
+         do w = 1, size(wells, kind=ik)
+            associate (row => rows(w))
+               row%time = levels%state%time
+               row%name = trim(wells(w)%name)
+               row%stage = 0
+               if (dt > 0.0_rk) then
+                  row%stage = wells(w)%stage_at(row%time - 0.5_rk*dt)
+                  row%flow = rate(wells(w), row%time - dt, dt)
+               end if
+               row%rate = row%flow
+               row%control = "rate"
+               call set_controlled(levels, w, row)
+               if (row%stage == 0) row%control = "shut"
+               row%pressure = pressure_at(levels, w, row%flow)
+               if (.not. wells(w)%is_controlled()) row%head_pressure = row%pressure &
+                  & + (wells(w)%friction + wells(w)%turbulence*abs(row%flow))*row%flow
+               self%injected(w) = self%injected(w) + dt*row%rate
+               row%injected = self%injected(w)
+               associate (rise => row%pressure - self%first_pressure(w))
+                  if (abs(rise) > 0.0_rk) row%injectivity = row%flow/rise
+               end associate
+            end associate
+         end do
+      end associate
+   end subroutine book
+
+   !> What is an unknown of wells whose rate depends on pressures.
+   pure subroutine set_controlled(levels, w, row)
+      class(two_levels_t), intent(in) :: levels
+      integer(ik), intent(in) :: w
+      type(well_row_t), intent(inout) :: row
+      integer :: k
+
+      if (levels%model%wells%n == 0) return
+      k = findloc(levels%model%wells%number, w, dim=1)
+      if (k == 0) return
+      row%flow = levels%state%well_flow(k)
+      row%rate = levels%state%well_rate(k)
+      row%head_pressure = levels%state%well_head(k)
+      associate (well => levels%scene%injections(w))
+         if (allocated(well%pressure)) row%control = "pressure"
+         if (allocated(well%pressure) .and. allocated(well%rate)) row%control = &
+            & merge("limit", "rate ", levels%at_limit(k))
+      end associate
+   end subroutine set_controlled
+
+   !> The pressure where a well meets fracture or rock [Pa]: that of the cells or the joint that it
+   !! feeds, by their shares, and what the flow loses from there to the middle of its cell.
+   pure real(rk) function pressure_at(levels, w, flow) result(pressure)
+      class(two_levels_t), intent(in) :: levels
+      integer(ik), intent(in) :: w
+      real(rk), intent(in) :: flow  !< [m2/s]
+      logical :: between(size(levels%scene%injections))
+      real(rk) :: mobility
+      integer(ik) :: cell
+
+      associate (state => levels%state, model => levels%model, well => levels%scene%injections(w))
+         if (well%fracture == 0) then
+            cell = levels%rock_cell(w)
+            associate (k => model%rock%permeability(:, min(int(cell), &
+                                                           size(model%rock%permeability, 2))))
+               mobility = mean_mobility(k, model%settings%viscosity)
+            end associate
+            pressure = state%unknowns(3, cell) + flow/(2.0_rk*pi*mobility) &
+                       *log(equivalent_radius*sqrt(cell_area(levels%mesh, cell))/well%radius)
+            return
+         end if
+         pressure = dot_product(levels%share(:, w), state%pressure) &
+                    + dot_product(levels%joint_share(:, w), state%joint_pressure)
+         between = between_cells(levels%scene%injections, levels%share)
+         if (.not. between(w)) return
+         pressure = pressure + flow*sum(levels%share(:, w)**2*6.0_rk*model%settings%viscosity &
+                                        *model%condensed%length/state%aperture**3)
+      end associate
+   end function pressure_at
+
+end module twolevel_well_rows
