@@ -17,6 +17,7 @@ module growth_law
       !> K_IC of the rock that the tip grows in over that of the scene's rock, by which all tips are
       !! judged: the intensity is over this [-]
       real(rk) :: resistance = 1.0_rk
+      real(rk) :: crack_modulus = 0.0_rk  !< E' of the rock around the tip [Pa]
    end type growth_drive_t
 
 contains
@@ -72,6 +73,7 @@ contains
       real(rk) :: opening
 
       opening = max(k1, 0.0_rk)
+      drive%crack_modulus = crack_modulus
       drive%angle = kink_angle(opening, k2)
       drive%intensity = equivalent_intensity(opening, k2, drive%angle)
       drive%energy = energy_release_rate(opening, k2, drive%angle, crack_modulus)

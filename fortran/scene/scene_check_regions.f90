@@ -73,10 +73,14 @@ contains
          call check_points(sheet, record, scene%regions(i), error)
          if (.not. allocated(error)) call check_outline(sheet, record, scene, i, error)
          if (.not. allocated(error)) call check_rock(sheet, record, scene, scene%regions(i), error)
-         if (.not. allocated(error)) call check_tensor(sheet, record, scene%regions(i)%material, &
-                                                       error)
+         if (scene%has_fluid()) then
+            if (.not. allocated(error)) call check_tensor(sheet, record, &
+                                                          scene%regions(i)%material, error)
+         end if
          if (.not. allocated(error)) call check_stiffness(sheet, scene, i, error)
-         if (.not. allocated(error)) call check_contrast(sheet, scene, i, error)
+         if (.not. allocated(error) .and. scene%has_fluid()) then
+            call check_contrast(sheet, scene, i, error)
+         end if
          if (allocated(error)) return
       end do
    end subroutine check_regions

@@ -91,7 +91,7 @@ module scene_parameters
               meaning="The fluid in pores and fractures. A scene without this group is "// &
               "mechanics only, and can have neither injections nor pressures: finite elements "// &
               "on the whole body under a load that rises or falls."), &
-      group_t("region", repeated=.true., scenes=in_fluid, &
+      group_t("region", repeated=.true., &
               meaning="A part of the body with rock of its own: what it does not give is that "// &
               "of &material. It may reach beyond the body, and fractures may cross it. Where "// &
               "two overlap, the later one in the file counts. Coarse cells follow its outline "// &
@@ -256,20 +256,20 @@ module scene_parameters
                   derived=.true., meaning="Young's modulus E (drained)"), &
       parameter_t("region", "poisson", range=poisson_range, absent="that of &material", &
                   derived=.true., meaning="Poisson's ratio nu (drained)"), &
-      parameter_t("region", "biot", range=biot_range, absent="that of &material", &
+      parameter_t("region", "biot", scenes=in_fluid, range=biot_range, absent="that of &material", &
                   derived=.true., meaning="Biot's coefficient alpha"), &
-      parameter_t("region", "porosity", range=porosity_range, absent="that of &material", &
-                  derived=.true., meaning="Porosity phi"), &
-      parameter_t("region", "permeability", unit="m2", range=positive, &
+      parameter_t("region", "porosity", scenes=in_fluid, range=porosity_range, &
+                  absent="that of &material", derived=.true., meaning="Porosity phi"), &
+      parameter_t("region", "permeability", unit="m2", scenes=in_fluid, range=positive, &
                   absent="see permeability_xx", &
                   meaning="Isotropic permeability"), &
-      parameter_t("region", "permeability_xx", unit="m2", range=positive, &
+      parameter_t("region", "permeability_xx", unit="m2", scenes=in_fluid, range=positive, &
                   absent="see permeability, or &material", &
                   meaning="Component xx of the permeability tensor"), &
-      parameter_t("region", "permeability_yy", unit="m2", range=positive, &
+      parameter_t("region", "permeability_yy", unit="m2", scenes=in_fluid, range=positive, &
                   absent="see permeability", &
                   meaning="Component yy of the permeability tensor"), &
-      parameter_t("region", "permeability_xy", unit="m2", absent="0", &
+      parameter_t("region", "permeability_xy", unit="m2", scenes=in_fluid, absent="0", &
                   meaning="Component xy of the permeability tensor"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
                   absent="that of &material", derived=.true., &

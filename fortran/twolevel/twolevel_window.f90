@@ -5,7 +5,7 @@
 !! gives there (so the whole body takes nothing on its edge); the rock takes the coarse pressure as
 !! initial stress, the fracture faces what twolevel_faces says.
 module twolevel_window
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use contact_law, only: contact_law_t, is_same
@@ -23,11 +23,9 @@ module twolevel_window
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, side_count
    use scene_types, only: material_t, scene_t
-   use simulation_rocks, only: interface_distance, place_rocks, &
-                               regions_of_other_rock
+   use simulation_rocks, only: follow_outlines, keep_off, place_rocks, regions_of_other_rock
    use tips_intensity, only: tip_intensity
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
-   use twolevel_outlines, only: follow_outlines
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_tip, only: window_tip_t
@@ -42,9 +40,6 @@ module twolevel_window
 
    !> growth of element size with distance from the fractures
    real(rk), parameter :: grading = 0.2_rk
-
-   !> Of a rosette beside an interface, over the usual one.
-   real(rk), parameter :: least_rosette = 1.0_rk/32.0_rk
 
    !> What a window takes from the coarse level.
    type :: coarse_values_t
@@ -192,28 +187,6 @@ contains
          xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, tip%end == 1))
       end associate
    end function tip_place
-
-   !> Make the rosette of a tip so small that two of it fit between the tip and other rock, as the
-   !! integral's domain does; a tip that is nearer than the smallest one allows has no intensities:
-   !! on an interface the singularity is another one.
-   pure subroutine keep_off(xy, scene, radius, error)
-      real(rk), intent(in) :: xy(2)  !< of the tip [m]
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(inout) :: radius  !< [m]
-      type(error_t), allocatable, intent(out) :: error
-      real(rk) :: room
-      character(len=120) :: place
-
-      room = 0.5_rk*interface_distance(scene, xy)
-      if (room < least_rosette*radius) then
-         write (place, "(3(a,es12.5))") "(", xy(1), ",", xy(2), ") m is ", 2.0_rk*room
-         call raise_error(error, "twolevel_window", "the tip at "//trim(place)//" m from rock "// &
-                          "of another stiffness, too near for stress intensity factors: a tip "// &
-                          "on or next to an interface has another singularity")
-         return
-      end if
-      radius = min(radius, room)
-   end subroutine keep_off
 
    !> E' of the rock around a tip of the window's mesh [Pa]; 0: it is not free.
    pure real(rk) function crack_modulus(self, tip)

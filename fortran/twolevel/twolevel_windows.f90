@@ -10,8 +10,8 @@ module twolevel_windows
    use growth_tip, only: tip_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
-   use scene_rock_places, only: rock_places_t, toughness_ahead
    use scene_types, only: scene_t
+   use simulation_rocks, only: relative_toughness
    use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
    use twolevel_window_tip, only: window_tip_t
@@ -105,7 +105,10 @@ contains
       integer(ik) :: i, w
 
       call see_tips(self, tips)
-      if (allocated(scene%regions)) call see_rock(self, scene, network)
+      if (allocated(scene%regions)) then
+         self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
+                             i=1, size(tips))]
+      end if
       do w = 1, size(self%window, kind=ik)
          associate (window => self%window(w))
             if (.not. self%is_asked(w, tips)) then
@@ -142,33 +145,6 @@ contains
          end associate
       end do
    end subroutine evaluate
-
-   !> How tough the rock is that the tips grow in.
-   pure subroutine see_rock(self, scene, network)
-      class(windows_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network  !< of the fine level
-      real(rk), parameter :: share = 0.1_rk  ! of an increment, over which K_IC goes from one rock's
-      type(rock_places_t) :: places
-      real(rk) :: along(2)
-      integer(ik) :: at, before, i
-
-      if (.not. scene%material%toughness < huge(1.0_rk)) return
-      if (all(scene%regions%material%toughness >= scene%material%toughness .and. &
-              scene%regions%material%toughness <= scene%material%toughness)) return
-      call places%set(scene)
-      do i = 1, size(self%tip, kind=ik)
-         associate (first => network%first, tip => self%tip(i))
-            at = merge(first(tip%fracture), first(tip%fracture + 1) - 1_ik, tip%end == 1)
-            before = at + merge(1_ik, -1_ik, tip%end == 1)
-         end associate
-         along = network%xy(:, at) - network%xy(:, before)
-         self%resistance(i) = toughness_ahead(places, scene, network%xy(:, at), &
-                                              along/norm2(along), &
-                                              share*scene%growth%increment) &
-                              /scene%material%toughness
-      end do
-   end subroutine see_rock
 
    !> What a window has found, to the free tips that it serves.
    pure subroutine tell(self, window, tips)
