@@ -75,7 +75,7 @@ contains
 
       associate (scene => self%scene, summary => self%summary)
          call summary%use_feature("poroelastic rock")
-         call summary%note(allocated(scene%regions), "regions of permeability", &
+         call summary%note(allocated(scene%regions), "regions of other rock", &
                            "regions: uniform rock")
          call summary%note(self%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", &
                            "no fractures")

@@ -6,9 +6,11 @@ program test_fine_model
    use exact_cracks, only: uniform_field
    use fine_elasticity, only: elasticity_t, rocks_t
    use fine_element, only: evaluate_element
+   use fine_error, only: energy_error_t, estimate_error
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
+   use fine_recovery, only: recover_by_patches, recovery_t
    use fine_quadrature, only: triangle_rule_7
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
@@ -82,6 +84,8 @@ contains
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate
       type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: found(2, 2), gradient(2, 2, 2), lack(2), largest, stress(2, 2, 2), total(2, 2)
@@ -134,6 +138,10 @@ contains
          largest = max(largest, maxval(abs(found - stress(:, :, side))))
       end do
       call checks%is_close(largest/maxval(abs(stress)), 0.0_rk, 1.0e-10_rk, "two rocks: stress")
+      ! Recovered stresses are those of either rock up to the interface, where they jump.
+      call recover_by_patches(model, displacement, recovery)
+      call estimate_error(model, displacement, recovery, estimate)
+      call checks%is_close(estimate%relative, 0.0_rk, 1.0e-10_rk, "two rocks: no error")
    end subroutine patch_of_two_rocks
 
    !> Order 2 in energy, 3 in displacement for a smooth field: phi(z) = psi(z) = exp(z) in
