@@ -22,6 +22,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t
+   use coarse_rock_wells, only: rock_wells_t
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
@@ -46,7 +47,8 @@ module coarse_model
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
       type(joints_t) :: joints  !< where they exchange it otherwise
-      type(wells_t) :: wells  !< whose flow is an unknown; to be kept in step with the mesh likewise
+      type(wells_t) :: wells  !< whose rate depends on pressures; likewise
+      type(rock_wells_t) :: rock_wells  !< those of them in the rock
       !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
       !! regions differ [-]
       real(rk), allocatable :: rock_resistance(:)
@@ -171,6 +173,7 @@ contains
       integer(ik), allocatable :: connections(:, :)
       type(joints_t) :: joints
       type(wells_t) :: wells
+      integer(ik) :: n_rock_wells
 
       time = state%time
       self%settings%equilibrate = .true.
@@ -180,11 +183,14 @@ contains
       self%joints = joints_t()
       wells = self%wells
       self%wells = wells_t()
+      n_rock_wells = self%rock_wells%n
+      self%rock_wells%n = 0
       call self%advance(mesh, dt, state, timers, report, error)
       self%settings%equilibrate = .false.
       self%connections = connections
       self%joints = joints
       self%wells = wells
+      self%rock_wells%n = n_rock_wells
       state%time = time
       if (report%converged) call rest_fluid(self, state)
    end subroutine equilibrate
@@ -192,6 +198,88 @@ contains
    !> One backward Euler step. The state changes only if the step converges (report%converged); an
    !! error is raised where the equations cannot be solved at all.
    subroutine advance(self, mesh, dt, state, timers, report, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%rock_wells%n > 0) then
+         call advance_with_wells(self, mesh, dt, state, timers, report, error)
+      else
+         call advance_as_is(self, mesh, dt, state, timers, report, error)
+      end if
+   end subroutine advance
+
+   !> The same with wells in the rock whose rate depends on pressures, repeated until these agree
+   !! with how they have been tried.
+   subroutine advance_with_wells(self, mesh, dt, state, timers, report, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+      type(state_t) :: before
+      real(rk), allocatable :: fluid(:), injection(:), into_joints(:)
+      logical :: any_changed
+      integer(ik) :: first, k, last
+
+      before = state
+      fluid = self%source(3, :)
+      injection = self%cells%injection
+      if (self%joints%n > 0) into_joints = self%joints%injection
+      first = self%wells%n + 1
+      last = self%wells%n_all
+      call self%rock_wells%choose_ways(self%wells)
+      do k = 1, 3*self%rock_wells%n + 1
+         call self%rock_wells%set_terms(self%wells, dt, before%well_head(first:), self%matrix, &
+                                        any_changed)
+         if (any_changed) self%condensed%dt = -1.0_rk
+         associate (cell => self%rock_wells%cell, source => self%rock_wells%source)
+            self%source(3, :) = fluid
+            call add_at(cell, source, self%source(3, :))
+         end associate
+         call advance_as_is(self, mesh, dt, state, timers, report, error)
+         if (allocated(error) .or. .not. report%converged) return
+         call self%rock_wells%find_flows(self%wells, dt, before%well_head(first:), &
+                                         state%unknowns(3, :mesh%n_cells), &
+                                         state%well_flow(first:last), state%well_head(first:last), &
+                                         state%well_rate(first:last))
+         ! The balance has counted what would flow into cells without pressure.
+         report%mass_error = report%mass_error + dt*sum(self%rock_wells%source &
+                                                        - state%well_flow(first:last))
+         self%source(3, :) = fluid
+         call add_at(self%rock_wells%cell, state%well_flow(first:last), self%source(3, :))
+         call self%rock_wells%correct_ways(self%wells, state%well_head(first:last), &
+                                           state%well_rate(first:last), any_changed)
+         if (.not. any_changed) exit
+         state = before
+         self%cells%injection = injection
+         if (self%joints%n > 0) self%joints%injection = into_joints
+      end do
+      report%converged = .not. any_changed
+      if (any_changed) report%reason = "no way was found in which the wells in the rock agree "// &
+                                       "with their limits"
+   end subroutine advance_with_wells
+
+   !> Add values at places of which some may be the same.
+   pure subroutine add_at(place, value, sum)
+      integer(ik), intent(in) :: place(:)
+      real(rk), intent(in) :: value(:)
+      real(rk), intent(inout) :: sum(:)  !< in the unit of the values
+      integer :: k
+
+      do k = 1, size(place)
+         sum(place(k)) = sum(place(k)) + value(k)
+      end do
+   end subroutine add_at
+
+   !> The step with sources and matrix as they are.
+   subroutine advance_as_is(self, mesh, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: dt  !< [s]
@@ -257,7 +345,7 @@ contains
       if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
-   end subroutine advance
+   end subroutine advance_as_is
 
    !> The flow of wells that was an unknown is one of the sources of the step.
    subroutine feed(self, flow)

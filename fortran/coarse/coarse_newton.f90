@@ -183,11 +183,12 @@ contains
          state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
          state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
          if (layout%n_wells > 0) then
-            state%well_flow = x(layout%at_well([(i, i=1, layout%n_wells)]))*to_flow
-            state%well_rate = -eq%wells%storage*state%well_head/dt
-            state%well_head = [(well_head(i, x, eq), i=1, layout%n_wells)]
-            state%well_rate = state%well_rate + state%well_flow &
-                              + eq%wells%storage*state%well_head/dt
+            associate (n => layout%n_wells, storage => eq%wells%storage(:layout%n_wells))
+               state%well_flow(:n) = x(layout%at_well([(i, i=1, n)]))*to_flow
+               state%well_rate(:n) = state%well_flow(:n) - storage*state%well_head(:n)/dt
+               state%well_head(:n) = [(well_head(i, x, eq), i=1, n)]
+               state%well_rate(:n) = state%well_rate(:n) + storage*state%well_head(:n)/dt
+            end associate
          end if
          state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
       end associate

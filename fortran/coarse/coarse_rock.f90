@@ -26,6 +26,8 @@ module coarse_rock
       !! most, and which one; 0: no cell is cut.
       real(rk) :: most_layered = 0.0_rk
       integer(ik) :: most_layered_cell = 0
+   contains
+      procedure :: mobility_at
    end type rock_t
 
 contains
@@ -67,6 +69,16 @@ contains
 
       shear_of = material%young/(2.0_rk*(1.0_rk + material%poisson))
    end function shear_of
+
+   !> The mean of K/mu in a cell [m2/(Pa s)].
+   pure real(rk) function mobility_at(self, cell)
+      class(rock_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      associate (r => self%resistivity(:, :, min(int(cell), size(self%resistivity, 3))))
+         mobility_at = 1.0_rk/sqrt(r(1, 1)*r(2, 2) - r(1, 2)*r(2, 1))
+      end associate
+   end function mobility_at
 
    !> The inverse of K/mu.
    pure function resistivity_of(permeability, viscosity) result(resistivity)

@@ -1,10 +1,10 @@
-!> Wells in fractures whose rate depends on pressures: a pressure is given, or bounds a rate, or the
-!! well itself holds fluid. Each has its flow into the fracture as an unknown of the step
-!! (coarse_well_flow). Wells that inject at a given rate are none of these, but sources of their
-!! cells.
+!> Wells whose rate depends on pressures: a pressure is given, or bounds a rate, or the well itself
+!! holds fluid. Those in fractures have their flow into these as an unknown of the step
+!! (coarse_well_flow), those in the rock stand in its matrix (coarse_rock_wells). Wells that inject
+!! at a given rate are none of these, but sources of their cells.
 !!
-!! The well's pressure is that at its head, without the weight of its fluid: what the fracture has
-!! at the well, and what the flow to there loses.
+!! The well's pressure is that at its head, without the weight of its fluid: what fracture or rock
+!! have at the well, and what the flow to there loses.
 module coarse_wells
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -19,19 +19,20 @@ module coarse_wells
    integer(ik), parameter :: control_limited = 3  !< a rate, as far as pressure allows
 
    type :: wells_t
-      integer(ik) :: n = 0
-      integer(ik), allocatable :: number(:)  !< (n) among all wells of the scene
+      integer(ik) :: n = 0  !< in fractures
+      integer(ik) :: n_all = 0  !< these first, then those in the rock
+      integer(ik), allocatable :: number(:)  !< (n_all) among all wells of the scene
       real(rk), allocatable :: share(:, :)  !< (fracture cells, n) of its flow, into each [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, n) [-]
       !> (n) it stands between two cells, half a cell away from the middles of both
       logical, allocatable :: is_between(:)
-      real(rk), allocatable :: storage(:)  !< (n) [m2/Pa]
-      real(rk), allocatable :: friction(:)  !< (n) pressure lost per flow [Pa s/m2]
-      real(rk), allocatable :: turbulence(:)  !< (n) and per its square [Pa s2/m4]
+      real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
+      real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
+      real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]
       ! In the present step:
-      integer(ik), allocatable :: control(:)  !< (n)
-      real(rk), allocatable :: rate(:)  !< (n) asked for; negative: out of the fracture [m2/s]
-      real(rk), allocatable :: pressure(:)  !< (n) asked for, or the limit [Pa]
+      integer(ik), allocatable :: control(:)  !< (n_all)
+      real(rk), allocatable :: rate(:)  !< (n_all) asked for; negative: extraction [m2/s]
+      real(rk), allocatable :: pressure(:)  !< (n_all) asked for, or the limit [Pa]
    contains
       procedure :: lost
       procedure :: is_at_limit

@@ -154,9 +154,12 @@ contains
       associate (well => scene%injections(i))
          if (.not. well%at_point) return
          if (well%fracture == 0) then
-            if (contains_point(scene%domain, well%x, well%y)) return
-            call refuse(error, sheet, record, "x", "and y are "//point_text(well%x, well%y)// &
-                        " but must lie within the domain")
+            if (.not. contains_point(scene%domain, well%x, well%y)) then
+               call refuse(error, sheet, record, "x", "and y are "//point_text(well%x, well%y)// &
+                           " but must lie within the domain")
+            else if (well%is_controlled()) then
+               call check_radius(sheet, record, scene, well, error)
+            end if
             return
          end if
          distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
@@ -168,5 +171,28 @@ contains
                      real_text(scene%discretization%size_fracture)//" m")
       end associate
    end subroutine check_place
+
+   !> A well in the rock whose rate follows from pressures is thinner than what its cell stands for,
+   !! and its losses are linear (coarse_rock_wells).
+   pure subroutine check_radius(sheet, record, scene, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      type(injection_t), intent(in) :: well
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: share = 0.05_rk  ! of a cell; its radius is 0.1 of a usual one
+      real(rk) :: size
+
+      size = scene%discretization%size_boundary
+      if (scene%has_fractures()) size = scene%discretization%size_fracture
+      if (well%turbulence > 0.0_rk) then
+       call refuse(error, sheet, record, "turbulence", "is given, but a well in the rock whose "// &
+                     "rate follows from pressures must not have it")
+      else if (well%radius > share*size) then
+      call refuse(error, sheet, record, "radius", "is "//real_text(well%radius)//" but must be "// &
+                     "at most a twentieth of the smallest cells, "//rounded_text(share*size)// &
+                     ", where the rate follows from pressures")
+      end if
+   end subroutine check_radius
 
 end module scene_check_wells

@@ -1,13 +1,15 @@
 !> Both levels of a scene with a fluid at one time: network, coarse mesh, model and state, windows
 !! around the tips, and the bookkeeping of fluid.
 module twolevel_state
-   use base_errors, only: error_t
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use coarse_fields, only: curved_displacement, nodal_values
    use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state, rest_fluid
+   use coarse_rock_wells, only: well_index
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_wells, only: control_rate
    use growth_company, only: company_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
@@ -146,31 +148,58 @@ contains
          call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
                           self%joint_share)
          call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         self%rock_cell = spread(0_ik, 1, size(wells))
          if (.not. any(wells%fracture == 0)) return
          if (allocated(self%model%source)) deallocate (self%model%source)
          allocate (self%model%source(3, self%mesh%n_cells), source=0.0_rk)
-         self%rock_cell = spread(0_ik, 1, size(wells))
          do w = 1, size(wells, kind=ik)
             if (wells(w)%fracture > 0) cycle
             call locate(self%mesher, reshape([wells(w)%x, wells(w)%y], [2, 1]), cell, error)
             if (allocated(error)) return
             self%rock_cell(w) = cell(1)
          end do
+         if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, error)
       end associate
    end subroutine feed_wells
+
+   !> Those in the rock whose rate depends on pressures.
+   pure subroutine place_rock_wells(self, error)
+      class(two_levels_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: k
+
+      associate (wells => self%model%wells, rock => self%model%rock_wells)
+         rock%n = wells%n_all - wells%n
+         rock%cell = self%rock_cell(wells%number(wells%n + 1:))
+         if (.not. allocated(rock%way)) rock%way = spread(control_rate, 1, int(rock%n))
+         rock%conductance = spread(0.0_rk, 1, int(rock%n))
+         rock%index = [(well_index(self%scene%injections(wells%number(wells%n + k))%radius, &
+                                   cell_area(self%mesh, rock%cell(k)), &
+                                   self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
+         if (.not. all(rock%index > 0.0_rk)) then
+           call raise_error(error, "", "a well in the rock, whose rate follows from pressures, "// &
+                             "lies in a cell that is not wider than it: give it a smaller "// &
+                             "radius, or larger cells")
+            return
+         end if
+         ! What is lost in the well is another resistance on the way.
+         rock%index = 1.0_rk/(1.0_rk/rock%index + wells%friction(wells%n + 1:))
+      end associate
+   end subroutine place_rock_wells
 
    !> Nothing flows in wells, whose heads have the pressure of what they feed.
    subroutine rest_wells(self)
       class(two_levels_t), intent(inout) :: self
 
       associate (wells => self%model%wells, state => self%state)
-         self%at_limit = spread(.false., 1, int(wells%n))
-         self%given = spread(0.0_rk, 1, int(wells%n))
-         if (wells%n == 0) return
-         state%well_flow = spread(0.0_rk, 1, int(wells%n))
+         self%at_limit = spread(.false., 1, int(wells%n_all))
+         self%given = spread(0.0_rk, 1, int(wells%n_all))
+         if (wells%n_all == 0) return
+         state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
          state%well_rate = state%well_flow
-         state%well_head = matmul(state%pressure, wells%share) &
-                           + matmul(state%joint_pressure, wells%joint_share)
+         state%well_head = [matmul(state%pressure, wells%share) &
+                            + matmul(state%joint_pressure, wells%joint_share), &
+                            state%unknowns(3, self%rock_cell(wells%number(wells%n + 1:)))]
       end associate
    end subroutine rest_wells
 
@@ -271,7 +300,7 @@ contains
          if (self%model%joints%n > 0) then
             self%model%joints%injection = matmul(self%joint_share, rates)
          end if
-         if (allocated(self%rock_cell)) call feed_rock(self, rates)
+         if (allocated(self%model%source)) call feed_rock(self, rates)
       end associate
       call ask_wells(self%scene%injections, self%state%time, dt, self%model%wells)
       if (self%held_well > 0) self%model%wells%control(self%held_well) = self%held_control
@@ -308,7 +337,7 @@ contains
          area(c) = cell_area(self%mesh, c)
       end do
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
-      if (self%model%wells%n > 0 .and. self%trend%is_known()) then
+      if (self%model%wells%n_all > 0 .and. self%trend%is_known()) then
          error = max(error, self%trend%volume_error(self%before%well_flow, self%state%well_flow, &
                                                     self%given, dt))
       end if
@@ -354,8 +383,8 @@ contains
       real(rk), intent(in) :: dt  !< [s]
 
       self%injected = self%injected + dt*sum(self%model%cells%injection)
-      if (self%model%wells%n > 0) self%given = self%given + dt*abs(self%state%well_flow)
-      if (allocated(self%rock_cell)) self%injected = self%injected + dt*sum(self%model%source(3, :))
+      if (self%model%wells%n_all > 0) self%given = self%given + dt*abs(self%state%well_flow)
+   if (allocated(self%model%source)) self%injected = self%injected + dt*sum(self%model%source(3, :))
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
          if (self%model%joints%n > 0) then

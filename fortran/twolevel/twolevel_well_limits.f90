@@ -29,11 +29,11 @@ contains
    !> Wells that flow at less than their rate now, (controlled wells).
    pure function are_at_limit(self) result(at_limit)
       class(two_levels_t), intent(in) :: self
-      logical :: at_limit(self%model%wells%n)
+      logical :: at_limit(self%model%wells%n_all)
       integer(ik) :: w
 
       associate (wells => self%model%wells, now => self%state)
-         at_limit = [(wells%is_at_limit(w, now%well_rate(w)), w=1, wells%n)]
+         at_limit = [(wells%is_at_limit(w, now%well_rate(w)), w=1, wells%n_all)]
       end associate
    end function are_at_limit
 
@@ -47,7 +47,7 @@ contains
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: changes(self%model%wells%n)
+      logical :: changes(self%model%wells%n_all)
       real(rk) :: later
       integer(ik) :: w
 
@@ -71,7 +71,7 @@ contains
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
       logical, intent(out) :: any_changed  !< at a limit
-      logical :: at_limit(self%model%wells%n)
+      logical :: at_limit(self%model%wells%n_all)
       character(len=:), allocatable :: words
       integer(ik) :: stage, stage_before, w
 
@@ -84,7 +84,7 @@ contains
                if (stage == stage_before .or. (stage == 1 .and. .not. before > 0.0_rk)) cycle
                call self%chronicle%add_event(before, event_well, what_begins(well, stage))
             end associate
-            if (self%model%wells%n == 0) cycle
+            if (self%model%wells%n_all == 0) cycle
             where (self%model%wells%number == w)
                self%at_limit = .false.
                self%given = 0.0_rk
@@ -92,7 +92,7 @@ contains
          end associate
       end do
       any_changed = .false.
-      if (self%model%wells%n == 0) return
+      if (self%model%wells%n_all == 0) return
       at_limit = are_at_limit(self)
       do w = 1, size(at_limit, kind=ik)
          if (at_limit(w) .eqv. self%at_limit(w)) cycle

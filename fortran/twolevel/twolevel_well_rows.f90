@@ -1,7 +1,7 @@
 !> What wells do, well by well: rows of wells.csv.
 module twolevel_well_rows
    use base_kinds, only: ik, rk
-   use coarse_rock, only: mean_mobility
+   use coarse_rock_wells, only: well_index
    use coarse_geometry, only: cell_area
    use results_rows, only: well_row_t
    use twolevel_state, only: two_levels_t
@@ -9,13 +9,7 @@ module twolevel_well_rows
    implicit none(type, external)
    private
 
-   public :: equivalent_radius, well_books_t
-
-   real(rk), parameter :: pi = acos(-1.0_rk)
-
-   !> The pressure of a triangle that is fed is that at this distance from a well in it, over the
-   !! root of its area: a mean over places and meshes, within 0.03 (verification/wells_in_rock).
-   real(rk), parameter :: equivalent_radius = 0.30_rk
+   public :: well_books_t
 
    !> Sums and first values, (wells).
    type :: well_books_t
@@ -83,7 +77,7 @@ contains
       type(well_row_t), intent(inout) :: row
       integer :: k
 
-      if (levels%model%wells%n == 0) return
+      if (levels%model%wells%n_all == 0) return
       k = findloc(levels%model%wells%number, w, dim=1)
       if (k == 0) return
       row%flow = levels%state%well_flow(k)
@@ -103,18 +97,14 @@ contains
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: flow  !< [m2/s]
       logical :: between(size(levels%scene%injections))
-      real(rk) :: mobility
       integer(ik) :: cell
 
       associate (state => levels%state, model => levels%model, well => levels%scene%injections(w))
          if (well%fracture == 0) then
             cell = levels%rock_cell(w)
-            associate (k => model%rock%permeability(:, min(int(cell), &
-                                                           size(model%rock%permeability, 2))))
-               mobility = mean_mobility(k, model%settings%viscosity)
-            end associate
-            pressure = state%unknowns(3, cell) + flow/(2.0_rk*pi*mobility) &
-                       *log(equivalent_radius*sqrt(cell_area(levels%mesh, cell))/well%radius)
+            pressure = state%unknowns(3, cell) + flow/well_index(well%radius, &
+                                                                 cell_area(levels%mesh, cell), &
+                                                                 model%rock%mobility_at(cell))
             return
          end if
          pressure = dot_product(levels%share(:, w), state%pressure) &

@@ -143,19 +143,22 @@ contains
       integer(ik), allocatable :: number(:)
       integer(ik) :: w
 
-     number = pack([(w, w=1, size(given, kind=ik))], given%is_controlled() .and. given%fracture > 0)
-      wells%n = size(number, kind=ik)
-      if (wells%n == 0) return
+      number = [(w, w=1, size(given, kind=ik))]
+      number = [pack(number, given%is_controlled() .and. given%fracture > 0), &
+                pack(number, given%is_controlled() .and. given%fracture == 0)]
+      wells%n = count(given%is_controlled() .and. given%fracture > 0)
+      wells%n_all = size(number, kind=ik)
+      if (wells%n_all == 0) return
       between = between_cells(given, share)
       wells%number = number
-      wells%share = share(:, number)
-      wells%joint_share = joint_share(:, number)
-      wells%is_between = between(number)
+      wells%share = share(:, number(:wells%n))
+      wells%joint_share = joint_share(:, number(:wells%n))
+      wells%is_between = between(number(:wells%n))
       wells%storage = given(number)%storage
       wells%friction = given(number)%friction
       wells%turbulence = given(number)%turbulence
-      wells%control = spread(control_shut, 1, int(wells%n))
-      wells%rate = spread(0.0_rk, 1, int(wells%n))
+      wells%control = spread(control_shut, 1, int(wells%n_all))
+      wells%rate = spread(0.0_rk, 1, int(wells%n_all))
       wells%pressure = wells%rate
    end subroutine control_wells
 
@@ -166,7 +169,7 @@ contains
       type(wells_t), intent(inout) :: wells
       integer(ik) :: stage, w
 
-      do w = 1, wells%n
+      do w = 1, wells%n_all
          associate (well => given(wells%number(w)), control => wells%control(w))
             stage = well%stage_at(time + 0.5_rk*dt)
             wells%rate(w) = 0.0_rk

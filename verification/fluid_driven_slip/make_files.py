@@ -1,7 +1,8 @@
-"""Write the scenes and the references of this case, one for each stress parameter T.
+"""Write the scenes and the references of this case, two for each stress parameter T.
 
-The well must hold the pressure at x = 0 constant, but a scene gives rates: so the rate of each time
-step is the volume that the exact solution takes up in it, V(t) = 2 a c_p dp sqrt(4 alpha t/pi).
+The well holds the pressure at x = 0 constant. In one scene it is told so, and the program chooses
+its steps; in the other the rate of each time step is the volume that the exact solution takes up in
+it, V(t) = 2 a c_p dp sqrt(4 alpha t/pi).
 """
 
 from __future__ import annotations
@@ -49,8 +50,8 @@ CASES = (
 complementary_error = np.vectorize(erfc, otypes=[float])
 
 
-def write_scene(case: Case) -> None:
-    """Write the scene from the head below and one injection per time step."""
+def write_scenes(case: Case) -> None:
+    """Write the scenes from the head below: with one injection per time step, at a pressure."""
     diffusivity = case.reach**2 / (4.0 * END)
     title = f"T = {case.parameter!r}"
     viscosity = APERTURE**2 / (12.0 * diffusivity * COMPRESSIBILITY)
@@ -90,6 +91,14 @@ def write_scene(case: Case) -> None:
         for rate, start, end in zip(rates, times[:-1], times[1:], strict=True)
     )
     (HERE / f"{case.name}.nml").write_text(head + wells)
+    head = head.replace(
+        "! one injection per time step, with the volume that the exact solution takes up.",
+        "! above what the load makes of alpha = 1e-6, 2250 Pa.",
+    )
+    head = head.replace(f"name = '{case.name}'", f"name = '{case.name}_at_pressure'")
+    head = head.replace(f", step = {END / STEPS!r}", "")
+    well = f"&injection fracture = 'f', pressure = {OVERPRESSURE + 2250.0!r}, x = 0.0, y = 0.0 /\n"
+    (HERE / f"{case.name}_at_pressure.nml").write_text(head + well)
 
 
 def slip(case: Case, x: np.ndarray) -> np.ndarray:
@@ -136,7 +145,7 @@ def write_reference(case: Case) -> None:
 def main() -> None:
     """Write all files."""
     for case in CASES:
-        write_scene(case)
+        write_scenes(case)
         write_reference(case)
 
 

@@ -107,6 +107,12 @@ contains
                   "15.0 but must be after the beginning of the last stage, 20.0"//doc)
       call refuse("&injection x=0.3 y=1.2 rate=1e-7 /", here//"x and y are (0.3, 1.2) but must "// &
                   "lie within the domain"//doc)
+      call refuse("&injection x=0.3 y=0.2 pressure=1e6 /", here//"radius is 0.1 but must be at "// &
+                  "most a twentieth of the smallest cells, 5.0e-4, where the rate follows from "// &
+                  "pressures"//doc)
+      call refuse("&injection x=0.3 y=0.2 radius=1e-4 pressure=1e6 turbulence=1 /", here// &
+                  "turbulence is given, but a well in the rock whose rate follows from "// &
+                  "pressures must not have it"//doc)
       call refuse("&injection fracture='f1' rate=1e-7 storage=-1 /", here//"storage is -1 but "// &
                   "must be a finite number at least 0.0 [m2/Pa]"//doc)
       call refuse("&injection name='a' fracture='f1' rate=1e-7 / &injection name='a' x=1 y=0.1 "// &
