@@ -19,8 +19,8 @@
 !! comparable: G of one of the cells that share the rotation.
 !!
 !! Where rocks of several stiffnesses meet at a vertex each has a rotation of its own
-!! (coarse_regions). With tractions given on both sides of an interface that ends on the boundary, two of them can
-!! ask the same of the traction on the interface; one of them is left out then.
+!! (coarse_regions). With tractions given on both sides of an interface that ends on the boundary,
+!! two of them can ask the same of the traction on the interface; one of them is left out then.
 module coarse_stress
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &

@@ -2,9 +2,9 @@
 !!
 !! Superconvergent patch recovery (Zienkiewicz and Zhu 1992): around every corner node a full
 !! quadratic is fitted to stresses in the elements of its patch. Patches are made of elements that
-!! share nodes, so they never reach across a fracture, and are of one rock. Around a free tip the singular part, which no
-!! polynomial can follow, is fitted first and kept apart (Rodenas and others 2008): the polynomials
-!! hold what remains.
+!! share nodes, so they never reach across a fracture, and are of one rock. Around a free tip the
+!! singular part, which no polynomial can follow, is fitted first and kept apart (Rodenas and others
+!! 2008): the polynomials hold what remains.
 !!
 !! Area averaging (Zienkiewicz and Zhu 1987), for comparison, takes the mean stress of the elements
 !! around a node, weighted with their areas, instead of the fit.
@@ -124,7 +124,8 @@ contains
 
    contains
 
-      !> The fit of a corner at a point: with the singular field of its tip, unless the element adds that.
+      !> The fit of a corner at a point: with the singular field of its tip, unless the element adds
+      !! that.
       pure function value_at(corner_number, xy) result(value)
          integer(ik), intent(in) :: corner_number
          real(rk), intent(in) :: xy(2)  !< [m]
@@ -190,7 +191,7 @@ contains
                   recovery%tip_of_site(site) = tip
                   n_same_side(site) = n_same_side(site) + 1
                   recovery%same_side(:, site) = recovery%same_side(:, site) &
-                                                  + samples%centre(:, cell)
+                                                + samples%centre(:, cell)
                end do
             end do
             call fit_tip(model, samples, tip, recovery%tips(tip))

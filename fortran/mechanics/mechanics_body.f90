@@ -313,9 +313,9 @@ contains
       do fracture = 1, size(radii, 2)
          associate (first => network%first)
             radii(1, fracture) = min(radii(1, fracture), 0.5_rk*interface_distance(scene, &
-                                                         network%xy(:, first(fracture))))
+                                                                    network%xy(:, first(fracture))))
             radii(2, fracture) = min(radii(2, fracture), 0.5_rk*interface_distance(scene, &
-                                                        network%xy(:, first(fracture + 1) - 1)))
+                                                            network%xy(:, first(fracture + 1) - 1)))
          end associate
       end do
    end function end_radii

@@ -102,7 +102,8 @@ contains
       call refuse(10, "&region name='c' shape='parabola' x=1 x_vertex=1.2, 1.4 y_vertex=2*0.5", &
                 ":10: &region: x is given, but the shape 'parabola' has x_vertex, y_vertex and "// &
                   "curvature instead"//doc)
-      call refuse(3, "", ":4: &region: needs a fluid, but the group &fluid is missing"//doc)
+      call refuse(3, "", ":5: &region: permeability needs a fluid, but the group &fluid is "// &
+                  "missing"//doc)
    end subroutine check_names
 
    subroutine check_points()
