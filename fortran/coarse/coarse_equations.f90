@@ -76,7 +76,7 @@ contains
       fluid = eq%fluid_at(x, i)
       point = 2*(i - 1) + end
       eq%traction(:, end, i) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
-      call contact_equations(eq%cells%law(i), eq%stiffness, eq%traction(:, end, i), &
+      call contact_equations(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
                              eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
                              eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
       do k = 1, 2

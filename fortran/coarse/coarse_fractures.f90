@@ -14,6 +14,7 @@ module coarse_fractures
    use coarse_full_step, only: find_full_step
    use coarse_sparse_step, only: sparse_step_t
    use coarse_wells, only: wells_t
+   use contact_law, only: contact_law_t
    use contact_newton, only: contact_system_t, step_quality_t
    implicit none(type, external)
    private
@@ -66,6 +67,7 @@ module coarse_fractures
       procedure :: find_step
       procedure :: size_of_terms
       procedure :: is_balanced
+      procedure :: law_at
       procedure :: opening
       procedure :: fluid_at
       procedure :: unknown_of_fluid
@@ -303,6 +305,16 @@ contains
       end do
       is_balanced = abs(balance) <= least*fluid
    end function is_balanced
+
+   !> The law at an end of a cell, as its faces have slipped so far.
+   pure type(contact_law_t) function law_at(self, cell, end) result(law)
+      class(fracture_system_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      integer(ik), intent(in) :: end  !< 1 start, 2 end
+
+      law = self%cells%law(cell)
+      if (allocated(self%before%slip_path)) law = law%aged(self%before%slip_path(end, cell))
+   end function law_at
 
    !> Opening of a cell, the mean of its ends' [u]_n.
    pure function opening(self, x, cell) result(mean)

@@ -141,6 +141,7 @@ contains
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
+      if (any(cells%law%weakening > 0.0_rk)) allocate (state%slip_path(2, n), source=0.0_rk)
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=initial%pressure)
       allocate (state%contact(2, n), source=state_stick)

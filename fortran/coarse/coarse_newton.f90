@@ -153,7 +153,7 @@ contains
       do i = 1, condensed%n
          do end = 1, 2
             at = condensed%layout%at_jump(i, end)
-            residual = contact_residual(cells%law(i), eq%stiffness, eq%traction(:, end, i), &
+            residual = contact_residual(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
                                         eq%q(at:at + 1), state%jump(2, end, i))
             report%contact_residual = max(report%contact_residual, residual/report%stress_scale)
          end do
@@ -173,6 +173,8 @@ contains
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
                             /(dt*condensed%length(i))
       end do
+      if (allocated(state%slip_path)) state%slip_path = state%slip_path &
+                                                        + abs(state%jump(2, :, :) - state%slip_before)
       state%traction = eq%traction
       state%aperture = aperture
       state%pressure = fluid%pressure

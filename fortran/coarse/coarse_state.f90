@@ -29,6 +29,8 @@ module coarse_state
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
       real(rk), allocatable :: slip_before(:, :)  !< (2, n) [u]_tau at the last accepted time [m]
+      !> (2, n) path that the faces have slipped; unallocated: no friction weakens [m]
+      real(rk), allocatable :: slip_path(:, :)
       !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
       real(rk), allocatable :: traction(:, :, :)
       integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open

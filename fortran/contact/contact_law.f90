@@ -8,9 +8,15 @@
 !!   open   z <= 0:             f_n = 0,               f_tau = 0
 !!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
 !!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
-!! The gap g = tan(psi) |[u]_tau|; without slip it rises whichever way the shear drives. What
-!! rounding has left of a slip that is none counts as none: with its sign the gap would fall the
-!! other way, and a step could take the point nowhere but back, again and again.
+!! The gap g = tan(psi) |[u]_tau|, up to a slip at which dilation ends; without slip it rises
+!! whichever way the shear drives. What rounding has left of a slip that is none counts as none:
+!! with its sign the gap would fall the other way, and a step could take the point nowhere but back,
+!! again and again.
+!! Friction may weaken with slip (slip weakening, Ida 1972; Palmer and Rice 1973), linearly with the
+!! path D that the faces have slipped:
+!!   mu(D) = mu_s - (mu_s - mu_r) min(1, D/D_c)
+!! The law of a point is that of its path so far, `aged`; what it slips within the step weakens it
+!! further.
 !! A bilateral law knows no open state: the faces keep the gap g under tension too, where z <= 0,
 !! and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the model of reference solutions for
 !! cracks that are closed all along; friction under tension drives the slip, either way, so it makes
@@ -36,9 +42,15 @@ module contact_law
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
       real(rk) :: dilation = 0.0_rk  !< tan(psi) [-]
       logical :: bilateral = .false.  !< the faces cannot part
+      real(rk) :: weakening = 0.0_rk  !< what friction loses per slip, (mu_s - mu_r)/D_c [1/m]
+      real(rk) :: weakening_slip = 0.0_rk  !< in which it does, D_c or what is left of it [m]
+      real(rk) :: dilation_end = 0.0_rk  !< 1 over the slip at which dilation ends; 0: never [1/m]
    contains
       procedure :: add_share
       procedure :: divide
+      procedure :: aged
+      procedure :: friction_at
+      procedure :: dilated
    end type contact_law_t
 
 contains
@@ -47,7 +59,8 @@ contains
    elemental logical function is_valid(law)
       type(contact_law_t), intent(in) :: law
 
-      associate (numbers => [law%friction, law%dilation])
+      associate (numbers => [law%friction, law%weakening, law%weakening_slip, law%dilation, &
+                             law%dilation_end])
          is_valid = all(numbers >= 0.0_rk .and. numbers <= huge(1.0_rk))
       end associate
    end function is_valid
@@ -58,7 +71,10 @@ contains
 
       is_same = (law%bilateral .eqv. other%bilateral) &
                 .and. .not. (abs(law%friction - other%friction) > 0.0_rk .or. &
-                             abs(law%dilation - other%dilation) > 0.0_rk)
+                             abs(law%weakening - other%weakening) > 0.0_rk .or. &
+                             abs(law%weakening_slip - other%weakening_slip) > 0.0_rk .or. &
+                             abs(law%dilation - other%dilation) > 0.0_rk .or. &
+                             abs(law%dilation_end - other%dilation_end) > 0.0_rk)
    end function is_same
 
    !> Add to the weighted sum of laws whose faces meet. The sum is bilateral or not from the start.
@@ -68,7 +84,10 @@ contains
       real(rk), intent(in) :: share  !< its weight [any unit]
 
       self%friction = self%friction + share*law%friction
+      self%weakening = self%weakening + share*law%weakening
+      self%weakening_slip = self%weakening_slip + share*law%weakening_slip
       self%dilation = self%dilation + share*law%dilation
+      self%dilation_end = self%dilation_end + share*law%dilation_end
    end subroutine add_share
 
    !> The mean from the weighted sum.
@@ -77,8 +96,50 @@ contains
       real(rk), intent(in) :: total  !< of the weights [unit of the shares]
 
       self%friction = self%friction/total
+      self%weakening = self%weakening/total
+      self%weakening_slip = self%weakening_slip/total
       self%dilation = self%dilation/total
+      self%dilation_end = self%dilation_end/total
    end subroutine divide
+
+   !> The law of a point that has slipped along a path so far.
+   elemental type(contact_law_t) function aged(self, path) result(law)
+      class(contact_law_t), intent(in) :: self
+      real(rk), intent(in) :: path  !< [m]
+
+      law = self
+      law%friction = self%friction - self%weakening*min(path, self%weakening_slip)
+      law%weakening_slip = max(0.0_rk, self%weakening_slip - path)
+   end function aged
+
+   !> Friction after a further slip, and its derivative by that slip's size.
+   pure subroutine friction_at(self, slip, friction, slope)
+      class(contact_law_t), intent(in) :: self
+      real(rk), intent(in) :: slip  !< of the step [m]
+      real(rk), intent(out) :: friction  !< [-]
+      real(rk), intent(out) :: slope  !< [1/m]
+
+      friction = self%friction - self%weakening*min(abs(slip), self%weakening_slip)
+      slope = 0.0_rk
+      if (abs(slip) < self%weakening_slip) slope = -self%weakening
+   end subroutine friction_at
+
+   !> The gap that a slip makes, and its derivative by the slip, whose sign it has from the way that
+   !! the shear drives where there is none.
+   pure subroutine dilated(self, slip, way, gap, slope)
+      class(contact_law_t), intent(in) :: self
+      real(rk), intent(in) :: slip  !< [u]_tau [m]
+      real(rk), intent(in) :: way  !< 1 or -1: the sign of the slip, or what it will have
+      real(rk), intent(out) :: gap  !< [m]
+      real(rk), intent(out) :: slope  !< [-]
+
+      slope = self%dilation*way
+      gap = slope*slip
+      if (abs(slip)*self%dilation_end > 1.0_rk) then
+         gap = self%dilation/self%dilation_end
+         slope = 0.0_rk
+      end if
+   end subroutine dilated
 
    !> Normal and tangential equation with their derivatives.
    !!
@@ -96,14 +157,15 @@ contains
       real(rk), intent(out) :: residual(2)  !< [Pa]
       real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j [-]
       real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
-      real(rk) :: gap_slope, pressure, shear
+      real(rk) :: by_slip, friction, gap, gap_slope, pressure, shear, slip_way
       integer(ik) :: way_before
       logical :: has_slipped
 
       shear = traction(2) + stiffness*(jump(2) - slip_before)
       has_slipped = abs(jump(2)) > round_off*max(abs(slip_before), norm2(traction)/stiffness)
-      gap_slope = law%dilation*sign(1.0_rk, merge(jump(2), shear, has_slipped))
-      pressure = -traction(1) - stiffness*(jump(1) - gap_slope*jump(2))
+      call law%dilated(jump(2), sign(1.0_rk, merge(jump(2), shear, has_slipped)), gap, gap_slope)
+      call law%friction_at(jump(2) - slip_before, friction, by_slip)
+      pressure = -traction(1) - stiffness*(jump(1) - gap)
       by_traction = 0.0_rk
       by_jump = 0.0_rk
       way_before = way
@@ -115,12 +177,12 @@ contains
          by_traction(2, 2) = 1.0_rk
          return
       end if
-      residual(1) = stiffness*(jump(1) - gap_slope*jump(2))
+      residual(1) = stiffness*(jump(1) - gap)
       by_jump(1, :) = stiffness*[1.0_rk, -gap_slope]
-      if (.not. abs(shear) < law%friction*pressure) way = merge(1, -1, shear > 0.0_rk)
+      if (.not. abs(shear) < friction*pressure) way = merge(1, -1, shear > 0.0_rk)
       if (.not. pressure > 0.0_rk) then
          if (abs(jump(2) - slip_before) > 0.0_rk) way = merge(1, -1, jump(2) > slip_before)
-      else if (way*way_before < 0 .and. law%friction > 0.0_rk) then
+      else if (way*way_before < 0 .and. friction > 0.0_rk) then
          way = 0
       end if
       if (way == 0) then
@@ -129,9 +191,13 @@ contains
          by_jump(2, 2) = stiffness
       else
          state = state_slip
-         residual(2) = traction(2) - law%friction*pressure*way
-         by_traction(2, :) = [law%friction*way, 1.0_rk]
-         by_jump(2, :) = law%friction*way*stiffness*[1.0_rk, -gap_slope]
+         residual(2) = traction(2) - friction*pressure*way
+         by_traction(2, :) = [friction*way, 1.0_rk]
+         by_jump(2, :) = friction*way*stiffness*[1.0_rk, -gap_slope]
+         ! The slip of the step, or the one to come, has a way too.
+         slip_way = sign(1.0_rk, jump(2) - slip_before)
+         if (.not. abs(jump(2) - slip_before) > 0.0_rk) slip_way = real(way, rk)
+         by_jump(2, 2) = by_jump(2, 2) - way*slip_way*by_slip*pressure
       end if
    end subroutine contact_equations
 
@@ -146,13 +212,15 @@ contains
       real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
       real(rk) :: worst  !< [Pa]
 
-      real(rk) :: bound, opening, slip
+      real(rk) :: bound, friction, gap, opening, slip, slope
 
-      opening = jump(1) - law%dilation*abs(jump(2))
+      call law%dilated(jump(2), sign(1.0_rk, jump(2)), gap, slope)
+      opening = jump(1) - gap
       slip = jump(2) - slip_before
-      bound = law%friction*max(0.0_rk, -traction(1))
+      call law%friction_at(slip, friction, slope)
+      bound = friction*max(0.0_rk, -traction(1))
       if (law%bilateral .and. traction(1) > 0.0_rk) then
-         bound = law%friction*traction(1)
+         bound = friction*traction(1)
          worst = max(stiffness*abs(opening), &
                      min(abs(traction(2) + sign(bound, slip)), &
                          max(stiffness*abs(slip), abs(traction(2)) - bound)))

@@ -11,6 +11,7 @@
 module fine_contact
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
+   use contact_law, only: contact_law_t
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
    use contact_pairs, only: contact_pairs_t
@@ -30,6 +31,7 @@ module fine_contact
       !> (tau n, start end mid, fracture cell): the last solution, guess for the next [m]
       real(rk), allocatable :: jump(:, :, :)
       real(rk), allocatable :: slip_before(:, :)  !< (3, fracture cells) when last accepted [m]
+      real(rk), allocatable :: slip_path(:, :)  !< (3, fracture cells) slipped so far [m]
       real(rk), allocatable :: traction(:, :, :)  !< (tau n, start end mid, fracture cell) [Pa]
       integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_states
       integer(ik) :: iterations = 0  !< of the last solution
@@ -50,6 +52,7 @@ module fine_contact
    !> The pairs of a mesh.
    type, extends(contact_pairs_t) :: contact_problem_t
       type(closing_t), allocatable :: closing(:)
+      type(contact_law_t), allocatable :: fresh_law(:)  !< (n) of faces that have not slipped
       real(rk), allocatable :: share(:, :)  !< (3, fracture cells) of each cell in L [m]
       integer(ik), allocatable :: place(:, :)  !< (3, fracture cells) contact number, or 0
    end type contact_problem_t
@@ -63,7 +66,7 @@ contains
 
       associate (n => fine%fracture%n_cells)
          allocate (contact%jump(2, 3, n), contact%traction(2, 3, n), source=0.0_rk)
-         allocate (contact%slip_before(3, n), source=0.0_rk)
+         allocate (contact%slip_before(3, n), contact%slip_path(3, n), source=0.0_rk)
          allocate (contact%state(3, n), source=state_open)
       end associate
    end function new_contact
@@ -72,6 +75,7 @@ contains
    pure subroutine accept(self)
       class(contact_t), intent(inout) :: self
 
+      self%slip_path = self%slip_path + abs(self%jump(1, :, :) - self%slip_before)
       self%slip_before = self%jump(1, :, :)
    end subroutine accept
 
@@ -131,6 +135,7 @@ contains
          call problem%law(i)%divide(weight(i))
          if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
       end do
+      problem%fresh_law = problem%law
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)
       call find_closing(fine, constraints, problem)
    end subroutine set_contact_problem
@@ -198,11 +203,13 @@ contains
       real(rk), intent(out) :: jump(:)  !< w (2 n) [m]
       character(len=:), allocatable, intent(out) :: reason
       type(iteration_report_t) :: report
-      real(rk) :: x(2*problem%n)
+      real(rk) :: path(problem%n), x(2*problem%n)
 
       call gather(problem, contact%jump(2, :, :), jump(1 :: 2))
       call gather(problem, contact%jump(1, :, :), jump(2 :: 2))
       call gather(problem, contact%slip_before, problem%slip_before)
+      call gather(problem, contact%slip_path, path)
+      problem%law = problem%fresh_law%aged(path)
       call gather(problem, given_jump(1, :, :), problem%given)
       where (problem%slip_given)
          jump(2 :: 2) = problem%given

@@ -29,6 +29,7 @@ contains
             if (source == 0) cycle
             new%jump(:, k, cell) = matmul(old%jump(:, :, source), weight)
             new%slip_before(k, cell) = dot_product(old%slip_before(:, source), weight)
+            new%slip_path(k, cell) = dot_product(old%slip_path(:, source), weight)
          end do
       end do
 

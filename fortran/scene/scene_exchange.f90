@@ -298,6 +298,9 @@ contains
       call exchange(record, "slip", fracture%slip, reading)
       call exchange(record, "slip_taper", fracture%slip_taper, reading, nothing=0.0_rk)
       call exchange(record, "friction", fracture%friction, reading)
+      call exchange(record, "friction_residual", fracture%friction_residual, reading)
+      call exchange(record, "weakening_slip", fracture%weakening_slip, reading, nothing=0.0_rk)
+      call exchange(record, "dilation_slip", fracture%dilation_slip, reading, nothing=unlimited)
       dilation_deg = to_degrees(fracture%dilation)
       call exchange(record, "dilation_deg", dilation_deg, reading)
       fracture%dilation = dilation_deg*radians

@@ -295,6 +295,16 @@ module scene_parameters
       parameter_t("fracture", "friction", need=need_choice, range=at_least_zero, &
                   of="law=friction", absent="no friction", &
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
+      parameter_t("fracture", "friction_residual", with="weakening_slip", range=at_least_zero, &
+                  of="law=friction", at_most="friction", absent="friction does not weaken", &
+                  meaning="Friction mu_r that is left after weakening_slip"), &
+      parameter_t("fracture", "weakening_slip", unit="m", range=positive, of="law=friction", &
+                  with="friction_residual", absent="friction does not weaken", &
+                  meaning="Slip over which friction falls, linearly with the path that the "// &
+                  "faces have slipped"), &
+      parameter_t("fracture", "dilation_slip", unit="m", range=positive, of="law=friction", &
+                  absent="dilation goes on", &
+                  meaning="Slip at which dilation ends"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   of="law=friction", &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &

@@ -67,7 +67,10 @@ module scene_types
       real(rk) :: slip = 0.0_rk  !< of the law "slip", at load factor 1 [m]
       real(rk) :: slip_taper = 0.0_rk  !< over which the slip rises from a free end [m]
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
+      real(rk) :: friction_residual = 0.0_rk  !< mu_r after the slip that weakens it [-]
+      real(rk) :: weakening_slip = 0.0_rk  !< D_c; 0: friction does not weaken [m]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
+      real(rk) :: dilation_slip = huge(1.0_rk)  !< at which dilation ends [m]
       logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
       real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]

@@ -1,5 +1,6 @@
 !> What the scene says of a fracture's faces, as the law of contact takes it.
 module simulation_laws
+   use base_kinds, only: rk
    use contact_law, only: contact_law_t
    use scene_types, only: fracture_t
    implicit none(type, external)
@@ -15,6 +16,11 @@ contains
 
       law%friction = fracture%friction
       law%dilation = tan(fracture%dilation)
+      if (fracture%weakening_slip > 0.0_rk) then
+         law%weakening_slip = fracture%weakening_slip
+         law%weakening = (fracture%friction - fracture%friction_residual)/fracture%weakening_slip
+      end if
+      if (fracture%dilation_slip < huge(1.0_rk)) law%dilation_end = 1.0_rk/fracture%dilation_slip
    end function law_of_fracture
 
 end module simulation_laws

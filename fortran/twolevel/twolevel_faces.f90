@@ -139,11 +139,23 @@ contains
                   contact%jump(1, k, i) = at_node(self, i, s, state%jump(2, :, j))
                   contact%jump(2, k, i) = at_node(self, i, s, state%jump(1, :, j))
                   contact%slip_before(k, i) = at_node(self, i, s, state%slip_before(:, j))
+                  if (allocated(state%slip_path)) then
+                     contact%slip_path(k, i) = at_node(self, i, s, path_before(state, j))
+                  end if
                end associate
             end do
          end associate
       end do
    end function history
+
+   !> The path that a coarse cell's ends had slipped before the last step [m].
+   pure function path_before(state, cell) result(path)
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: cell
+      real(rk) :: path(2)
+
+      path = state%slip_path(:, cell) - abs(state%jump(2, :, cell) - state%slip_before(:, cell))
+   end function path_before
 
    !> The window's jumps as the coarse level would have them: in each of its cells the linear ones
    !! with the same mean and the same first moment.

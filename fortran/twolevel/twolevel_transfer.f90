@@ -94,6 +94,7 @@ contains
 
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
       allocate (after%slip_before(2, n), source=0.0_rk)
+      if (allocated(before%slip_path)) allocate (after%slip_path(2, n), source=0.0_rk)
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
       allocate (after%void(n), source=0.0_rk)
@@ -111,6 +112,7 @@ contains
          old = overlaps%main(i)
          after%jump(:, :, i) = before%jump(:, :, old)
          after%slip_before(:, i) = before%slip_before(:, old)
+         if (allocated(before%slip_path)) after%slip_path(:, i) = before%slip_path(:, old)
          after%traction(:, :, i) = before%traction(:, :, old)
          after%contact(:, i) = before%contact(:, old)
          after%pressure(i) = before%pressure(old)
@@ -167,6 +169,9 @@ contains
             end associate
             after%jump(:, end, cell) = matmul(before%jump(:, :, old), weight)
             after%slip_before(end, cell) = dot_product(before%slip_before(:, old), weight)
+            if (allocated(before%slip_path)) then
+               after%slip_path(end, cell) = dot_product(before%slip_path(:, old), weight)
+            end if
             after%contact(end, cell) = before%contact(maxloc(weight, dim=1), old)
             exit
          end do

@@ -13,7 +13,12 @@ program test_contact_law
    type(contact_law_t), parameter :: smooth = contact_law_t(friction=0.0_rk, dilation=0.0_rk)
    type(contact_law_t), parameter :: smooth_dilating = &
                                      contact_law_t(friction=0.0_rk, dilation=0.1_rk)
-   type(contact_law_t), parameter :: tied = contact_law_t(0.5_rk, 0.1_rk, bilateral=.true.)
+   type(contact_law_t), parameter :: tied = contact_law_t(friction=0.5_rk, dilation=0.1_rk, bilateral=.true.)
+   !> From 0.6 to 0.2 over 10 um; dilation ends after 3 um.
+   type(contact_law_t), parameter :: weakening = &
+                                     contact_law_t(friction=0.6_rk, weakening=4.0e4_rk, &
+                                                   weakening_slip=1.0e-5_rk, dilation=0.1_rk, &
+                                                   dilation_end=1.0e6_rk/3.0_rk)
    type(checks_t) :: checks
 
    call test_derivatives()
@@ -21,6 +26,7 @@ program test_contact_law
    call test_violations()
    call test_way()
    call test_slip_of_rounding()
+   call test_weakening()
    call test_friction_opposes_slip()
    call test_means()
    call test_validity()
@@ -57,6 +63,19 @@ contains
       call compare_slopes(smooth_dilating, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, -2.0_rk]*um, 0.0_rk, &
                           state_slip)
       call compare_slopes(smooth, [-1.0_rk, 0.1_rk]*mpa, [2.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      ! Weakened by 2 um and by -1 um of slip; with dilation, at its end; weakened out.
+      call compare_slopes(weakening, [-5.0_rk, 4.0_rk]*mpa, [0.3_rk, 2.5_rk]*um, 0.5_rk*um, &
+                          state_slip)
+      call compare_slopes(weakening, [-5.0_rk, -4.0_rk]*mpa, [0.3_rk, -2.5_rk]*um, -1.5_rk*um, &
+                          state_slip)
+      call compare_slopes(weakening, [-5.0_rk, 4.0_rk]*mpa, [0.3_rk, 5.0_rk]*um, 3.0_rk*um, &
+                          state_slip)
+      call compare_slopes(weakening, [-5.0_rk, 4.0_rk]*mpa, [0.3_rk, 20.0_rk]*um, 3.0_rk*um, &
+                          state_slip)
+      call compare_slopes(weakening, [-5.0_rk, 0.1_rk]*mpa, [0.3_rk, 5.0_rk]*um, 5.0_rk*um, &
+                          state_stick)
+      call compare_slopes(weakening, [-1.0_rk, 0.1_rk]*mpa, [5.0_rk, 5.0_rk]*um, 5.0_rk*um, &
+                          state_open)
       ! Faces that cannot part: as before under pressure; friction goes on under tension.
       call compare_slopes(tied, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
       call compare_slopes(tied, [-5.0_rk, 2.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
@@ -112,6 +131,36 @@ contains
       call expect(smooth_dilating, [-4.0e6_rk, 0.0_rk], [0.25e-6_rk, 2.5e-6_rk], 1.0e-6_rk, &
                   state_slip)
    end subroutine test_admissible
+
+   !> Friction along a path: what one step weakens, and what several do, each on the law as it is
+   !! then; energy: the area under mu(D) is (mu_s - mu_r) D_c/2 above mu_r.
+   subroutine test_weakening()
+      type(contact_law_t) :: law
+      real(rk) :: at_once, friction, slope, work
+      integer :: k
+      integer, parameter :: n = 40
+
+      call weakening%friction_at(4.0e-6_rk, at_once, slope)
+      call checks%is_close(at_once, 0.44_rk, 1.0e-15_rk, "after 4 um")
+      law = weakening%aged(1.0e-6_rk)
+      call law%friction_at(-3.0e-6_rk, friction, slope)
+      call checks%is_close(friction, at_once, 1.0e-15_rk, "after 1 um and 3 um back")
+      call checks%is_close(slope, -4.0e4_rk, 1.0e-9_rk, "goes on falling")
+      law = weakening%aged(2.0e-5_rk)
+      call law%friction_at(1.0e-6_rk, friction, slope)
+      call checks%is_close(friction, 0.2_rk, 1.0e-15_rk, "what is left")
+      call checks%is_close(slope, 0.0_rk, 0.0_rk, "falls no more")
+      work = 0.0_rk
+      do k = 1, n
+         law = weakening%aged((k - 1)*5.0e-7_rk)
+         call law%friction_at(2.5e-7_rk, friction, slope)
+         work = work + (friction - 0.2_rk)*5.0e-7_rk
+      end do
+      call checks%is_close(work, 0.5_rk*0.4_rk*1.0e-5_rk, 1.0e-20_rk, "work of weakening")
+      call expect(weakening, [-4.0e6_rk, 4.0e6_rk*(0.6_rk - 4.0e4_rk*1.5e-6_rk)], &
+                  [0.25e-6_rk, 2.5e-6_rk], 1.0e-6_rk, state_slip)
+      call expect(weakening, [-4.0e6_rk, 0.0_rk], [0.3e-6_rk, 5.0e-6_rk], 5.0e-6_rk, state_stick)
+   end subroutine test_weakening
 
    !> A point that sticks, but for the rounding of what was solved, and is to slip the other way. On
    !! springs kn, kt, pressed by F: with u_n = tan(psi) s and the slip -s, friction is
