@@ -174,7 +174,7 @@ contains
                             /(dt*condensed%length(i))
       end do
       if (allocated(state%slip_path)) state%slip_path = state%slip_path &
-                                                        + abs(state%jump(2, :, :) - state%slip_before)
+                                                      + abs(state%jump(2, :, :) - state%slip_before)
       state%traction = eq%traction
       state%aperture = aperture
       state%pressure = fluid%pressure

@@ -81,7 +81,7 @@ contains
       radius = 0.1_rk
       call keep_off([0.9999_rk, 1.8_rk], scene, radius, error)
       call checks%is_true(allocated(error), "a tip next to an interface")
-      if (allocated(error)) call checks%is_true(index(error%message, "9.99900E-01") > 0, "its place")
+     if (allocated(error)) call checks%is_true(index(error%message, "9.99900E-01") > 0, "its place")
    end subroutine test_interfaces
 
    !> A tip on its way to the right, y = 1.5: K_IC rises over the last tenth of an increment.
