@@ -104,7 +104,7 @@ contains
             x(at:at + 1) = state%jump(:, k, i)*eq%stiffness
             x(eq%layout%at_face_pressure(i, k)) = state%pressure(i)
          end do
-         x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(state%pressure(i), state%void(i))
+         x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(i, state%pressure(i), state%void(i))
       end do
       do i = 1, eq%layout%n_wells
          x(eq%layout%at_well(i)) = state%well_flow(i)*eq%dt/eq%unit
@@ -173,8 +173,9 @@ contains
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
                             /(dt*condensed%length(i))
       end do
-      if (allocated(state%slip_path)) state%slip_path = state%slip_path &
-                                                      + abs(state%jump(2, :, :) - state%slip_before)
+      if (allocated(state%slip_path)) then
+         state%slip_path = state%slip_path + abs(state%jump(2, :, :) - state%slip_before)
+      end if
       state%traction = eq%traction
       state%aperture = aperture
       state%pressure = fluid%pressure
@@ -223,13 +224,16 @@ contains
    pure logical function is_overdrawn(eq, x)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
+      real(rk) :: lowest(eq%layout%n_joints)  ! [Pa]
       integer(ik) :: j
 
       is_overdrawn = .false.
+      lowest = eq%settings%vapour_pressure
+      if (allocated(eq%joints%pressure_in_situ)) lowest = lowest - eq%joints%pressure_in_situ
       do j = 1, eq%layout%n_joints
          if (eq%joints%is_outlet(j)) cycle
          is_overdrawn = is_overdrawn .or. x(eq%layout%at_joint(j)) &
-                        < eq%settings%vapour_pressure - contact_residual_max*eq%stress_scale
+                        < lowest(j) - contact_residual_max*eq%stress_scale
       end do
    end function is_overdrawn
 
