@@ -39,16 +39,17 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: content(:)  !< (n_cells) above the initial state [m2]
-      integer(ik) :: c, k
+      integer(ik) :: at, c, k
       real(rk) :: stress(2, 2), rotation, area
 
       do c = 1, mesh%n_cells
          content(c) = matrix%storage(c)*unknowns(3, c)
          area = cell_area(mesh, c)
+         at = min(c, size(rock%shear, kind=ik))
          do k = 1, 3
             call corner_stress(mesh, regions, tractions, c, k, stress, rotation)
-            content(c) = content(c) + rock%biot*area/3.0_rk*(stress(1, 1) + stress(2, 2)) &
-                         /(2.0_rk*(rock%lame + rock%shear))
+            content(c) = content(c) + rock%biot(at)*area/3.0_rk*(stress(1, 1) + stress(2, 2)) &
+                         /(2.0_rk*(rock%lame(at) + rock%shear(at)))
          end do
       end do
    end subroutine cell_contents
@@ -184,18 +185,19 @@ contains
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: strain(2, 2), rotation  !< [-]
       real(rk) :: stress(2, 2), nu
-      integer(ik) :: i
+      integer(ik) :: at, i
 
+      at = min(cell, size(rock%shear, kind=ik))
       call corner_stress(mesh, regions, tractions, cell, k, stress, rotation)
       do i = 1, 2
-         stress(i, i) = stress(i, i) + rock%biot*unknowns(3, cell)
+         stress(i, i) = stress(i, i) + rock%biot(at)*unknowns(3, cell)
       end do
-      nu = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+      nu = rock%lame(at)/(2.0_rk*(rock%lame(at) + rock%shear(at)))
       strain = stress
       do i = 1, 2
          strain(i, i) = strain(i, i) - nu*(stress(1, 1) + stress(2, 2))
       end do
-      strain = strain/(2.0_rk*rock%shear)
+      strain = strain/(2.0_rk*rock%shear(at))
    end subroutine corner_strain
 
    !> Total stress at a corner of a cell, and the rotation there.

@@ -77,9 +77,9 @@ contains
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
       type(response_t) :: flux, traction
       type(share_t) :: elastic, flow
-      integer(ik) :: c, info, r
+      integer(ik) :: at, c, info, r
 
-      call find_regions(mesh, regions)
+      call find_regions(mesh, regions, rock%stiffness)
       call find_pattern(mesh, regions, matrix)
       do r = 1, regions%n_regions
          call find_stress_stencil(mesh, rock, sides, regions, r, traction, elastic, info, in_situ)
@@ -94,8 +94,9 @@ contains
          call add_region(regions, r, elastic, flow, matrix)
       end do
       do c = 1, mesh%n_cells
-         matrix%storage(c) = cell_area(mesh, c)*(rock%storage &
-                                                 + rock%biot**2/(rock%lame + rock%shear))
+         at = min(c, size(rock%shear, kind=ik))
+         matrix%storage(c) = cell_area(mesh, c)*(rock%storage(at) + rock%biot(at)**2 &
+                                                 /(rock%lame(at) + rock%shear(at)))
          associate (diagonal => matrix%columns%last(c))
             matrix%elastic(3, 3, diagonal) = matrix%elastic(3, 3, diagonal) - matrix%storage(c)
          end associate

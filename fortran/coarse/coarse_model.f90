@@ -82,7 +82,7 @@ contains
       self%rock = new_rock(scene%material, scene%fluid)
       if (allocated(self%rock_resistance)) deallocate (self%rock_resistance)
       if (allocated(scene%regions)) then
-         call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, self%rock)
+         call place_regions(mesh, scene%regions, scene%domain, scene%fluid, self%rock)
          self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
       end if
       call place_in_situ(self, mesh, scene)
@@ -125,7 +125,7 @@ contains
       integer(ik) :: c
 
       self%sides = scene%sides
-      call find_in_situ(scene, self%rock%biot, self%in_situ)
+      call find_in_situ(scene, self%rock%biot(1), self%in_situ)
       force = weight_of_scene(scene)
       if (allocated(self%in_situ)) then
          self%sides%pressure = self%sides%pressure - self%in_situ%pressure
@@ -184,9 +184,11 @@ contains
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         state%content(c) = pressure*model%rock%storage*model%matrix%storage(c) &
-                            /(model%rock%storage + model%rock%biot**2 &
-                              /(model%rock%lame + model%rock%shear))
+         associate (rock => model%rock, at => min(c, size(model%rock%shear, kind=ik)))
+            state%content(c) = pressure*rock%storage(at)*model%matrix%storage(c) &
+                               /(rock%storage(at) + rock%biot(at)**2 &
+                                 /(rock%lame(at) + rock%shear(at)))
+         end associate
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
@@ -349,7 +351,7 @@ contains
          if (allocated(error)) return
       end if
       if (n > 0) then
-         spring = tip_springs(self%ends, self%rock, self%condensed)
+         spring = tip_springs(self%ends, self%rock, mesh, self%condensed)
          if (self%is_damped()) spring = spring + dampers(self%condensed, self%settings%damping/dt)
          call self%condensed%support(spring)
          call place_tips(self%ends, self%condensed%length, self%cells)

@@ -21,20 +21,18 @@ module coarse_permeability
    use base_clip, only: left_part
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, polygon_area, triangle_area, turned_left
-   use coarse_rock, only: mean_mobility, resistivity_of, rock_t
+   use coarse_geometry, only: cell_area
+   use coarse_rock, only: mean_mobility, new_rock, resistivity_of, rock_t
+   use coarse_solid, only: any_differ, make_room, number_stiffnesses, set_solid, solid_of, solid_t
    use mesh_types, only: mesh_t
    use scene_check_permeability, only: most_anisotropic
    use scene_region_outline, only: region_outline
-   use scene_types, only: domain_t, region_t
+   use scene_rock_places, only: is_inside, outline_t
+   use scene_types, only: domain_t, fluid_t, region_t
    implicit none(type, external)
    private
 
    public :: bearable, conduction_t, layered, place_regions, relative_resistance, share_of_cell
-
-   !> Corners of a region [m].
-   type :: outline_t
-      real(rk), allocatable :: corners(:, :)
-   end type outline_t
 
    !> How a rock conducts, each xx, yy, xy.
    type :: conduction_t
@@ -49,37 +47,49 @@ module coarse_permeability
 
 contains
 
-   !> Give each cell of the mesh its permeability.
-   pure subroutine place_regions(mesh, regions, domain, viscosity, rock)
+   !> Give each cell of the mesh its rock.
+   pure subroutine place_regions(mesh, regions, domain, fluid, rock)
       type(mesh_t), intent(in) :: mesh
       type(region_t), intent(in) :: regions(:)
       type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: viscosity  !< [Pa s]
+      type(fluid_t), intent(in) :: fluid
       type(rock_t), intent(inout) :: rock  !< uniform before
       type(outline_t) :: outlines(size(regions))
       type(conduction_t) :: at_cell, own(0:size(regions))  ! of the scene's rock first
+      type(solid_t) :: solid(0:size(regions))
+      real(rk) :: along(2, size(regions)), part(0:size(regions))
+      logical :: differ
       integer(ik) :: c
       integer :: i
 
-      own(0) = conduction(rock%permeability(:, 1), viscosity)
-      do i = 1, size(regions)
-         outlines(i)%corners = region_outline(regions(i), domain)
-         associate (m => regions(i)%material)
-            own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
-                                viscosity)
-         end associate
-      end do
-      deallocate (rock%permeability, rock%resistivity)
-      allocate (rock%permeability(3, mesh%n_cells), rock%resistivity(2, 2, mesh%n_cells))
-      do c = 1, mesh%n_cells
-         at_cell = cell_conduction(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, own, viscosity)
-         rock%permeability(:, c) = at_cell%permeability
-         rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
-         if (at_cell%layering > rock%most_layered) then
-            rock%most_layered = at_cell%layering
-            rock%most_layered_cell = c
-         end if
-      end do
+      associate (viscosity => fluid%viscosity)
+         own(0) = conduction(rock%permeability(:, 1), viscosity)
+         solid(0) = solid_of(rock)
+         do i = 1, size(regions)
+            outlines(i)%corners = region_outline(regions(i), domain)
+            associate (m => regions(i)%material)
+               own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
+                                   viscosity)
+               solid(i) = solid_of(new_rock(m, fluid))
+            end associate
+         end do
+         call number_stiffnesses(solid)
+         differ = any_differ(solid)
+         if (differ) call make_room(mesh%n_cells, rock)
+         deallocate (rock%permeability, rock%resistivity)
+         allocate (rock%permeability(3, mesh%n_cells), rock%resistivity(2, 2, mesh%n_cells))
+         do c = 1, mesh%n_cells
+            call parts_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, part, along)
+            if (differ) call set_solid(part, solid, c, rock)
+            at_cell = mixed_conduction(part, cell_area(mesh, c), along, own, viscosity)
+            rock%permeability(:, c) = at_cell%permeability
+            rock%resistivity(:, :, c) = reshape(at_cell%resistivity([1, 3, 3, 2]), [2, 2])
+            if (at_cell%layering > rock%most_layered) then
+               rock%most_layered = at_cell%layering
+               rock%most_layered_cell = c
+            end if
+         end do
+      end associate
    end subroutine place_regions
 
    pure function conduction(permeability, viscosity)
@@ -113,19 +123,18 @@ contains
    end function relative_resistance
 
    !> What a cell has of each region, from the last one, which counts most, to the rock around.
-   pure function cell_conduction(cell, outlines, own, viscosity) result(mixed)
+   pure subroutine parts_of_cell(cell, outlines, part, along)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       type(outline_t), intent(in) :: outlines(:)
-      type(conduction_t), intent(in) :: own(0:)  !< of the rock around, and of the regions
-      real(rk), intent(in) :: viscosity  !< [Pa s]
-      type(conduction_t) :: mixed
+      real(rk), intent(out) :: part(0:)  !< area in the rock around and in each region [m2]
+      real(rk), intent(out) :: along(:, :)  !< directions of the outlines where they cut [-]
       real(rk), allocatable :: rest(:, :)
-      real(rk) :: along(2, size(outlines)), area, line(2, 2), part(0:size(outlines)), share
-      logical :: is_mixed
+      real(rk) :: area, line(2, 2), share
       integer :: i
 
       area = triangle_area(cell)
       part = 0.0_rk
+      along = 0.0_rk
       allocate (rest, source=cell)
       do i = size(outlines), 1, -1
          call share_of_cell(cell, outlines(i)%corners, share, line)
@@ -141,9 +150,23 @@ contains
          if (polygon_area(rest) <= nothing*area) exit
       end do
       part(0) = polygon_area(rest)
+   end subroutine parts_of_cell
+
+   !> The conduction of a cell with several rocks.
+   pure function mixed_conduction(part, area, along, own, viscosity) result(mixed)
+      real(rk), intent(in) :: part(0:)  !< area in the rock around and in each region [m2]
+      real(rk), intent(in) :: area  !< of the cell [m2]
+      real(rk), intent(in) :: along(:, :)  !< directions of their outlines [-]
+      type(conduction_t), intent(in) :: own(0:)  !< of the rock around, and of the regions
+      real(rk), intent(in) :: viscosity  !< [Pa s]
+      type(conduction_t) :: mixed
+      real(rk) :: share
+      logical :: is_mixed
+      integer :: i
+
       mixed = own(0)
       is_mixed = .false.
-      do i = 1, size(outlines)
+      do i = 1, ubound(part, 1)
          if (part(i) <= nothing*area) cycle
          if (sum(part(:i - 1)) <= nothing*area) then
             mixed = own(i)
@@ -156,7 +179,7 @@ contains
          is_mixed = .true.
       end do
       if (is_mixed) mixed = bearable(mixed, viscosity)
-   end function cell_conduction
+   end function mixed_conduction
 
    !> The same, or if it conducts more than `most_anisotropic` times better along than across, less
    !! well along: by most_anisotropic**2 over this ratio, or as well as across.
@@ -225,25 +248,6 @@ contains
       end do
       may_cut = .false.
    end function may_cut
-
-   !> A ray to the right from a point inside meets the outline an odd number of times (Shimrat
-   !! 1962); the point is not on the outline.
-   pure logical function is_inside(outline, point)
-      real(rk), intent(in) :: outline(:, :), point(2)  !< [m]
-      integer(ik) :: k, n, next
-
-      n = size(outline, 2, kind=ik)
-      is_inside = .false.
-      do k = 1, n
-         next = mod(k, n) + 1_ik
-         associate (a => outline(:, k), b => outline(:, next))
-            if ((a(2) > point(2)) .eqv. (b(2) > point(2))) cycle
-            if ((triangle_area(reshape([a, b, point], [2, 3])) > 0.0_rk) .eqv. b(2) > a(2)) then
-               is_inside = .not. is_inside
-            end if
-         end associate
-      end do
-   end function is_inside
 
    !> The direction of the outline within a cell, the region on its left: the principal one of the
    !! edges that do not lie on the cell's own, so that both sides of a thin region count alike.

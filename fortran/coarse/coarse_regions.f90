@@ -3,7 +3,9 @@
 !! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector
 !! between fractures. Across a fracture the traction is continuous and the displacement jumps; the
 !! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
-!! varies linearly along the cell. Each node has its own rotation.
+!! varies linearly along the cell. Each node has its own rotation; one at which rocks of several
+!! stiffnesses meet has one for each of them, for on their interface the shear strain jumps, and
+!! with it the rotation, where the displacement does not.
 module coarse_regions
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
@@ -24,7 +26,11 @@ module coarse_regions
       integer(ik), allocatable :: region_of_node(:)  !< (n_nodes)
       !> (3, n_blocks) regions that a block belongs to; for the two of a fracture the third is 0
       integer(ik), allocatable :: regions_of_block(:, :)
-      type(lists_t) :: nodes
+      !> (corner, n_cells) the rotation of a cell's corner: the number of its node, or, of a second
+      !! stiffness there, one beyond those
+      integer(ik), allocatable :: rotation_of_corner(:, :)
+      logical, allocatable :: has_interface(:)  !< (n_regions) rocks of several stiffnesses meet
+      type(lists_t) :: nodes  !< by the number of their rotation; the first is a node of the mesh
       type(lists_t) :: faces  !< that carry a traction: of a fracture, the + side stands for both
       type(lists_t) :: flow_faces  !< that carry a flux: both sides of a fracture
       type(lists_t) :: blocks  !< cells first
@@ -44,10 +50,12 @@ module coarse_regions
 contains
 
    !> Nodes, faces and blocks around all vertices; room for the responses.
-   subroutine find_regions(mesh, regions)
+   subroutine find_regions(mesh, regions, stiffness)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(out) :: regions
-      integer(ik), allocatable :: ends(:, :)
+      !> Which stiffness each cell has; default: all the same
+      integer(ik), intent(in), optional :: stiffness(:)
+      integer(ik), allocatable :: ends(:, :), region_of_rotation(:)
       integer(ik) :: c, end, f, i, n
 
       call join_nodes(mesh, regions)
@@ -69,7 +77,9 @@ contains
             end do
          end do
          regions%blocks = inverted(regions%regions_of_block, n)
-         regions%nodes = inverted(reshape(region, [1, size(region)]), n)
+         region_of_rotation = region
+         call number_rotations(mesh, stiffness, regions, region_of_rotation)
+         regions%nodes = inverted(reshape(region_of_rotation, [1, size(region_of_rotation)]), n)
 
          allocate (ends(2, mesh%n_faces))
          do f = 1, mesh%n_faces
@@ -84,6 +94,50 @@ contains
       call find_corners(mesh, regions)
       allocate (regions%traction(n), regions%flux(n))
    end subroutine find_regions
+
+   !> Which corners of cells share a rotation: those at one node, and where several stiffnesses meet
+   !! there, of one stiffness.
+   pure subroutine number_rotations(mesh, stiffness, regions, region_of_rotation)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in), optional :: stiffness(:)  !< (n_cells), or 1 for all
+      type(regions_t), intent(inout) :: regions
+      integer(ik), allocatable, intent(inout) :: region_of_rotation(:)  !< those of nodes, at first
+      integer(ik) :: c, k, last, n, node
+      integer(ik), allocatable :: next(:), own(:), more(:)
+
+      allocate (regions%has_interface(regions%n_regions), source=.false.)
+      regions%rotation_of_corner = mesh%cell_nodes
+      if (.not. present(stiffness)) return
+      if (size(stiffness) < mesh%n_cells) return
+      ! The rotations of a node as a chain, each with the stiffness that it is for.
+      n = mesh%n_nodes
+      allocate (next(n), own(n), source=-1_ik)
+      do c = 1, mesh%n_cells
+         do k = 1, 3
+            node = mesh%cell_nodes(k, c)
+            last = node
+            if (own(node) < 0) own(node) = stiffness(c)
+            do while (own(last) /= stiffness(c) .and. next(last) > 0)
+               last = next(last)
+            end do
+            if (own(last) /= stiffness(c)) then
+               if (n == size(next)) then
+                  allocate (more(n), source=-1_ik)
+                  next = [next, more]
+                  own = [own, more]
+                  deallocate (more)
+               end if
+               n = n + 1
+               next(last) = n
+               own(n) = stiffness(c)
+               region_of_rotation = [region_of_rotation, regions%region_of_node(node)]
+               regions%has_interface(regions%region_of_node(node)) = .true.
+               last = n
+            end if
+            regions%rotation_of_corner(k, c) = last
+         end do
+      end do
+   end subroutine number_rotations
 
    !> Where the tractions and rotations at all corners of cells stand.
    subroutine find_corners(mesh, regions)
@@ -102,7 +156,7 @@ contains
                call traction_face(mesh, faces(j), sign_out)
                regions%at_corner(j, k, c) = regions%at_traction(r, faces(j))
             end do
-            regions%at_corner(3, k, c) = regions%at_rotation(r, mesh%cell_nodes(k, c))
+            regions%at_corner(3, k, c) = regions%at_rotation(r, regions%rotation_of_corner(k, c))
          end do
       end do
    end subroutine find_corners
@@ -184,14 +238,14 @@ contains
       if (present(face)) at_traction = at_traction + 2*(self%faces%place(region, face) - 1)
    end function at_traction
 
-   !> Where the rotation of a node stands among them.
-   pure integer(ik) function at_rotation(self, region, node)
+   !> Where a rotation stands among them.
+   pure integer(ik) function at_rotation(self, region, rotation)
       class(regions_t), intent(in) :: self
       integer(ik), intent(in) :: region
-      integer(ik), intent(in) :: node  !< one of the region's
+      integer(ik), intent(in) :: rotation  !< one of the region's
 
       at_rotation = self%at_traction(region) + 2*self%faces%length(region) &
-                    + self%nodes%place(region, node) - 1
+                    + self%nodes%place(region, rotation) - 1
    end function at_rotation
 
 end module coarse_regions

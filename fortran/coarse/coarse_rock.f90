@@ -6,15 +6,18 @@ module coarse_rock
    implicit none(type, external)
    private
 
-   public :: mean_mobility, new_rock, resistivity_of, rock_t
+   public :: mean_mobility, new_rock, resistivity_of, rock_t, shear_of
 
-   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants.
+   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants. The lists hold one
+   !! item if the rock is uniform, else one per cell: what cell c has is at min(c, size).
    type :: rock_t
-      real(rk) :: shear = 0.0_rk  !< shear modulus G [Pa]
-      real(rk) :: lame = 0.0_rk  !< first Lame constant, reduced for plane stress [Pa]
-      real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
-      real(rk) :: biot = 0.0_rk  !< alpha of the stress in the plane [-]
-      real(rk) :: storage = 0.0_rk  !< S at fixed strain in the plane [1/Pa]
+      real(rk), allocatable :: shear(:)  !< shear modulus G [Pa]
+      real(rk), allocatable :: lame(:)  !< first Lame constant, reduced for plane stress [Pa]
+      real(rk), allocatable :: biot(:)  !< alpha of the stress in the plane [-]
+      real(rk), allocatable :: storage(:)  !< S at fixed strain in the plane [1/Pa]
+      !> Rocks of one stiffness have one number: across an outline between two of them, the rotation
+      !! jumps (coarse_regions).
+      integer(ik), allocatable :: stiffness(:)
       real(rk) :: mobility = 0.0_rk  !< mean of K/mu of the scene's rock [m2/(Pa s)]
       ! (.., 1) of a uniform rock, (.., n_cells) where regions differ (coarse_permeability):
       real(rk), allocatable :: permeability(:, :)  !< (3, ..) K_xx, K_yy, K_xy [m2]
@@ -37,9 +40,10 @@ contains
 
       real(rk) :: modulus
 
+      allocate (rock%shear(1), rock%lame(1), rock%biot(1), rock%storage(1))
+      allocate (rock%stiffness(1), source=0_ik)
       associate (e => material%young, nu => material%poisson)
-         rock%young = e
-         rock%shear = e/(2.0_rk*(1.0_rk + nu))
+         rock%shear = shear_of(material)
          rock%lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu))
          if (material%plane_stress) rock%lame = e*nu/(1.0_rk - nu**2)
       end associate
@@ -48,7 +52,7 @@ contains
       if (material%plane_stress) then
          ! Without stress across the plane, strain follows there: e_zz = (alpha p - lambda (e_xx +
          ! e_yy))/(lambda + 2 G), lambda that of the solid.
-         modulus = 2.0_rk*rock%shear*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
+       modulus = 2.0_rk*rock%shear(1)*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
          rock%biot = material%biot*2.0_rk*rock%shear/modulus
          rock%storage = rock%storage + material%biot**2/modulus
       end if
@@ -58,6 +62,13 @@ contains
       rock%resistivity(:, :, 1) = resistivity_of(rock%permeability(:, 1), fluid%viscosity)
       rock%mobility = mean_mobility(rock%permeability(:, 1), fluid%viscosity)
    end function new_rock
+
+   !> Shear modulus G [Pa].
+   pure real(rk) function shear_of(material)
+      type(material_t), intent(in) :: material
+
+      shear_of = material%young/(2.0_rk*(1.0_rk + material%poisson))
+   end function shear_of
 
    !> The mean of K/mu in a cell [m2/(Pa s)].
    pure real(rk) function mobility_at(self, cell)

@@ -16,7 +16,11 @@
 !!   A t + C r + G d = given displacements,  C^T t = 0
 !! with tractions t, rotations r and the unknowns d (displacements, jumps, pressures) around the
 !! vertex. The rotations times 2 G are the unknowns, of the size of a traction, so that pivots stay
-!! comparable.
+!! comparable: G of one of the cells that share the rotation.
+!!
+!! Where rocks of several stiffnesses meet at a vertex each has a rotation of its own
+!! (coarse_regions). With tractions given on both sides of an interface that ends on the boundary,
+!! two of them can ask the same of the traction on the interface; one of them is left out then.
 module coarse_stress
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
@@ -50,38 +54,48 @@ contains
       integer(ik), intent(out) :: info
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
       type(local_system_t) :: local
-      integer(ik) :: m, n_tractions
+      real(rk), allocatable :: doubled(:)
+      integer(ik) :: k, m, n_tractions
 
       n_tractions = 2*regions%faces%length(region)
       m = 3*regions%blocks%length(region)
       call new_local_system(n_tractions + regions%nodes%length(region), m, local)
-      call add_corners(mesh, rock, regions, region, local)
+      call add_corners(mesh, rock, regions, region, local, doubled)
       call add_jumps(mesh, regions, region, local)
       local%rhs(:, :m) = -local%coupling
       call apply_sides(mesh, sides, regions, region, local, in_situ)
+      if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
       call eliminate(local, response, share, info)
       if (info /= 0) return
-      associate (rotations => response%matrix(n_tractions + 1:, :))
-         rotations = rotations/(2.0_rk*rock%shear)
-      end associate
+      do k = 1, size(doubled, kind=ik)
+         associate (rotation => response%matrix(n_tractions + k, :))
+            rotation = rotation/doubled(k)
+         end associate
+      end do
    end subroutine find_stress_stencil
 
    !> What the cells' corners around the vertex give.
-   subroutine add_corners(mesh, rock, regions, region, local)
+   subroutine add_corners(mesh, rock, regions, region, local, doubled)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-      integer(ik) :: at(2), c, cell, faces(2), i, j, k, rotation
+      real(rk), allocatable, intent(out) :: doubled(:)  !< 2 G of each rotation [Pa]
+      integer(ik) :: at(2), c, cell, faces(2), first, here, i, j, k, rotation
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, nu, w
 
-      nu = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+      first = 2*regions%faces%length(region)
+      allocate (doubled(regions%nodes%length(region)), source=0.0_rk)
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
          k = findloc(regions%regions_of_block(:, cell), region, dim=1)
-         rotation = 2*regions%faces%length(region) &
-                    + regions%nodes%place(region, mesh%cell_nodes(k, cell))
+         here = min(cell, size(rock%shear, kind=ik))
+         rotation = first + regions%nodes%place(region, regions%rotation_of_corner(k, cell))
+         if (.not. doubled(rotation - first) > 0.0_rk) then
+            doubled(rotation - first) = 2.0_rk*rock%shear(here)
+         end if
+         nu = rock%lame(here)/(2.0_rk*(rock%lame(here) + rock%shear(here)))
          call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
          do j = 1, 2
             call traction_face(mesh, faces(j), sign_out(j))
@@ -89,20 +103,46 @@ contains
          end do
          do j = 1, 2
             do i = 1, 2
-               w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear)
+               w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear(here))
                call add_compliance(local%matrix, at(i), at(j), w, nu, lever(:, i), lever(:, j))
             end do
-            w = sign_out(j)*area/(6.0_rk*rock%shear)
+            w = sign_out(j)*area/(3.0_rk*doubled(rotation - first))
             call add_symmetric(local%matrix, at(j), rotation, -w*lever(2, j))
             call add_symmetric(local%matrix, at(j) + 1, rotation, w*lever(1, j))
             w = sign_out(j)*area/3.0_rk
             local%coupling(at(j), at_component(c, 1)) = 0.5_rk*sign_out(j)*length(j)
             local%coupling(at(j) + 1, at_component(c, 2)) = 0.5_rk*sign_out(j)*length(j)
             local%coupling(at(j):at(j) + 1, at_component(c, 3)) = &
-               w*lever(:, j)*rock%biot/(2.0_rk*(rock%lame + rock%shear))
+               w*lever(:, j)*rock%biot(here)/(2.0_rk*(rock%lame(here) + rock%shear(here)))
          end do
       end do
    end subroutine add_corners
+
+   !> Rotations whose equations, in the tractions that are not given, follow from those before:
+   !! fixed, so that the rotations before stand for them too.
+   subroutine leave_out_repeated(n_tractions, local)
+      integer(ik), intent(in) :: n_tractions
+      type(local_system_t), intent(inout) :: local
+      real(rk), parameter :: nothing = 1.0e-10_rk  !< what is left of a repeated row
+      real(rk) :: rows(n_tractions, size(local%matrix, 1) - n_tractions), left(n_tractions)
+      real(rk) :: whole
+      integer(ik) :: i, k
+
+      do k = 1, size(rows, 2, kind=ik)
+         left = local%matrix(n_tractions + k, :n_tractions)
+         whole = norm2(left)
+         rows(:, k) = 0.0_rk
+         if (.not. whole > 0.0_rk) cycle
+         do i = 1, k - 1
+            left = left - dot_product(rows(:, i), left)*rows(:, i)
+         end do
+         if (norm2(left) > nothing*whole) then
+            rows(:, k) = left/norm2(left)
+         else
+            call fix_unknown(local, n_tractions + k, 0.0_rk)
+         end if
+      end do
+   end subroutine leave_out_repeated
 
    !> Jumps of the fracture cells, which are unknowns: each end's acts in the region where it lies.
    subroutine add_jumps(mesh, regions, region, local)

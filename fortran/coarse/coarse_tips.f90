@@ -24,7 +24,8 @@ module coarse_tips
    use coarse_condensed, only: condensed_t
    use coarse_rock, only: rock_t
    use coarse_state, only: fracture_cells_t
-   use mesh_types, only: fracture_mesh_t
+   use coarse_solid, only: mean_solid, solid_t
+   use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
 
@@ -61,11 +62,13 @@ contains
    end function free_ends
 
    !> Stiffness added to that of the condensed body, by unknown of q.
-   pure function tip_springs(ends, rock, condensed) result(spring)
+   pure function tip_springs(ends, rock, mesh, condensed) result(spring)
       type(crack_ends_t), intent(in) :: ends
       type(rock_t), intent(in) :: rock
+      type(mesh_t), intent(in) :: mesh
       type(condensed_t), intent(in) :: condensed
       real(rk) :: spring(condensed%layout%count())  !< [Pa]
+      type(solid_t) :: solid
       real(rk) :: at_end(2), left, share
       integer(ik) :: cell, step, tip
 
@@ -73,20 +76,30 @@ contains
       do tip = 1, size(ends%cell, kind=ik)
          cell = ends%cell(tip)
          step = ends%inwards(tip)
-         at_end = in_tip_cell(rock)
+         solid = beside(cell)
+         at_end = in_tip_cell(solid)
          left = ends%ahead(tip)
          do while (left >= (1.0_rk - least)*condensed%length(cell))  ! the tip is farther back
-            call add(cell, (1.0_rk/least - 1.0_rk)*within(rock))
+            call add(cell, (1.0_rk/least - 1.0_rk)*within(solid))
             left = max(0.0_rk, left - condensed%length(cell))
             cell = cell + step
-            at_end = in_cell_behind(rock)
+            solid = beside(cell)
+            at_end = in_cell_behind(solid)
          end do
          share = 1.0_rk - left/condensed%length(cell)
-         call add(cell, at_end + (1.0_rk/share - 1.0_rk)*within(rock))
-         if (share < 1.0_rk) call add(cell + step, (1.0_rk - share)*in_cell_behind(rock))
+         call add(cell, at_end + (1.0_rk/share - 1.0_rk)*within(solid))
+         if (share < 1.0_rk) call add(cell + step, (1.0_rk - share)*in_cell_behind(solid))
       end do
 
    contains
+
+      !> The rock on both sides of a fracture cell, as one.
+      pure function beside(cell) result(solid)
+         integer(ik), intent(in) :: cell
+         type(solid_t) :: solid
+
+         solid = mean_solid(rock, mesh%face_cells(1, mesh%fracture%cell_faces(:, cell)))
+      end function beside
 
       !> Springs at both ends of a cell.
       pure subroutine add(cell, stiffness)
@@ -135,50 +148,36 @@ contains
    end subroutine place_tips
 
    !> Where a tip is at the end of its cell: stiffness at either end of the cell [Pa].
-   pure function in_tip_cell(rock) result(spring)
-      type(rock_t), intent(in) :: rock
+   pure function in_tip_cell(solid) result(spring)
+      type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau
 
-      associate (nu => poisson(rock))
-         spring = crack_modulus(rock)*[-0.0471_rk + nu*(0.095_rk + 0.038_rk*nu), &
-                                       0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
+      associate (nu => solid%poisson())
+         spring = solid%crack_modulus()*[-0.0471_rk + nu*(0.095_rk + 0.038_rk*nu), &
+                                         0.0201_rk + nu*(0.0627_rk + 0.0415_rk*nu)]
       end associate
    end function in_tip_cell
 
    !> Where a tip is in its cell: what is added there, over what the tip lacks to the cell's end in
    !! terms of what it has [Pa].
-   pure function within(rock) result(spring)
-      type(rock_t), intent(in) :: rock
+   pure function within(solid) result(spring)
+      type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau
 
-      associate (nu => poisson(rock))
-         spring = crack_modulus(rock)*[0.156_rk - 0.03_rk*nu, 0.1752_rk - 0.104_rk*nu]
+      associate (nu => solid%poisson())
+         spring = solid%crack_modulus()*[0.156_rk - 0.03_rk*nu, 0.1752_rk - 0.104_rk*nu]
       end associate
    end function within
 
    !> Where a tip is at the start of its cell: what is added in the cell behind it [Pa].
-   pure function in_cell_behind(rock) result(spring)
-      type(rock_t), intent(in) :: rock
+   pure function in_cell_behind(solid) result(spring)
+      type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau
 
-      associate (nu => poisson(rock))
-         spring = crack_modulus(rock)*[0.0133_rk + 0.049_rk*nu, &
-                                       0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
+      associate (nu => solid%poisson())
+         spring = solid%crack_modulus()*[0.0133_rk + 0.049_rk*nu, &
+                                         0.0133_rk + nu*(0.064_rk + 0.021_rk*nu)]
       end associate
    end function in_cell_behind
-
-   !> E', in plane strain E/(1 - nu^2) [Pa].
-   pure real(rk) function crack_modulus(rock)
-      type(rock_t), intent(in) :: rock
-
-      crack_modulus = 4.0_rk*rock%shear*(rock%lame + rock%shear)/(rock%lame + 2.0_rk*rock%shear)
-   end function crack_modulus
-
-   !> Poisson's ratio of the two-dimensional constants, as in plane strain [-].
-   pure real(rk) function poisson(rock)
-      type(rock_t), intent(in) :: rock
-
-      poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
-   end function poisson
 
 end module coarse_tips

@@ -1,11 +1,11 @@
 !> Isotropic linear elasticity in the plane, with the constants that cracks need.
 module fine_elasticity
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: check_elasticity, elasticity_t
+   public :: check_elasticity, elasticity_t, is_same, rocks_t
 
    !> An isotropic poroelastic solid: total stress = C : strain - biot * pore pressure * identity,
    !! where all tensors are those of the plane.
@@ -22,7 +22,41 @@ module fine_elasticity
       procedure :: total_stress
    end type elasticity_t
 
+   !> The rocks of a body, and which one each element is of: (n_cells), or one item for all.
+   type :: rocks_t
+      type(elasticity_t), allocatable :: elasticity(:)
+      integer(ik), allocatable :: of_cell(:)
+   contains
+      procedure :: index_of
+      procedure :: in_cell
+   end type rocks_t
+
 contains
+
+   !> The number of the rock of an element.
+   pure integer(ik) function index_of(self, cell)
+      class(rocks_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      index_of = self%of_cell(min(cell, size(self%of_cell, kind=ik)))
+   end function index_of
+
+   !> The rock of an element.
+   pure function in_cell(self, cell) result(elasticity)
+      class(rocks_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      type(elasticity_t) :: elasticity
+
+      elasticity = self%elasticity(self%index_of(cell))
+   end function in_cell
+
+   !> Two rocks have the same constants.
+   elemental logical function is_same(a, b)
+      type(elasticity_t), intent(in) :: a, b
+
+      is_same = .not. (abs(a%young - b%young) > 0.0_rk .or. abs(a%poisson - b%poisson) > 0.0_rk &
+                       .or. abs(a%biot - b%biot) > 0.0_rk)
+   end function is_same
 
    !> Refuse constants without a positive definite stiffness.
    pure subroutine check_elasticity(elasticity, error)

@@ -102,7 +102,7 @@ contains
          call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
                                   determinant)
          product_in = product_in + weights(point)*determinant &
-                      *strain_product(model%elasticity, difference(displacement, recovery), &
+                    *strain_product(model%rocks%in_cell(cell), difference(displacement, recovery), &
                                       difference(other, other_recovery))
       end do
 
@@ -113,10 +113,12 @@ contains
          real(rk), intent(in) :: field(:, :)  !< (2, n_nodes) displacement [m]
          type(recovery_t), intent(in) :: recovered
          real(rk) :: stress_error(3)
+         type(elasticity_t) :: rock
          real(rk) :: stress(2, 2)
 
-         stress = model%elasticity%total_stress(matmul(field(:, model%mesh%cell_nodes(:, cell)), &
-                                                       transpose(gradients)), 0.0_rk)
+         rock = model%rocks%in_cell(cell)
+         stress = rock%total_stress(matmul(field(:, model%mesh%cell_nodes(:, cell)), &
+                                           transpose(gradients)), 0.0_rk)
          stress_error = recovered_stress(model%mesh, recovered, cell, area_coordinates) &
                         - [stress(1, 1), stress(2, 2), stress(1, 2)]
       end function difference

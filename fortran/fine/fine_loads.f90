@@ -3,6 +3,7 @@ module fine_loads
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use fine_line, only: line_resultants
+   use fine_elasticity, only: rocks_t
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_3
    implicit none(type, external)
@@ -97,9 +98,9 @@ contains
    end subroutine add_face_forces
 
    !> Forces of pore pressure, initial stress and body force on all nodes.
-   pure subroutine add_volume_forces(fine, biot, loads, force)
+   pure subroutine add_volume_forces(fine, rocks, loads, force)
       type(fine_mesh_t), intent(in) :: fine
-      real(rk), intent(in) :: biot  !< [-]
+      type(rocks_t), intent(in) :: rocks
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
       integer(ik) :: cell
@@ -109,7 +110,8 @@ contains
             if (.not. (any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%body_force) > 0.0_rk))) cycle
-            force(:, nodes) = force(:, nodes) + volume_forces(fine, cell, biot, loads)
+            force(:, nodes) = force(:, nodes) + volume_forces(fine, cell, &
+                                                 rocks%elasticity(rocks%index_of(cell))%biot, loads)
          end associate
       end do
    end subroutine add_volume_forces

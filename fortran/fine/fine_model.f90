@@ -7,7 +7,7 @@ module fine_model
                             fine_boundary_t
    use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
                            set_contact_problem, solve_contact
-   use fine_elasticity, only: check_elasticity, elasticity_t
+   use fine_elasticity, only: check_elasticity, elasticity_t, rocks_t
    use fine_element, only: stiffness_matrix
    use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
                          face_conditions_t, face_contact, face_loaded, prescribe_jumps
@@ -23,7 +23,8 @@ module fine_model
    !> A body with its matrix. Not to be copied: the factors belong to the original.
    type :: fine_model_t
       type(fine_mesh_t) :: mesh
-      type(elasticity_t) :: elasticity
+      type(elasticity_t) :: elasticity  !< the only rock, or the first
+      type(rocks_t) :: rocks
       type(fine_boundary_t) :: boundary
       type(face_conditions_t) :: conditions
       type(constraints_t) :: constraints
@@ -46,29 +47,36 @@ module fine_model
 contains
 
    !> Number the nodes, so that conditions and loads can be set up for them, and form the element
-   !! matrices.
-   subroutine set_mesh(self, mesh, elasticity, error, tip_element)
+   !! matrices, of one rock or of several.
+   subroutine set_mesh(self, mesh, elasticity, error, tip_element, rocks)
       class(fine_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(elasticity_t), intent(in) :: elasticity
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: tip_element  !< of fine_mesh; default: tip_quarter
-      integer(ik) :: cell
-      real(rk) :: lame_lambda, shear_modulus
+      type(rocks_t), intent(in), optional :: rocks  !< of the elements, in place of `elasticity`
+      integer(ik) :: cell, i
+      real(rk), allocatable :: lame_lambda(:), shear_modulus(:)
 
       self%ready = .false.
-      call check_elasticity(elasticity, error)
+      self%rocks = rocks_t(elasticity=[elasticity], of_cell=[1_ik])
+      if (present(rocks)) self%rocks = rocks
+      self%elasticity = self%rocks%elasticity(1)
+      do i = 1, size(self%rocks%elasticity, kind=ik)
+         if (.not. allocated(error)) call check_elasticity(self%rocks%elasticity(i), error)
+      end do
       if (.not. allocated(error)) call build_fine_mesh(mesh, self%mesh, error, tip_element)
       if (allocated(error)) return
-      self%elasticity = elasticity
       if (allocated(self%stiffness)) deallocate (self%stiffness)
       allocate (self%stiffness(12, 12, self%mesh%n_cells))
-      lame_lambda = elasticity%lame_lambda()
-      shear_modulus = elasticity%shear_modulus()
+      lame_lambda = [(self%rocks%elasticity(i)%lame_lambda(), i=1, size(self%rocks%elasticity))]
+      shear_modulus = [(self%rocks%elasticity(i)%shear_modulus(), &
+                        i=1, size(self%rocks%elasticity))]
       do cell = 1, self%mesh%n_cells
+         i = self%rocks%index_of(cell)
          call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), &
                                self%mesh%tip_corner(cell), &
-                               lame_lambda, shear_modulus, self%stiffness(:, :, cell), &
+                               lame_lambda(i), shear_modulus(i), self%stiffness(:, :, cell), &
                                self%mesh%tip_element == tip_collapsed)
       end do
    end subroutine set_mesh
@@ -124,7 +132,7 @@ contains
       class(fine_model_t), intent(inout) :: self
 
       call set_contact_problem(self%mesh, self%conditions, self%constraints, &
-                               self%elasticity%young, self%contact_problem)
+                               self%rocks%elasticity(1)%young, self%contact_problem)
       associate (problem => self%contact_problem)
          if (problem%n == 0) return
          allocate (problem%condensed(2*problem%n, 2*problem%n))
@@ -329,7 +337,7 @@ contains
       where (spread(self%conditions%condition == face_contact, 1, 2)) traction = 0.0_rk
       force = loads%force
       call add_face_forces(self%mesh, traction, loads%fluid_pressure, force)
-      call add_volume_forces(self%mesh, self%elasticity%biot, loads, force)
+      call add_volume_forces(self%mesh, self%rocks, loads, force)
    end function external_forces
 
    !> What must act on the nodes besides the loads: reactions of given displacements and of tied

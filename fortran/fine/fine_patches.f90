@@ -1,14 +1,16 @@
-!> Stress samples in the elements, and polynomials fitted to those around a node.
+!> Stress samples in the elements, and polynomials fitted to those around a node. Where rocks meet
+!! at a node each has samples of its own there, for stresses jump across an interface.
 module fine_patches
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
    use algebra_lapack, only: dpotrf, dpotrs
+   use fine_elasticity, only: rocks_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: triangle_rule_3
    implicit none(type, external)
    private
 
-   public :: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, samples_t
+   public :: fit_quadratic, n_samples, n_terms, patch_of_site, quadratic_terms, samples_t
    public :: take_samples
 
    integer(ik), parameter :: n_samples = 3  !< points in an element
@@ -21,8 +23,12 @@ module fine_patches
       real(rk), allocatable :: stress(:, :, :)  !< (xx yy xy, n_samples, n_cells) [Pa]
       real(rk), allocatable :: centre(:, :)  !< (2, n_cells) [m]
       real(rk), allocatable :: area(:)  !< (n_cells) [m2]
-      integer(ik), allocatable :: first(:)  !< (n_vertices+1) into cells
-      integer(ik), allocatable :: cells(:)  !< elements around each corner node
+      !> (3, n_cells) the site of each corner of an element: its node, or, for a second rock there,
+      !! a number beyond those
+      integer(ik), allocatable :: site(:, :)
+      integer(ik), allocatable :: node(:)  !< (sites) where each is
+      integer(ik), allocatable :: first(:)  !< (sites+1) into cells
+      integer(ik), allocatable :: cells(:)  !< elements around each site
       integer(ik), allocatable :: neighbours(:, :)  !< (3, n_cells) across each edge, 0: none
    end type samples_t
 
@@ -43,57 +49,97 @@ contains
          allocate (samples%xy(2, n_samples, n), samples%stress(3, n_samples, n))
          allocate (samples%area(n), samples%centre(2, n))
          do cell = 1, n
-            associate (nodes => fine%cell_nodes(:, cell))
+            associate (nodes => fine%cell_nodes(:, cell), rock => model%rocks%in_cell(cell))
                samples%area(cell) = triangle_area(fine%xy(:, nodes(1:3)))
                samples%centre(:, cell) = sum(fine%xy(:, nodes(1:3)), dim=2)/3.0_rk
                do k = 1, n_samples
                   call fine%evaluate(cell, points(:, k), values, gradients, area_coordinates, &
                                      determinant)
                   samples%xy(:, k, cell) = matmul(fine%xy(:, nodes), values)
-                  stress = model%elasticity%total_stress(matmul(displacement(:, nodes), &
-                                                                transpose(gradients)), 0.0_rk)
+                  stress = rock%total_stress(matmul(displacement(:, nodes), &
+                                                    transpose(gradients)), 0.0_rk)
                   samples%stress(:, k, cell) = [stress(1, 1), stress(2, 2), stress(1, 2)]
                end do
             end associate
          end do
-         call find_neighbours(fine%n_vertices, fine%n_nodes, fine%cell_nodes, samples)
+         call find_sites(fine%n_vertices, fine%cell_nodes, model%rocks, samples)
+         call find_neighbours(fine%n_nodes, fine%cell_nodes, model%rocks, samples)
       end associate
    end subroutine take_samples
 
-   !> Elements around every corner node, and across every edge: the elements that share its middle
-   !! node.
-   pure subroutine find_neighbours(n_vertices, n_nodes, cell_nodes, samples)
-      integer(ik), intent(in) :: n_vertices, n_nodes
+   !> The sites of the corners of all elements.
+   pure subroutine find_sites(n_vertices, cell_nodes, rocks, samples)
+      integer(ik), intent(in) :: n_vertices
       integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
+      type(rocks_t), intent(in) :: rocks
+      type(samples_t), intent(inout) :: samples
+      integer(ik), allocatable :: next(:), rock(:)
+      integer(ik) :: cell, k, n, own, site
+
+      samples%site = cell_nodes(:3, :)
+      samples%node = [(k, k=1, n_vertices)]
+      if (size(rocks%of_cell) == 1) return
+      n = n_vertices
+      allocate (next(4*n), rock(4*n), source=0_ik)  ! the sites of a node are a chain
+      do cell = 1, size(cell_nodes, 2, kind=ik)
+         own = rocks%index_of(cell)
+         do k = 1, 3
+            site = cell_nodes(k, cell)
+            if (rock(site) == 0) rock(site) = own
+            do while (rock(site) /= own)
+               if (next(site) == 0) then
+                  n = n + 1
+                  if (n > size(next)) then
+                     next = [next, spread(0_ik, 1, n)]
+                     rock = [rock, spread(0_ik, 1, n)]
+                  end if
+                  next(site) = n
+                  rock(n) = own
+                  samples%node = [samples%node, cell_nodes(k, cell)]
+               end if
+               site = next(site)
+            end do
+            samples%site(k, cell) = site
+         end do
+      end do
+   end subroutine find_sites
+
+   !> Elements around every site, and across every edge: the elements that share its middle
+   !! node.
+   pure subroutine find_neighbours(n_nodes, cell_nodes, rocks, samples)
+      integer(ik), intent(in) :: n_nodes
+      integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
+      type(rocks_t), intent(in) :: rocks
       type(samples_t), intent(inout) :: samples
       integer(ik), allocatable :: filled(:), first_cell(:), first_edge(:)
-      integer(ik) :: cell, k, middle, n_cells, vertex
+      integer(ik) :: cell, k, middle, n_cells, n_sites, site
 
       n_cells = size(cell_nodes, 2)
+      n_sites = size(samples%node)
       allocate (samples%cells(3*n_cells))
-      allocate (samples%neighbours(3, n_cells), samples%first(n_vertices + 1), source=0_ik)
+      allocate (samples%neighbours(3, n_cells), samples%first(n_sites + 1), source=0_ik)
       do cell = 1, n_cells
          do k = 1, 3
-            vertex = cell_nodes(k, cell)
-            samples%first(vertex + 1) = samples%first(vertex + 1) + 1
+            site = samples%site(k, cell)
+            samples%first(site + 1) = samples%first(site + 1) + 1
          end do
       end do
       samples%first(1) = 1
-      do vertex = 1, n_vertices
-         samples%first(vertex + 1) = samples%first(vertex + 1) + samples%first(vertex)
+      do site = 1, n_sites
+         samples%first(site + 1) = samples%first(site + 1) + samples%first(site)
       end do
       allocate (filled, source=samples%first)
       allocate (first_cell(n_nodes), first_edge(n_nodes), source=0_ik)
       do cell = 1, n_cells
          do k = 1, 3
-            vertex = cell_nodes(k, cell)
-            samples%cells(filled(vertex)) = cell
-            filled(vertex) = filled(vertex) + 1
+            site = samples%site(k, cell)
+            samples%cells(filled(site)) = cell
+            filled(site) = filled(site) + 1
             middle = cell_nodes(3 + k, cell)
             if (first_cell(middle) == 0) then
                first_cell(middle) = cell
                first_edge(middle) = k
-            else
+            else if (rocks%index_of(first_cell(middle)) == rocks%index_of(cell)) then
                samples%neighbours(k, cell) = first_cell(middle)
                samples%neighbours(first_edge(middle), first_cell(middle)) = cell
             end if
@@ -101,15 +147,15 @@ contains
       end do
    end subroutine find_neighbours
 
-   !> The elements around a node, with their neighbours where these are too few.
-   pure function patch_of_vertex(samples, vertex) result(patch)
+   !> The elements around a site, with their neighbours where these are too few.
+   pure function patch_of_site(samples, site) result(patch)
       type(samples_t), intent(in) :: samples
-      integer(ik), intent(in) :: vertex
+      integer(ik), intent(in) :: site
       integer(ik), allocatable :: patch(:)
       integer(ik), allocatable :: longer(:)
       integer(ik) :: i, k, next
 
-      patch = samples%cells(samples%first(vertex):samples%first(vertex + 1) - 1)
+      patch = samples%cells(samples%first(site):samples%first(site + 1) - 1)
       do while (size(patch) < min(smallest_patch, size(samples%area)))
          longer = patch
          do i = 1, size(patch)
@@ -123,7 +169,7 @@ contains
          if (size(longer) == size(patch)) exit
          call move_alloc(longer, patch)
       end do
-   end function patch_of_vertex
+   end function patch_of_site
 
    !> The terms of a quadratic.
    pure function quadratic_terms(xy) result(term)

@@ -2,18 +2,19 @@
 !!
 !! Superconvergent patch recovery (Zienkiewicz and Zhu 1992): around every corner node a full
 !! quadratic is fitted to stresses in the elements of its patch. Patches are made of elements that
-!! share nodes, so they never reach across a fracture. Around a free tip the singular part, which no
-!! polynomial can follow, is fitted first and kept apart (Rodenas and others 2008): the polynomials
-!! hold what remains.
+!! share nodes, so they never reach across a fracture, and are of one rock. Around a free tip the
+!! singular part, which no polynomial can follow, is fitted first and kept apart (Rodenas and others
+!! 2008): the polynomials hold what remains.
 !!
 !! Area averaging (Zienkiewicz and Zhu 1987), for comparison, takes the mean stress of the elements
 !! around a node, weighted with their areas, instead of the fit.
 module fine_recovery
    use base_kinds, only: ik, rk
    use algebra_lapack, only: dpotrf, dpotrs
+   use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_vertex, quadratic_terms, &
+   use fine_patches, only: fit_quadratic, n_samples, n_terms, patch_of_site, quadratic_terms, &
                            samples_t, take_samples
    use fine_tip_field, only: singular_stress, tip_field_t
    implicit none(type, external)
@@ -26,10 +27,11 @@ module fine_recovery
    type :: recovery_t
       type(tip_field_t), allocatable :: tips(:)  !< (n_tips)
       integer(ik), allocatable :: tip_of_cell(:)  !< (n_cells) whose field is apart, else 0
-      integer(ik), allocatable :: tip_of_vertex(:)  !< (n_vertices) whose field the fit leaves out
-      real(rk), allocatable :: same_side(:, :)  !< (2, n_vertices) a point on its side [m]
-      real(rk), allocatable :: coefficients(:, :, :)  !< (n_terms, xx yy xy, n_vertices) fits [Pa]
-      real(rk), allocatable :: scale(:)  !< (n_vertices) their unit of length [m]
+      integer(ik), allocatable :: site(:, :)  !< (3, n_cells) whose fits hold at its corners
+      integer(ik), allocatable :: tip_of_site(:)  !< (sites) whose field the fit leaves out
+      real(rk), allocatable :: same_side(:, :)  !< (2, sites) a point on its side [m]
+      real(rk), allocatable :: coefficients(:, :, :)  !< (n_terms, xx yy xy, sites) fits [Pa]
+      real(rk), allocatable :: scale(:)  !< (sites) their unit of length [m]
    end type recovery_t
 
 contains
@@ -42,25 +44,25 @@ contains
       type(samples_t) :: samples
       integer(ik), allocatable :: patch(:)
       real(rk), allocatable :: xy(:, :), values(:, :)
-      integer(ik) :: i, k, vertex
+      integer(ik) :: i, k, site
 
       call take_samples(model, displacement, samples)
       call find_tips(model, samples, recovery)
-      do vertex = 1, model%mesh%n_vertices
-         patch = patch_of_vertex(samples, vertex)
+      do site = 1, size(samples%node, kind=ik)
+         patch = patch_of_site(samples, site)
          if (allocated(xy)) deallocate (xy, values)
          allocate (xy(2, n_samples*size(patch)), values(3, n_samples*size(patch)))
-         recovery%scale(vertex) = sqrt(sum(samples%area(patch)))
+         recovery%scale(site) = sqrt(sum(samples%area(patch)))
          do i = 1, size(patch)
             do k = 1, n_samples
                associate (at => n_samples*(i - 1) + k)
-                  xy(:, at) = (samples%xy(:, k, patch(i)) - model%mesh%xy(:, vertex)) &
-                              /recovery%scale(vertex)
-                  values(:, at) = smooth_part(samples, recovery, vertex, k, patch(i))
+                  xy(:, at) = (samples%xy(:, k, patch(i)) - model%mesh%xy(:, samples%node(site))) &
+                              /recovery%scale(site)
+                  values(:, at) = smooth_part(samples, recovery, site, k, patch(i))
                end associate
             end do
          end do
-         call fit_quadratic(xy, values, recovery%coefficients(:, :, vertex))
+         call fit_quadratic(xy, values, recovery%coefficients(:, :, site))
       end do
    end subroutine recover_by_patches
 
@@ -71,19 +73,19 @@ contains
       type(recovery_t), intent(out) :: recovery
       type(samples_t) :: samples
       real(rk) :: area
-      integer(ik) :: i, k, vertex
+      integer(ik) :: i, k, site
 
       call take_samples(model, displacement, samples)
       call find_tips(model, samples, recovery)
       recovery%scale = 1.0_rk
-      do vertex = 1, model%mesh%n_vertices
-         associate (mean => recovery%coefficients(1, :, vertex), &
-                    cells => samples%cells(samples%first(vertex):samples%first(vertex + 1) - 1))
+      do site = 1, size(samples%node, kind=ik)
+         associate (mean => recovery%coefficients(1, :, site), &
+                    cells => samples%cells(samples%first(site):samples%first(site + 1) - 1))
             area = sum(samples%area(cells))
             do i = 1, size(cells)
                do k = 1, n_samples
                   mean = mean + samples%area(cells(i))/(n_samples*area) &
-                         *smooth_part(samples, recovery, vertex, k, cells(i))
+                         *smooth_part(samples, recovery, site, k, cells(i))
                end do
             end do
          end associate
@@ -109,9 +111,9 @@ contains
          do k = 1, 3
             next = mod(k, 3) + 1
             middle = 0.5_rk*(corner(:, k) + corner(:, next))
-            stress = stress + l(k)*(2.0_rk*l(k) - 1.0_rk)*value_at(nodes(k), corner(:, k)) &
-                     + 2.0_rk*l(k)*l(next)*(value_at(nodes(k), middle) &
-                                            + value_at(nodes(next), middle))
+            stress = stress + l(k)*(2.0_rk*l(k) - 1.0_rk)*value_at(k, corner(:, k)) &
+                     + 2.0_rk*l(k)*l(next)*(value_at(k, middle) &
+                                            + value_at(next, middle))
          end do
          if (recovery%tip_of_cell(cell) > 0) then
             here = matmul(corner, l)
@@ -122,17 +124,20 @@ contains
 
    contains
 
-      !> A vertex' fit at a point: with the singular field of its tip, unless the element adds that.
-      pure function value_at(vertex, xy) result(value)
-         integer(ik), intent(in) :: vertex
+      !> The fit of a corner at a point: with the singular field of its tip, unless the element adds
+      !! that.
+      pure function value_at(corner_number, xy) result(value)
+         integer(ik), intent(in) :: corner_number
          real(rk), intent(in) :: xy(2)  !< [m]
          real(rk) :: value(3)
+         integer(ik) :: site
 
-         value = matmul(quadratic_terms((xy - fine%xy(:, vertex))/recovery%scale(vertex)), &
-                        recovery%coefficients(:, :, vertex))
-         if (recovery%tip_of_vertex(vertex) > 0 .and. recovery%tip_of_cell(cell) == 0) then
-            value = value + singular_stress(recovery%tips(recovery%tip_of_vertex(vertex)), xy, &
-                                            recovery%same_side(:, vertex))
+         site = recovery%site(corner_number, cell)
+         value = matmul(quadratic_terms((xy - corner(:, corner_number))/recovery%scale(site)), &
+                        recovery%coefficients(:, :, site))
+         if (recovery%tip_of_site(site) > 0 .and. recovery%tip_of_cell(cell) == 0) then
+            value = value + singular_stress(recovery%tips(recovery%tip_of_site(site)), xy, &
+                                            recovery%same_side(:, site))
          end if
       end function value_at
 
@@ -140,59 +145,60 @@ contains
 
    !> A sample without the singular field that the vertex' fit leaves out. Around the tip itself
    !! every element lies on one side.
-   pure function smooth_part(samples, recovery, vertex, k, cell) result(stress)
+   pure function smooth_part(samples, recovery, site, k, cell) result(stress)
       type(samples_t), intent(in) :: samples
       type(recovery_t), intent(in) :: recovery
-      integer(ik), intent(in) :: vertex, k, cell
+      integer(ik), intent(in) :: site, k, cell
       real(rk) :: stress(3)
 
       stress = samples%stress(:, k, cell)
-      associate (tip => recovery%tip_of_vertex(vertex))
+      associate (tip => recovery%tip_of_site(site))
          if (tip == 0) return
          if (recovery%tip_of_cell(cell) == tip) then
             stress = stress - singular_stress(recovery%tips(tip), samples%xy(:, k, cell), &
                                               samples%centre(:, cell))
          else
             stress = stress - singular_stress(recovery%tips(tip), samples%xy(:, k, cell), &
-                                              recovery%same_side(:, vertex))
+                                              recovery%same_side(:, site))
          end if
       end associate
    end function smooth_part
 
-   !> The tips, and where their fields are kept apart: at the vertices of the elements around a tip,
+   !> The tips, and where their fields are kept apart: at the sites of the elements around a tip,
    !! and in these elements.
    subroutine find_tips(model, samples, recovery)
       type(fine_model_t), intent(in) :: model
       type(samples_t), intent(in) :: samples
       type(recovery_t), intent(inout) :: recovery
       integer(ik), allocatable :: n_same_side(:)
-      integer(ik) :: cell, i, k, tip, vertex
+      integer(ik) :: cell, i, k, tip, site
 
       associate (fine => model%mesh, fracture => model%mesh%fracture)
-         allocate (recovery%tips(fracture%n_tips), recovery%scale(fine%n_vertices))
-         allocate (recovery%coefficients(n_terms, 3, fine%n_vertices), source=0.0_rk)
-         allocate (recovery%same_side(2, fine%n_vertices), source=0.0_rk)
-         allocate (recovery%tip_of_cell(fine%n_cells), recovery%tip_of_vertex(fine%n_vertices), &
+         allocate (recovery%tips(fracture%n_tips), recovery%scale(size(samples%node)))
+         allocate (recovery%coefficients(n_terms, 3, size(samples%node)), source=0.0_rk)
+         allocate (recovery%same_side(2, size(samples%node)), source=0.0_rk)
+         allocate (recovery%tip_of_cell(fine%n_cells), recovery%tip_of_site(size(samples%node)), &
                    source=0_ik)
-         allocate (n_same_side(fine%n_vertices), source=0_ik)
+         recovery%site = samples%site
+         allocate (n_same_side(size(samples%node)), source=0_ik)
          do tip = 1, fracture%n_tips
             do i = samples%first(fracture%tip_node(tip)), &
                samples%first(fracture%tip_node(tip) + 1) - 1
                cell = samples%cells(i)
                recovery%tip_of_cell(cell) = tip
                do k = 1, 3
-                  vertex = fine%cell_nodes(k, cell)
-                  recovery%tip_of_vertex(vertex) = tip
-                  n_same_side(vertex) = n_same_side(vertex) + 1
-                  recovery%same_side(:, vertex) = recovery%same_side(:, vertex) &
-                                                  + samples%centre(:, cell)
+                  site = samples%site(k, cell)
+                  recovery%tip_of_site(site) = tip
+                  n_same_side(site) = n_same_side(site) + 1
+                  recovery%same_side(:, site) = recovery%same_side(:, site) &
+                                                + samples%centre(:, cell)
                end do
             end do
             call fit_tip(model, samples, tip, recovery%tips(tip))
          end do
-         do vertex = 1, fine%n_vertices
-            if (n_same_side(vertex) == 0) cycle
-            recovery%same_side(:, vertex) = recovery%same_side(:, vertex)/n_same_side(vertex)
+         do site = 1, size(samples%node, kind=ik)
+            if (n_same_side(site) == 0) cycle
+            recovery%same_side(:, site) = recovery%same_side(:, site)/n_same_side(site)
          end do
       end associate
    end subroutine find_tips
@@ -206,14 +212,16 @@ contains
       type(tip_field_t), intent(out) :: field
       integer(ik), parameter :: n_unknowns = 5
       real(rk) :: normal(n_unknowns, n_unknowns), right(n_unknowns, 1), columns(3, n_unknowns)
+      type(elasticity_t) :: rock
       real(rk) :: weight, unit
       integer(ik) :: cell, i, info, k, mode, node
 
       node = model%mesh%fracture%tip_node(tip)
       field%origin = model%mesh%xy(:, node)
       field%ahead = model%mesh%fracture%tip_direction(:, tip)
-      field%kolosov = model%elasticity%kolosov()
-      field%shear_modulus = model%elasticity%shear_modulus()
+      rock = model%rocks%in_cell(samples%cells(samples%first(node)))
+      field%kolosov = rock%kolosov()
+      field%shear_modulus = rock%shear_modulus()
       ! The unit of the intensities that makes all columns of one size.
       associate (around => samples%cells(samples%first(node):samples%first(node + 1) - 1))
          unit = sum(samples%area(around))**0.25_rk

@@ -14,6 +14,10 @@ module growth_law
       real(rk) :: angle = 0.0_rk  !< of the kink, anticlockwise positive [rad]
       real(rk) :: intensity = 0.0_rk  !< K_eq at that angle [Pa m^1/2]
       real(rk) :: energy = 0.0_rk  !< G at that angle [J/m2]
+      !> K_IC of the rock that the tip grows in over that of the scene's rock, by which all tips are
+      !! judged: the intensity is over this [-]
+      real(rk) :: resistance = 1.0_rk
+      real(rk) :: crack_modulus = 0.0_rk  !< E' of the rock around the tip [Pa]
    end type growth_drive_t
 
 contains
@@ -69,6 +73,7 @@ contains
       real(rk) :: opening
 
       opening = max(k1, 0.0_rk)
+      drive%crack_modulus = crack_modulus
       drive%angle = kink_angle(opening, k2)
       drive%intensity = equivalent_intensity(opening, k2, drive%angle)
       drive%energy = energy_release_rate(opening, k2, drive%angle, crack_modulus)

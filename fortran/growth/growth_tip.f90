@@ -28,6 +28,7 @@ module growth_tip
       type(growth_drive_t) :: drive_before
    contains
       procedure :: begin_increment
+      procedure :: resist
       procedure :: cease
       procedure :: has_just_stopped
       procedure :: has_state
@@ -45,6 +46,15 @@ contains
       self%was_arrested = self%arrested
       self%was_free = self%is_free
    end subroutine begin_increment
+
+   !> The rock has its own toughness: what drives the tip counts in terms of it.
+   elemental subroutine resist(self, resistance)
+      class(tip_t), intent(inout) :: self
+      real(rk), intent(in) :: resistance  !< K_IC here over that of the scene's rock [-]
+
+      self%drive%resistance = resistance
+      self%drive%intensity = self%drive%intensity/resistance
+   end subroutine resist
 
    !> There is no tip any more, and no intensities are.
    elemental subroutine cease(self)

@@ -19,7 +19,9 @@ module mechanics_body
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
-   use scene_types, only: scene_t
+   use scene_types, only: material_t, scene_t
+   use simulation_rocks, only: follow_outlines, interface_distance, keep_off, place_rocks, &
+                               regions_of_other_rock
    use tips_dual, only: correct_intensity, has_dual
    use tips_intensity, only: tip_intensity
    use tips_types, only: intensity_t
@@ -182,17 +184,22 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(fine_mesh_t), intent(in), optional :: fine_before
       type(contact_t), intent(in), optional :: contact_before
-      type(elasticity_t) :: elasticity
       integer(ik) :: worst
 
       call mesh_quality(self%mesher, self%smallest_angle, worst, error)
       if (allocated(error)) return
       if (allocated(self%displacement)) deallocate (self%displacement)
-      elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-                                plane_stress=scene%material%plane_stress)
       call timers%start(phase_assemble)
-      call self%model%set_mesh(self%mesh, elasticity, error, &
-                               tip_element(scene%discretization%element))
+      if (allocated(scene%regions)) then
+         associate (all => [elasticity(scene%material), elasticity(scene%regions%material)])
+            call self%model%set_mesh(self%mesh, all(1), error, &
+                                     tip_element(scene%discretization%element), &
+                                     place_rocks(scene, self%mesh, all))
+         end associate
+      else
+         call self%model%set_mesh(self%mesh, elasticity(scene%material), error, &
+                                  tip_element(scene%discretization%element))
+      end if
       call timers%stop(phase_assemble)
       if (allocated(error)) return
       associate (fine => self%model%mesh)
@@ -210,6 +217,15 @@ contains
          call timers%stop(phase_factorize)
       end associate
    end subroutine set_up
+
+   !> Elastic constants of a rock.
+   elemental function elasticity(material) result(constants)
+      type(material_t), intent(in) :: material
+      type(elasticity_t) :: constants
+
+      constants = elasticity_t(young=material%young, poisson=material%poisson, &
+                               plane_stress=material%plane_stress)
+   end function elasticity
 
    !> The element around the tips by its name.
    pure integer(ik) function tip_element(name)
@@ -278,6 +294,9 @@ contains
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       spec%end_radius = end_radii(scene, network)
+      if (any(regions_of_other_rock(scene))) then
+         call follow_outlines(scene%regions, scene%domain, spec)
+      end if
    end function body_spec
 
    !> Radii of the rosettes at the starts and ends of the fractures, unless something is near [m].
@@ -287,9 +306,32 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       real(rk) :: radii(2, size(network%first) - 1)
+      integer :: fracture
 
       radii = min(scene%discretization%rosette_radius, 0.5_rk*end_pieces(network))
+      if (.not. any(regions_of_other_rock(scene))) return
+      do fracture = 1, size(radii, 2)
+         associate (first => network%first)
+            radii(1, fracture) = min(radii(1, fracture), 0.5_rk*interface_distance(scene, &
+                                                                    network%xy(:, first(fracture))))
+            radii(2, fracture) = min(radii(2, fracture), 0.5_rk*interface_distance(scene, &
+                                                            network%xy(:, first(fracture + 1) - 1)))
+         end associate
+      end do
    end function end_radii
+
+   !> A tip on or next to an interface has no intensities.
+   subroutine refuse_interface(self, scene, tip, error)
+      type(body_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      integer(ik), intent(in) :: tip  !< of the mesh
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: radius
+
+      if (.not. allocated(scene%regions)) return
+      radius = scene%discretization%rosette_radius
+      call keep_off(self%mesh%xy(:, self%mesh%fracture%tip_node(tip)), scene, radius, error)
+   end subroutine refuse_interface
 
    !> Displacements, and stress intensity factors where the scene wants them, at a load factor.
    subroutine respond(self, scene, factor, timers, error)
@@ -310,6 +352,8 @@ contains
       if (allocated(self%intensity)) deallocate (self%intensity)
       allocate (self%intensity(self%mesh%fracture%n_tips))
       do tip = 1, self%mesh%fracture%n_tips
+         call refuse_interface(self, scene, tip, error)
+         if (allocated(error)) exit
          call tip_intensity(self%model, self%loads, self%displacement, tip, self%intensity(tip), &
                             error)
          if (allocated(error)) exit

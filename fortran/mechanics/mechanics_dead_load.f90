@@ -89,9 +89,11 @@ contains
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
       real(rk), intent(in) :: share  !< [-]
-      real(rk) :: needed, surplus(size(body%tip))
+      real(rk) :: needed(size(body%tip)), surplus(size(body%tip))
 
-      needed = body%rules%toughness**2/body%body%model%elasticity%crack_modulus()
+      needed = (body%rules%toughness*body%tip%drive%resistance)**2 &
+               /merge(body%tip%drive%crack_modulus, body%body%model%elasticity%crack_modulus(), &
+                      body%tip%drive%crack_modulus > 0.0_rk)
       surplus = self%energy - needed
       if (share < 1.0_rk) then
          surplus = 0.5_rk*surplus

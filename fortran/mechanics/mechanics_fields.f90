@@ -2,6 +2,7 @@
 module mechanics_fields
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, turned_left
+   use fine_elasticity, only: elasticity_t
    use fine_element, only: shape_values
    use fine_faces, only: face_contact
    use fine_line, only: line_parameter, line_shapes
@@ -122,9 +123,11 @@ contains
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: lambda(3), area_coordinates(3)  !< [-]
       real(rk) :: stress(3)
+      type(elasticity_t) :: rock
       real(rk) :: tensor(2, 2)
 
-      tensor = body%model%elasticity%total_stress( &
+      rock = body%model%rocks%in_cell(cell)
+      tensor = rock%total_stress( &
                body%model%displacement_gradient(body%displacement, cell, lambda), 0.0_rk)
       stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)] &
                + matmul(body%loads%initial_stress(:, body%mesh%cell_nodes(:, cell)), &

@@ -70,6 +70,9 @@ contains
          matrix%cell_nodes = body%model%mesh%cell_nodes
          matrix%node_displacement = body%displacement
          matrix%stress = cell_stress(body)
+         associate (rocks => body%model%rocks)
+            if (size(rocks%of_cell) > 1) matrix%poisson = rocks%elasticity(rocks%of_cell)%poisson
+         end associate
          pairs = fracture_jump(body)
          fracture%jump_n = pairs(1, :)
          fracture%jump_t = pairs(2, :)

@@ -3,6 +3,7 @@ module mechanics_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use fine_elasticity, only: elasticity_t
    use growth_front, only: growth_rules_t
    use growth_law, only: growth_drive
    use growth_network, only: network_of_scene
@@ -11,7 +12,9 @@ module mechanics_state
    use mechanics_outline, only: outline_of_scene, outline_t
    use mechanics_pieces, only: cuts_through
    use scene_types, only: scene_t
+   use simulation_rocks, only: relative_toughness
    use simulation_types, only: simulation_t
+   use tips_types, only: frame_of_tip, tip_frame_t
    implicit none(type, external)
    private
 
@@ -90,6 +93,7 @@ contains
    !> The tips learn what the body's mesh has at theirs.
    subroutine take_intensities(self)
       class(loaded_body_t), intent(inout) :: self
+      type(tip_frame_t) :: frame
       integer(ik) :: i, k
 
       associate (fracture => self%body%mesh%fracture)
@@ -104,8 +108,10 @@ contains
                end if
                tip%intensity = self%body%intensity(k)
                tip%rosette_radius = fracture%tip_radius(k)
+               frame = frame_of_tip(self%body%model, k)
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
-                                        self%body%model%elasticity%crack_modulus())
+                                        frame%rock%crack_modulus())
+               call tip%resist(relative_toughness(self%scene, self%network, tip%fracture, tip%end))
             end associate
          end do
       end associate
@@ -190,12 +196,14 @@ contains
    pure real(rk) function seismic_moment(self) result(moment)
       class(loaded_body_t), intent(in) :: self
       real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! start, end, mid
+      type(elasticity_t) :: rock
       integer(ik) :: cell
 
       moment = self%accepted_moment
       associate (body => self%body)
          do cell = 1, body%mesh%fracture%n_cells
-            moment = moment + body%model%elasticity%shear_modulus() &
+            rock = body%model%rocks%in_cell(body%model%mesh%face_cells(1, cell))
+            moment = moment + rock%shear_modulus() &
                      *body%model%mesh%face_length(cell) &
                      *dot_product(share, abs(body%contact%jump(1, :, cell) &
                                              - body%contact%slip_before(:, cell)))

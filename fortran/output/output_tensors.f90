@@ -36,14 +36,30 @@ contains
       stress(1:2, :) = fields%stress(1:2, :)
       stress(3, :) = 0.0_rk
       if (.not. material%plane_stress) then
-         stress(3, :) = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
-         if (allocated(fields%pressure)) then
-            stress(3, :) = stress(3, :) &
-                           - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
+         if (allocated(fields%poisson)) then
+            stress(3, :) = fields%poisson*(fields%stress(1, :) + fields%stress(2, :))
+            if (allocated(fields%pressure)) then
+               stress(3, :) = stress(3, :) &
+                              - (1.0_rk - 2.0_rk*fields%poisson)*fields%biot*fields%pressure
+            end if
+         else
+            stress(3, :) = of_one_rock()
          end if
       end if
       stress(4, :) = fields%stress(3, :)
       stress(5:6, :) = 0.0_rk
+
+   contains
+
+      pure function of_one_rock() result(zz)
+         real(rk) :: zz(size(fields%stress, 2))
+
+         zz = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
+         if (allocated(fields%pressure)) then
+            zz = zz - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
+         end if
+      end function of_one_rock
+
    end function stress_tensor
 
    !> Permeability as a symmetric tensor; out of the plane nothing flows and zz is 0.

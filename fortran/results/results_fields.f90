@@ -14,6 +14,8 @@ module results_fields
       real(rk), allocatable :: stress(:, :)  !< (3, n_cells) total: xx, yy, xy [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: permeability(:, :)  !< (3, n_cells) xx, yy, xy [m2]; or the scene's
+      !> (n_cells) Poisson's ratio and Biot's coefficient, or those of the scene [-]
+      real(rk), allocatable :: poisson(:), biot(:)
       real(rk), allocatable :: node_displacement(:, :)  !< (2, n_nodes) [m]
       ! Of finite elements: their own nodes.
       real(rk), allocatable :: node_xy(:, :)  !< (2, n_nodes) [m]

@@ -21,6 +21,8 @@ contains
 
       associate (density => scene%fluid%density, rock => scene%material, gravity => scene%gravity)
          if (.not. density > 0.0_rk) return
+         call check_regions(sheet, scene, error)
+         if (allocated(error)) return
          least = rock%porosity*density
          if (.not. any(abs(gravity) > 0.0_rk)) then
             call refuse(error, sheet, sheet%find("fluid"), "density", "is "//real_text(density)// &
@@ -37,5 +39,25 @@ contains
          end if
       end associate
    end subroutine check_column
+
+   !> Without a stress in situ the fluid at rest presses on rock of one Biot coefficient.
+   pure subroutine check_regions(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (.not. allocated(scene%regions)) return
+      if (any(abs(scene%in_situ%stress) > 0.0_rk) .or. &
+          any(abs(scene%in_situ%per_y) > 0.0_rk)) return
+      do i = 1, size(scene%regions)
+         if (.not. abs(scene%regions(i)%material%biot - scene%material%biot) > 0.0_rk) cycle
+         call refuse(error, sheet, sheet%find("region", i), "biot", "is "// &
+                     real_text(scene%regions(i)%material%biot)//" but must be that of "// &
+                     "&material, "//real_text(scene%material%biot)//", where a fluid with a "// &
+                     "density has no stress in situ beside it; give &in_situ")
+         return
+      end do
+   end subroutine check_regions
 
 end module scene_check_column

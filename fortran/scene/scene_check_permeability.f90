@@ -31,7 +31,7 @@ contains
          case ("material")
             call check_record(sheet, i, sheet%has("fluid"), "a scene with &fluid", error)
          case ("region")
-            call check_record(sheet, i, .true., "a region", error)
+            call check_record(sheet, i, .false., "a region", error)
          case default
             cycle
          end select

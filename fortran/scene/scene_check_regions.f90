@@ -9,13 +9,21 @@ module scene_check_regions
    use scene_parameters, only: groups
    use scene_region_outline, only: body_part, region_outline
    use scene_sheet, only: refuse, sheet_t
+   use scene_storage, only: least_compressibility, skempton, storage
    use scene_types, only: material_t, region_t, scene_t
    use scene_values, only: value_t
-   use scene_words, only: rounded_text
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
    public :: check_given_regions, check_regions
+
+   !> What makes the rock of a region another one than that of the scene.
+   character(len=15), parameter :: of_rock(7) = [character(len=15) :: "young", "poisson", "biot", &
+                                                    "porosity", "permeability", "permeability_xx", &
+                                                                                        "toughness"]
+   !> Young's moduli of two rocks beside each other: beyond that rounding would decide [-].
+   real(rk), parameter :: stiffest = 1.0e9_rk
 
    integer, parameter :: most_points = 1000  !< of a curve: every pair of edges is compared
 
@@ -27,11 +35,17 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=1), parameter :: names(2) = ["x", "y"]
       type(value_t) :: shape
-      integer :: axis, i
+      integer :: axis, i, k
 
       do i = 1, sheet%length
          if (groups(sheet%records(i)%group)%name /= "region") cycle
          shape = sheet%records(i)%value("shape")
+         if (.not. any([(sheet%records(i)%is_given(trim(of_rock(k))), k=1, size(of_rock))])) then
+            call refuse(error, sheet, i, "name", "is given, but the region has no rock of its "// &
+                        "own: it must give at least one of young, poisson, biot, porosity, "// &
+                        "permeability, toughness")
+            return
+         end if
          do axis = 1, 2
             associate (is_given => sheet%records(i)%is_given(names(axis)))
                if (is_given .and. shape%text == "parabola") then
@@ -58,12 +72,93 @@ contains
          record = sheet%find("region", i)
          call check_points(sheet, record, scene%regions(i), error)
          if (.not. allocated(error)) call check_outline(sheet, record, scene, i, error)
-         if (.not. allocated(error)) call check_tensor(sheet, record, scene%regions(i)%material, &
-                                                       error)
-         if (.not. allocated(error)) call check_contrast(sheet, scene, i, error)
+         if (.not. allocated(error)) call check_rock(sheet, record, scene, scene%regions(i), error)
+         if (scene%has_fluid()) then
+            if (.not. allocated(error)) call check_tensor(sheet, record, &
+                                                          scene%regions(i)%material, error)
+         end if
+         if (.not. allocated(error)) call check_stiffness(sheet, scene, i, error)
+         if (.not. allocated(error) .and. scene%has_fluid()) then
+            call check_contrast(sheet, scene, i, error)
+         end if
          if (allocated(error)) return
       end do
    end subroutine check_regions
+
+   !> Storage is positive, and what a load makes in pressure at once no larger than the load, in
+   !! the rock of the region; it cannot bear growth alone.
+   pure subroutine check_rock(sheet, record, scene, region, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      type(region_t), intent(in) :: region
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: whose
+
+      whose = "of region '"//trim(region%name)//"' "
+      associate (m => region%material, fluid => scene%fluid, given => sheet%records(record))
+         if (m%toughness < huge(1.0_rk) .and. &
+             .not. scene%material%toughness < huge(1.0_rk)) then
+            call refuse(error, sheet, record, "toughness", whose//"is given, but that of "// &
+                        "&material, which the rest of the body has, is missing")
+            return
+         end if
+         if (.not. scene%has_fluid()) return
+         if (m%biot < m%porosity) then
+            call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
+                                                     "porosity"), whose// &
+                        "makes its Biot coefficient "//real_text(m%biot)// &
+                        " smaller than its porosity, "//real_text(m%porosity)// &
+                        ", but it must be at least that")
+         else if (.not. storage(m, fluid) > 0.0_rk) then
+            call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
+                                                     "porosity"), whose// &
+                        "gives no storage: phi c_p and the part of the solid are both zero, "// &
+                        "but their sum must be positive")
+         else if (.not. fluid%compressibility > 0.0_rk .and. &
+                  skempton(m, fluid) > 1.0_rk + round_off) then
+            call refuse(error, sheet, record, "name", "'"//trim(region%name)//"' stands for a "// &
+                        "rock whose Skempton coefficient B = alpha/(K S + alpha^2) is "// &
+                        rounded_text(skempton(m, fluid))//" with a fluid of no "// &
+                        "compressibility, but that must be at most 1; "// &
+                        rounded_text(least_compressibility(m))//" 1/Pa would make it 1")
+         end if
+      end associate
+   end subroutine check_rock
+
+   pure function either(is_first, first, second) result(name)
+      logical, intent(in) :: is_first
+      character(len=*), intent(in) :: first, second
+      character(len=:), allocatable :: name
+
+      name = second
+      if (is_first) name = first
+   end function either
+
+   !> No two rocks that may lie beside each other differ too much in stiffness.
+   pure subroutine check_stiffness(sheet, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< region
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: other
+      integer :: k
+
+      do k = 0, i - 1
+         if (k == 0) then
+            other = scene%material%young
+         else
+            other = scene%regions(k)%material%young
+         end if
+         associate (young => scene%regions(i)%material%young)
+            if (max(young/other, other/young) <= stiffest*(1.0_rk + round_off)) cycle
+         end associate
+         call refuse(error, sheet, sheet%find("region", i), "young", "of region '"// &
+                     trim(scene%regions(i)%name)//"' and that of the rock around it or of "// &
+                     "another region differ by more than a factor of 1e9 but must not")
+         return
+      end do
+   end subroutine check_stiffness
 
    !> The rocks of a cell that an outline cuts are mixed: beyond the limit rounding would decide.
    pure subroutine check_contrast(sheet, scene, i, error)

@@ -3,6 +3,7 @@
 module scene_defaults
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use scene_exchange_rock, only: not_given
    use scene_types, only: injection_t, material_t, region_t, scene_t
    implicit none(type, external)
    private
@@ -75,11 +76,26 @@ contains
       do i = 1, size(regions)
          own = regions(i)%material
          regions(i)%material = material
-         regions(i)%material%permeability_xx = own%permeability_xx
-         regions(i)%material%permeability_yy = own%permeability_yy
-         regions(i)%material%permeability_xy = own%permeability_xy
+         associate (all => regions(i)%material)
+            call take(own%young, all%young)
+            call take(own%poisson, all%poisson)
+            call take(own%biot, all%biot)
+            call take(own%porosity, all%porosity)
+            call take(own%toughness, all%toughness)
+            if (.not. own%permeability_xx > 0.0_rk) cycle
+            all%permeability_xx = own%permeability_xx
+            all%permeability_yy = own%permeability_yy
+            all%permeability_xy = own%permeability_xy
+         end associate
       end do
    end subroutine complete
+
+   pure subroutine take(own, value)
+      real(rk), intent(in) :: own  !< what is given, or not_given [any unit]
+      real(rk), intent(inout) :: value  !< [unit of own]
+
+      if (own < not_given) value = own
+   end subroutine take
 
    !> Steps of a given length, or such that their error is small; fields as often as they are given,
    !! or a hundred times.

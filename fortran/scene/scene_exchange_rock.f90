@@ -8,7 +8,10 @@ module scene_exchange_rock
    implicit none(type, external)
    private
 
-   public :: exchange_material, exchange_region
+   public :: exchange_material, exchange_region, not_given
+
+   !> What stands for a number of a region's rock that the region does not give: no rock has it.
+   real(rk), parameter :: not_given = huge(1.0_rk)
 
 contains
 
@@ -52,7 +55,21 @@ contains
          call exchange(record, "x_other", region%x_other, reading)
          call exchange(record, "y_other", region%y_other, reading)
       end if
-      call exchange_permeability(record, region%material, reading)
+      associate (own => region%material)
+         if (reading) then
+            own%young = not_given
+            own%poisson = not_given
+            own%biot = not_given
+            own%porosity = not_given
+            own%toughness = not_given
+         end if
+         call exchange(record, "young", own%young, reading)
+         call exchange(record, "poisson", own%poisson, reading)
+         call exchange(record, "biot", own%biot, reading)
+         call exchange(record, "porosity", own%porosity, reading)
+         call exchange_permeability(record, own, reading)
+         call exchange(record, "toughness", own%toughness, reading, nothing=huge(1.0_rk))
+      end associate
    end subroutine exchange_region
 
    !> Isotropic, or the components of a tensor.

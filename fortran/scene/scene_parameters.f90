@@ -91,12 +91,12 @@ module scene_parameters
               meaning="The fluid in pores and fractures. A scene without this group is "// &
               "mechanics only, and can have neither injections nor pressures: finite elements "// &
               "on the whole body under a load that rises or falls."), &
-      group_t("region", repeated=.true., scenes=in_fluid, &
-              meaning="A part of the body with a permeability of its own; it may reach beyond "// &
-              "the body, and fractures may cross it. Regions count in the order of the file: "// &
-            "where two overlap, the later one. The coarse cells follow its outline where there "// &
-              "is room; one that the outline cuts, near fractures and where these have grown, "// &
-              "takes the mean of layers, so a region should be wider than a cell."), &
+      group_t("region", repeated=.true., &
+              meaning="A part of the body with rock of its own: what it does not give is that "// &
+              "of &material. It may reach beyond the body, and fractures may cross it. Where "// &
+              "two overlap, the later one in the file counts. Coarse cells follow its outline "// &
+              "where there is room; one that the outline cuts takes means of the rocks, so a "// &
+              "region should be wider than a cell."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary. With a fluid such an end is "// &
@@ -261,17 +261,28 @@ module scene_parameters
                   of="shape=parabola", meaning="y of the vertex"), &
       parameter_t("region", "curvature", kind_reals, "1/m", need_choice, absent="no parabola", &
                   of="shape=parabola", meaning="Positive: open to the right; 0: a straight line"), &
-      parameter_t("region", "permeability", unit="m2", range=positive, &
+      parameter_t("region", "young", unit="Pa", range=positive, absent="that of &material", &
+                  derived=.true., meaning="Young's modulus E (drained)"), &
+      parameter_t("region", "poisson", range=poisson_range, absent="that of &material", &
+                  derived=.true., meaning="Poisson's ratio nu (drained)"), &
+      parameter_t("region", "biot", scenes=in_fluid, range=biot_range, absent="that of &material", &
+                  derived=.true., meaning="Biot's coefficient alpha"), &
+      parameter_t("region", "porosity", scenes=in_fluid, range=porosity_range, &
+                  absent="that of &material", derived=.true., meaning="Porosity phi"), &
+      parameter_t("region", "permeability", unit="m2", scenes=in_fluid, range=positive, &
                   absent="see permeability_xx", &
-                  meaning="Isotropic permeability; either this or the tensor is required"), &
-      parameter_t("region", "permeability_xx", unit="m2", range=positive, &
-                  absent="see permeability", &
+                  meaning="Isotropic permeability"), &
+      parameter_t("region", "permeability_xx", unit="m2", scenes=in_fluid, range=positive, &
+                  absent="see permeability, or &material", &
                   meaning="Component xx of the permeability tensor"), &
-      parameter_t("region", "permeability_yy", unit="m2", range=positive, &
+      parameter_t("region", "permeability_yy", unit="m2", scenes=in_fluid, range=positive, &
                   absent="see permeability", &
                   meaning="Component yy of the permeability tensor"), &
-      parameter_t("region", "permeability_xy", unit="m2", absent="0", &
+      parameter_t("region", "permeability_xy", unit="m2", scenes=in_fluid, absent="0", &
                   meaning="Component xy of the permeability tensor"), &
+      parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
+                  absent="that of &material", derived=.true., &
+                  meaning="Fracture toughness K_IC, which counts where a tip is"), &
       parameter_t("fracture", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other fracture"), &
       parameter_t("fracture", "x", kind_reals, "m", need_always, &

@@ -212,6 +212,11 @@ contains
                                       region%material%permeability_yy))
                call add(list, largest > 1.0e-8_rk, of_region, largest, whose)
             end associate
+            if (scene%has_fluid()) then
+               call add(list, scene%fluid%compressibility > 0.0_rk .and. &
+                        skempton(region%material, scene%fluid) > 1.0_rk + round_off, &
+                        of_stiff_fluid, scene%fluid%compressibility, whose)
+            end if
             corners = body_part(region, scene%domain)
             n = size(corners, 2, kind=ik)
             width = 2.0_rk*polygon_area(corners) &

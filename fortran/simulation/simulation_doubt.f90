@@ -32,7 +32,7 @@ contains
       type(tip_t), intent(in) :: tip
 
       associate (k => tip%intensity)
-         error_of_k = max(k%k1_error, k%k2_error) - k%passing_error
+         error_of_k = (max(k%k1_error, k%k2_error) - k%passing_error)/tip%drive%resistance
       end associate
    end function error_of_k
 

@@ -249,9 +249,19 @@ contains
          row = row_of_tip(self%time(), i, self%tip(i), any_grew)
          call self%chronicle%add_tip(row)
          self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
-                                         over_toughness(self%scene, row%keq))
+                                         over_toughness(self%scene, &
+                                                      row%keq/resistance_of(self%tip(i), any_grew)))
       end do
    end subroutine note_tips
+
+   !> K_IC of the rock that a tip grows in over that of the scene's [-].
+   pure real(rk) function resistance_of(tip, is_before)
+      type(tip_t), intent(in) :: tip
+      logical, intent(in) :: is_before  !< the last increment
+
+      resistance_of = tip%drive%resistance
+      if (is_before) resistance_of = tip%drive_before%resistance
+   end function resistance_of
 
    !> A tip as a row, before the last increment or after it.
    pure function row_of_tip(time, i, tip, is_before) result(row)
@@ -277,7 +287,7 @@ contains
       row%fracture = tip%fracture
       row%xy = shown%xy
       row%advance = tip%advance
-      row%keq = shown%drive%intensity
+      row%keq = shown%drive%intensity*shown%drive%resistance
       row%g = shown%drive%energy
       associate (intensity => shown%intensity)
          row%k1 = intensity%k1

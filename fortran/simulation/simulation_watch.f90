@@ -84,7 +84,8 @@ contains
          ! Faces that do not move next to the tip give no K, but round-off by correlation.
          difference = merge(0.0_rk, hypot(k%k1 - k%k1_dc, k%k2 - k%k2_dc), &
                             tips%arrested .or. hypot(k%k1, k%k2) <= 0.0_rk)
-         errors = merge(0.0_rk, max(k%k1_error, k%k2_error), tips%arrested)
+         errors = merge(0.0_rk, max(k%k1_error, k%k2_error)/tips%drive%resistance, &
+                        tips%arrested)
          scale = maxval(hypot(k%k1, k%k2), mask=.not. tips%arrested)
       end associate
       if (may_grow) scale = max(scale, toughness)

@@ -1,9 +1,10 @@
 !> The domain of an integral about a tip. It ends before anything that the integral could not pass:
-!! a kink, another fracture, the far end of the straight piece, the outer boundary.
+!! a kink, another fracture, the far end of the straight piece, the outer boundary, other rock.
 module tips_domain
    use base_kinds, only: ik, rk
    use base_plane, only: point_distance
    use base_tolerances, only: same_direction, same_place
+   use fine_elasticity, only: is_same, rocks_t
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_quadrature, only: collapsed_rule, triangle_rule_7
@@ -68,11 +69,12 @@ contains
    end function in_situ_stress
 
    !> How far a domain may reach [m].
-   pure real(rk) function largest_radius(fine, frame)
+   pure real(rk) function largest_radius(fine, frame, rocks)
       type(fine_mesh_t), intent(in) :: fine
       type(tip_frame_t), intent(in) :: frame
+      type(rocks_t), intent(in) :: rocks
       real(rk) :: place(2, 2), straight_length
-      integer(ik) :: cell, face
+      integer(ik) :: cell, face, k
 
       largest_radius = huge(1.0_rk)
       straight_length = 0.0_rk
@@ -89,6 +91,13 @@ contains
       do face = 1, size(fine%boundary_faces, 2)
          place = in_tip_axes(fine%boundary_faces(:, face))
          largest_radius = min(largest_radius, point_distance([0.0_rk, 0.0_rk], place))
+      end do
+      do cell = 1, merge(fine%n_cells, 0_ik, size(rocks%of_cell) > 1)
+         if (is_same(rocks%in_cell(cell), frame%rock)) cycle
+         do k = 1, 3
+            place = in_tip_axes(fine%cell_nodes([k, mod(k, 3_ik) + 1_ik], cell))
+            largest_radius = min(largest_radius, point_distance([0.0_rk, 0.0_rk], place))
+         end do
       end do
 
    contains

@@ -13,7 +13,7 @@ module tips_dual
    use fine_recovery, only: recover_by_patches, recovery_t
    use tips_extraction, only: extraction_forces
    use tips_intensity, only: complete_errors, plateau
-   use tips_types, only: frame_of_tip, intensity_t
+   use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
    private
 
@@ -38,10 +38,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(recovery_t) :: dual_recovery
       real(rk), allocatable :: force(:, :, :), dual(:, :)
+      type(tip_frame_t) :: frame
       real(rk) :: missing(2)
       integer(ik) :: mode
 
-      force = extraction_forces(model, frame_of_tip(model%mesh, tip), intensity%radius, plateau)
+      frame = frame_of_tip(model, tip)
+      force = extraction_forces(model, frame, intensity%radius, plateau)
       do mode = 1, 2
          call model%influence(force(:, :, mode), dual, error)
          if (allocated(error)) return
@@ -52,7 +54,7 @@ contains
       intensity%k2_corrected = intensity%k2 + missing(2)
       intensity%k1_error = intensity%k1_error + abs(missing(1))
       intensity%k2_error = intensity%k2_error + abs(missing(2))
-      call complete_errors(model%elasticity%crack_modulus(), intensity)
+      call complete_errors(frame%rock%crack_modulus(), intensity)
    end subroutine correct_intensity
 
 end module tips_dual

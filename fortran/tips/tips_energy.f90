@@ -81,8 +81,8 @@ contains
          gradients = matmul(frame%axes, gradients)
          gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))
          q_slope = matmul(gradients, q(nodes))
-         elastic = model%elasticity%total_stress(gradient, 0.0_rk)
-         initial = initial_stress(loads, model%elasticity%biot, frame, nodes(1:3), &
+         elastic = frame%rock%total_stress(gradient, 0.0_rk)
+         initial = initial_stress(loads, frame%rock%biot, frame, nodes(1:3), &
                                   area_coordinates) - reference_stress
          density = sum((0.5_rk*elastic + initial)*gradient)
          p = matmul(elastic + initial, gradient(:, 1)) - [density, 0.0_rk]
@@ -113,7 +113,7 @@ contains
       do k = 1, 3
          unit = 0.0_rk
          unit(k) = 1.0_rk
-         slope = slope + by_corner(k)*initial_stress(loads, model%elasticity%biot, frame, corners, &
+         slope = slope + by_corner(k)*initial_stress(loads, frame%rock%biot, frame, corners, &
                                                      unit)
       end do
    end function initial_slope

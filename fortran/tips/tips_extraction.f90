@@ -35,7 +35,7 @@ contains
             call add_cell(model, frame, cell, q, force)
          end if
       end do
-      force = 0.5_rk*model%elasticity%crack_modulus()*force
+      force = 0.5_rk*frame%rock%crack_modulus()*force
    end function extraction_forces
 
    !> One element's share.
@@ -63,12 +63,12 @@ contains
          q_slope = matmul(gradients, q(nodes))
          root_z = root_of_place(place, reference)
          do mode = 1, 2
-            field = auxiliary_field(mode, root_z, model%elasticity%kolosov(), &
-                                    model%elasticity%shear_modulus())
+            field = auxiliary_field(mode, root_z, frame%rock%kolosov(), &
+                                    frame%rock%shear_modulus())
             do i = 1, 2
                outer(:, i) = field%slope*q_slope(i)
             end do
-            coefficients = model%elasticity%total_stress(outer, 0.0_rk) - q_slope(1)*field%stress
+            coefficients = frame%rock%total_stress(outer, 0.0_rk) - q_slope(1)*field%stress
             coefficients(:, 1) = coefficients(:, 1) + matmul(field%stress, q_slope)
             force(:, nodes, mode) = force(:, nodes, mode) + weights(point)*determinant &
                                     *matmul(transpose(frame%axes), &

@@ -37,10 +37,11 @@ contains
          return
       end if
       element = model%mesh%face_cells(1, cell)
-      associate (nodes => model%mesh%cell_nodes(:, element))
+      associate (nodes => model%mesh%cell_nodes(:, element), &
+                 rock => model%rocks%in_cell(element))
          k = findloc(nodes, model%mesh%face_nodes(3, 1, cell), dim=1)
          force = model%element_forces(displacement, element) &
-                 - volume_forces(model%mesh, element, model%elasticity%biot, loads)
+                 - volume_forces(model%mesh, element, rock%biot, loads)
       end associate
       share = line_resultants(model%mesh%face_tip(cell))
       traction = force(:, k)/(share(3)*model%mesh%face_length(cell))

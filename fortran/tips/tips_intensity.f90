@@ -52,12 +52,12 @@ contains
       end if
       is_complete = .true.
       if (present(quickly)) is_complete = .not. quickly
-      frame = frame_of_tip(model%mesh, tip)
-      room = largest_radius(model%mesh, frame)
+      frame = frame_of_tip(model, tip)
+      room = largest_radius(model%mesh, frame, model%rocks)
       intensity%radius = min(room, max(share_of_room*room, reach*rosette_size(model%mesh, frame)))
       intensity%radius_inner = inner_share*intensity%radius
       associate (result => intensity)
-         call displacement_correlation(model%mesh, model%elasticity, displacement, frame, &
+         call displacement_correlation(model%mesh, frame%rock, displacement, frame, &
                                        result%k1_dc, result%k2_dc)
          call interaction_integral(model, loads, displacement, frame, result%radius, plateau, &
                                    result%k1, result%k2)
@@ -66,7 +66,7 @@ contains
                                       plateau, result%k1_inner, result%k2_inner)
             result%g_domain = release_rate(model, loads, displacement, frame, result%radius, &
                                            plateau)
-            of_energy = sqrt(model%elasticity%crack_modulus()*max(result%g_domain, 0.0_rk))
+            of_energy = sqrt(frame%rock%crack_modulus()*max(result%g_domain, 0.0_rk))
             mismatch = abs(hypot(result%k1, result%k2) - of_energy)
             result%k1_error = abs(result%k1 - result%k1_inner) + mismatch
             result%k2_error = abs(result%k2 - result%k2_inner) + mismatch
@@ -77,7 +77,7 @@ contains
                                 result%k1_dc, result%k2_dc, result%g_domain]))
       end associate
       call respect_contact(model, displacement, frame, intensity)
-      call complete_errors(model%elasticity%crack_modulus(), intensity)
+      call complete_errors(frame%rock%crack_modulus(), intensity)
       if (.not. size_of_all <= huge(1.0_rk)) then
          call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if

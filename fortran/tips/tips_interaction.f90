@@ -57,8 +57,8 @@ contains
             call add_face(model, loads, displacement, frame, reference_stress, cell, q, integral)
          end if
       end do
-      k1 = 0.5_rk*model%elasticity%crack_modulus()*integral(1)
-      k2 = 0.5_rk*model%elasticity%crack_modulus()*integral(2)
+      k1 = 0.5_rk*frame%rock%crack_modulus()*integral(1)
+      k2 = 0.5_rk*frame%rock%crack_modulus()*integral(2)
    end subroutine interaction_integral
 
    !> In-situ stress less biot*p at a point of an element, in the tip's axes [Pa].
@@ -102,8 +102,8 @@ contains
       nodes = model%mesh%cell_nodes(:, cell)
       call element_rule(model%mesh, frame, cell, n_points, points, weights)
       reference = reference_angle(model%mesh, frame, cell, q)
-      kolosov = model%elasticity%kolosov()
-      shear_modulus = model%elasticity%shear_modulus()
+      kolosov = frame%rock%kolosov()
+      shear_modulus = frame%rock%shear_modulus()
       body = matmul(frame%axes, loads%body_force)
 
       do point = 1, n_points
@@ -115,9 +115,9 @@ contains
          gradients = matmul(frame%axes, gradients)
          gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))
          q_slope = matmul(gradients, q(nodes))
-         initial = initial_stress(loads, model%elasticity%biot, frame, nodes(1:3), &
+         initial = initial_stress(loads, frame%rock%biot, frame, nodes(1:3), &
                                   area_coordinates) - reference_stress
-         stress = model%elasticity%total_stress(gradient, 0.0_rk) + initial
+         stress = frame%rock%total_stress(gradient, 0.0_rk) + initial
          q_here = dot_product(values, q(nodes))
          root_z = root_of_place(place, reference)
          do mode = 1, 2
@@ -152,8 +152,8 @@ contains
       source = traction_source(model, frame, cell)
       traction = matmul(frame%axes, face_traction(model, loads, displacement, source)) &
                  - frame%upper*reference_stress(:, 2)
-      kolosov = model%elasticity%kolosov()
-      shear_modulus = model%elasticity%shear_modulus()
+      kolosov = frame%rock%kolosov()
+      shear_modulus = frame%rock%shear_modulus()
       associate (nodes => model%mesh%face_nodes(:, 1, cell), &
                  length => model%mesh%face_length(cell), tip_end => model%mesh%face_at_tip(cell))
          ends = model%mesh%xy(:, nodes(1:2))

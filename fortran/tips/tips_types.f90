@@ -1,7 +1,8 @@
 !> What a tip is to the procedures of this room, and what they find there.
 module tips_types
    use base_kinds, only: ik, rk
-   use fine_mesh, only: fine_mesh_t
+   use fine_elasticity, only: elasticity_t
+   use fine_model, only: fine_model_t
    implicit none(type, external)
    private
 
@@ -31,6 +32,8 @@ module tips_types
       real(rk) :: axes(2, 2)  !< unit vectors in rows: ahead, to its left; axes*v is v there
       real(rk) :: upper  !< +1 if side - is the upper one in these axes (end 2), else -1
       integer(ik) :: node  !< mesh node
+      integer(ik) :: cell  !< one of the elements there
+      type(elasticity_t) :: rock  !< of that: integrals must not leave it
       integer(ik) :: fracture  !< index in the network
       integer(ik) :: face  !< fracture cell that ends at the tip
    end type tip_frame_t
@@ -38,15 +41,17 @@ module tips_types
 contains
 
    !> The axes of a free tip.
-   pure function frame_of_tip(fine, tip) result(frame)
-      type(fine_mesh_t), intent(in) :: fine
+   pure function frame_of_tip(model, tip) result(frame)
+      type(fine_model_t), intent(in) :: model
       integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
       type(tip_frame_t) :: frame
 
-      associate (fracture => fine%fracture)
+      associate (fine => model%mesh, fracture => model%mesh%fracture)
          frame%node = fracture%tip_node(tip)
          frame%fracture = fracture%tip_fracture(tip)
          frame%face = fracture%point_cells%at(fracture%tip_point(tip), 1_ik)
+         frame%cell = fine%face_cells(1, frame%face)
+         frame%rock = model%rocks%in_cell(frame%cell)
          frame%origin = fine%xy(:, frame%node)
          frame%axes(1, :) = fracture%tip_direction(:, tip)
          frame%axes(2, :) = [-frame%axes(1, 2), frame%axes(1, 1)]

@@ -132,7 +132,8 @@ contains
       allocate (search%has_begun(size(self%tip)), source=.false.)
       associate (k => self%tip%intensity, toughness => self%rules%toughness)
          call self%company%find_kinds(self%tip%drive%intensity/toughness, &
-                                      max(k%k1_error, k%k2_error)/toughness, self%segment%gain, &
+                                      max(k%k1_error, k%k2_error) &
+                                      /(toughness*self%tip%drive%resistance), self%segment%gain, &
                                       self%tip%arrested, self%rules%increment, self%rivals, &
                                       search%kind)
       end associate
@@ -333,7 +334,7 @@ contains
 
       associate (k => self%tip%intensity)
          asked = self%segment%is_open .or. self%tip%drive%intensity &
-                 + max(k%k1_error, k%k2_error) > far*self%rules%toughness
+                 + max(k%k1_error, k%k2_error)/self%tip%drive%resistance > far*self%rules%toughness
       end associate
    end function are_asked
 

@@ -57,7 +57,8 @@ contains
                                                tip%fracture, tip%origin)
             else
                call approach%follow(levels%state%time, tip%drive%intensity, &
-                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]), &
+                                    norm2([tip%intensity%k1_error, tip%intensity%k2_error]) &
+                                    /tip%drive%resistance, &
                                     toughness)
             end if
          end associate
@@ -116,7 +117,8 @@ contains
       associate (tip => levels%tip, toughness => levels%rules%toughness)
          call levels%certainty%accept(dt, levels%well_pressure(), &
                                       tip%advance > 0.0_rk, tolerance + hypot( &
-                                      tip%intensity%k1_error, tip%intensity%k2_error)/toughness, &
+                                      tip%intensity%k1_error, tip%intensity%k2_error) &
+                                      /(toughness*tip%drive%resistance), &
                                       levels%segment%steep(levels%segment%slope), &
                                       tip_cell_lengths(levels), total_length(levels%network), &
                                       levels%trend%pressure_rise(), leaked)

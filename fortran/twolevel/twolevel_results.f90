@@ -183,6 +183,12 @@ contains
          matrix%stress = stresses_of(simulation)
          if (allocated(simulation%scene%regions)) then
             matrix%permeability = simulation%model%rock%permeability
+            associate (rock => simulation%model%rock)
+               if (size(rock%shear) > 1) then
+                  matrix%poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+                  matrix%biot = rock%biot
+               end if
+            end associate
          end if
          fracture%aperture = state%aperture
          fracture%jump_n = 0.5_rk*sum(state%jump(1, :, :), dim=1)

@@ -4,6 +4,8 @@ module twolevel_simulation
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
+   use coarse_rock, only: shear_of
+   use coarse_solid, only: add_moment
    use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_rows, only: history_row_t, probe_row_t, well_row_t
@@ -60,7 +62,7 @@ contains
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
-      call self%catalogue%begin(self%model%rock%shear, scene%output%out_of_plane_length, &
+      call self%catalogue%begin(shear_of(scene%material), scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump)
       call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
@@ -73,7 +75,7 @@ contains
 
       associate (scene => self%scene, summary => self%summary)
          call summary%use_feature("poroelastic rock")
-         call summary%note(allocated(scene%regions), "regions of permeability", &
+         call summary%note(allocated(scene%regions), "regions of other rock", &
                            "regions: uniform rock")
          call summary%note(self%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", &
                            "no fractures")
@@ -153,7 +155,7 @@ contains
       fracture = self%mesh%fracture
       if (fracture%n_cells == 0) return
       potency = slip_potency(self)
-      self%seismic_moment = self%seismic_moment + self%model%rock%shear*sum(potency)
+      call add_moment(self%model%rock, self%mesh, potency, self%seismic_moment)
       if (self%is_initial) return
       call end_at_tips(self, fracture)
       call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)

@@ -23,7 +23,7 @@ module twolevel_state
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_certainty, only: certainty_t
-   use twolevel_outlines, only: follow_outlines
+   use simulation_rocks, only: follow_outlines
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
    use twolevel_transfer, only: transfer_cells, transfer_state

@@ -24,9 +24,10 @@ module twolevel_window
    use growth_network, only: end_pieces
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, side_count
-   use scene_types, only: scene_t
+   use scene_types, only: material_t, scene_t
+   use simulation_rocks, only: follow_outlines, keep_off, place_rocks, regions_of_other_rock
    use tips_intensity, only: tip_intensity
-   use tips_types, only: intensity_t
+   use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_tip, only: window_tip_t
@@ -78,6 +79,7 @@ module twolevel_window
       procedure :: edge_length
       procedure :: can_be_larger
       procedure :: set_rock
+      procedure :: crack_modulus
       procedure :: project
       procedure :: find_intensities
       procedure :: intensities_with
@@ -117,8 +119,15 @@ contains
          associate (tip => tips(self%serves(i)))
             spec%end_radius(tip%end, tip%fracture) = &
                tip%rosette_radius(scene, piece(tip%end, tip%fracture))
+            if (.not. allocated(scene%regions)) cycle
+            call keep_off(tip_place(network, tip), scene, spec%end_radius(tip%end, tip%fracture), &
+                          error)
+            if (allocated(error)) return
          end associate
       end do
+      if (any(regions_of_other_rock(scene))) then
+         call follow_outlines(scene%regions, scene%domain, spec)
+      end if
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
@@ -151,7 +160,7 @@ contains
       integer(ik) :: i
 
       rock = new_rock(scene%material, scene%fluid)
-      call find_in_situ(scene, rock%biot, in_situ)
+      call find_in_situ(scene, rock%biot(1), in_situ)
       self%loads%body_force = weight_of_scene(scene)
       if (.not. allocated(in_situ)) return
       associate (fine => self%model%mesh)
@@ -184,10 +193,7 @@ contains
          self%lower = [domain%x_min, domain%y_min]
          self%upper = [domain%x_max, domain%y_max]
          if (self%is_body) return
-         associate (tip => tips(self%serves(1)), first => network%first)
-            xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, &
-                                     tip%end == 1))
-         end associate
+         xy = tip_place(network, tips(self%serves(1)))
          half = 0.5_rk*self%edge_length(scene)
          self%lower = xy - half
          self%upper = xy + half
@@ -196,6 +202,29 @@ contains
          self%upper = min(self%upper, [domain%x_max, domain%y_max])
       end associate
    end subroutine place
+
+   !> Where a tip is [m].
+   pure function tip_place(network, tip) result(xy)
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(in) :: tip
+      real(rk) :: xy(2)
+
+      associate (first => network%first)
+         xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, tip%end == 1))
+      end associate
+   end function tip_place
+
+   !> E' of the rock around a tip of the window's mesh [Pa]; 0: it is not free.
+   pure real(rk) function crack_modulus(self, tip)
+      class(window_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+      type(tip_frame_t) :: frame
+
+      crack_modulus = self%model%elasticity%crack_modulus()
+      if (tip == 0 .or. size(self%model%rocks%of_cell) == 1) return
+      frame = frame_of_tip(self%model, tip)
+      crack_modulus = frame%rock%crack_modulus()
+   end function crack_modulus
 
    !> It is not the whole body yet.
    pure logical function can_be_larger(self, scene)
@@ -271,22 +300,41 @@ contains
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: undrained
       type(error_t), allocatable, intent(out) :: error
-      type(elasticity_t) :: elasticity
+      type(elasticity_t), allocatable :: elasticity(:)
+      integer :: i
+
+      elasticity = [constants(scene%material, scene, undrained)]
+      if (allocated(scene%regions)) then
+         elasticity = [elasticity, (constants(scene%regions(i)%material, scene, undrained), &
+                                    i=1, size(scene%regions))]
+         call self%model%set_mesh(self%mesh, elasticity(1), error, &
+                                  rocks=place_rocks(scene, self%mesh, elasticity))
+      else
+         call self%model%set_mesh(self%mesh, elasticity(1), error)
+      end if
+      self%undrained = undrained
+   end subroutine set_rock
+
+   !> The constants of a rock, for set_rock.
+   pure type(elasticity_t) function constants(material, scene, undrained) result(elasticity)
+      type(material_t), intent(in) :: material
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: undrained
       type(rock_t) :: rock
       real(rk) :: lame
 
-      rock = new_rock(scene%material, scene%fluid)
-      elasticity = elasticity_t(young=scene%material%young, poisson=scene%material%poisson, &
-                                biot=rock%biot, plane_stress=scene%material%plane_stress)
+      rock = new_rock(material, scene%fluid)
+      elasticity = elasticity_t(young=material%young, poisson=material%poisson, &
+                                biot=rock%biot(1), plane_stress=material%plane_stress)
       if (undrained) then
-         lame = rock%lame + rock%biot**2/rock%storage
-         elasticity%poisson = lame/(2.0_rk*(lame + rock%shear))
-         if (scene%material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*rock%shear)
-         elasticity%young = 2.0_rk*rock%shear*(1.0_rk + elasticity%poisson)
+         associate (shear => rock%shear(1))
+            lame = rock%lame(1) + rock%biot(1)**2/rock%storage(1)
+            elasticity%poisson = lame/(2.0_rk*(lame + shear))
+            if (material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*shear)
+            elasticity%young = 2.0_rk*shear*(1.0_rk + elasticity%poisson)
+         end associate
       end if
-      call self%model%set_mesh(self%mesh, elasticity, error)
-      self%undrained = undrained
-   end subroutine set_rock
+   end function constants
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
    subroutine project(self, mesher, coarse, values, error)

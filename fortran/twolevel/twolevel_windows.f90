@@ -11,6 +11,7 @@ module twolevel_windows
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
+   use simulation_rocks, only: relative_toughness
    use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
    use twolevel_window_tip, only: window_tip_t
@@ -30,6 +31,8 @@ module twolevel_windows
       integer(ik), allocatable :: window_of(:)  !< (tips)
       type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
       real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
+      !> (tips) K_IC of the rock that each grows in over that of the scene's [-]
+      real(rk), allocatable :: resistance(:)
       logical, allocatable :: was_free(:, :)  !< (tips, windows) it had not joined anything then
    contains
       procedure :: begin
@@ -59,6 +62,7 @@ contains
       if (is_body) n_windows = 1
       allocate (self%window(n_windows), self%window_of(size(tips)))
       allocate (self%tip(size(tips)))
+      allocate (self%resistance(size(tips)), source=1.0_rk)
       allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
       allocate (self%was_free(size(tips), n_windows), source=.true.)
       allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
@@ -101,6 +105,10 @@ contains
       integer(ik) :: i, w
 
       call see_tips(self, tips)
+      if (allocated(scene%regions)) then
+         self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
+                             i=1, size(tips))]
+      end if
       do w = 1, size(self%window, kind=ik)
          associate (window => self%window(w))
             if (.not. self%is_asked(w, tips)) then
@@ -151,7 +159,8 @@ contains
             tip%intensity = self%intensity_of(t)
             tip%rosette_radius = window%mesh%fracture%tip_radius(self%tip(t)%at)
             tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
-                                     window%model%elasticity%crack_modulus())
+                                     window%crack_modulus(self%tip(t)%at))
+            call tip%resist(self%resistance(t))
          end associate
       end do
    end subroutine tell
@@ -163,7 +172,7 @@ contains
       type(intensity_t) :: intensity
 
       associate (window => self%window(self%window_of(tip)))
-         intensity = self%tip(tip)%with_coarse_error(window%model%elasticity%crack_modulus())
+         intensity = self%tip(tip)%with_coarse_error(window%crack_modulus(self%tip(tip)%at))
       end associate
    end function intensity_of
 

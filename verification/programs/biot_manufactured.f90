@@ -120,7 +120,7 @@ contains
       real(rk) :: s, slope(2), gradient(2, 2), divergence
 
       associate (x => pi*xy(1), y => pi*xy(2), &
-                 share => 1.0_rk/(1.0_rk + model%rock%lame/model%rock%shear))
+                 share => 1.0_rk/(1.0_rk + model%rock%lame(1)/model%rock%shear(1)))
          s = share*sin(x)*sin(y)
          slope = pi*share*[cos(x)*sin(y), sin(x)*cos(y)]
          values(1) = length*((cos(2.0_rk*x) - 1.0_rk)*sin(2.0_rk*y) + s)
@@ -132,9 +132,9 @@ contains
          gradient(2, 2) = length*(2.0_rk*pi*sin(2.0_rk*y)*sin(2.0_rk*x) + slope(2))
       end associate
       divergence = gradient(1, 1) + gradient(2, 2)
-      stress(1) = 2.0_rk*model%rock%shear*gradient(1, 1) + model%rock%lame*divergence - values(3)
-      stress(2) = 2.0_rk*model%rock%shear*gradient(2, 2) + model%rock%lame*divergence - values(3)
-      stress(3) = model%rock%shear*(gradient(1, 2) + gradient(2, 1))
+   stress(1) = 2.0_rk*model%rock%shear(1)*gradient(1, 1) + model%rock%lame(1)*divergence - values(3)
+   stress(2) = 2.0_rk*model%rock%shear(1)*gradient(2, 2) + model%rock%lame(1)*divergence - values(3)
+      stress(3) = model%rock%shear(1)*(gradient(1, 2) + gradient(2, 1))
    end subroutine solution
 
    !> b = -G lap u - (lambda + G) grad div u + grad p [N/m3] (alpha = 1), and
@@ -146,17 +146,17 @@ contains
       real(rk) :: laplacian(2), gradient(2), s
 
       associate (x => pi*xy(1), y => pi*xy(2), rock => model%rock, &
-                 share => 1.0_rk/(1.0_rk + model%rock%lame/model%rock%shear))
+                 share => 1.0_rk/(1.0_rk + model%rock%lame(1)/model%rock%shear(1)))
          s = sin(x)*sin(y)
          laplacian(1) = -4.0_rk*pi**2*(2.0_rk*cos(2.0_rk*x) - 1.0_rk)*sin(2.0_rk*y)
          laplacian(2) = -4.0_rk*pi**2*(1.0_rk - 2.0_rk*cos(2.0_rk*y))*sin(2.0_rk*x)
          laplacian = laplacian - 2.0_rk*pi**2*share*s
          ! div u = U t pi share (cos x sin y + sin x cos y) = U t pi share sin(x + y)
          gradient = pi**2*share*cos(x + y)
-         density(1:2) = -length*(rock%shear*laplacian + (rock%lame + rock%shear)*gradient) &
+        density(1:2) = -length*(rock%shear(1)*laplacian + (rock%lame(1) + rock%shear(1))*gradient) &
                         + pressure*pi*[cos(x)*sin(y), sin(x)*cos(y)]
          density(1:2) = time*density(1:2)
-         density(3) = length*pi*share*sin(x + y) + rock%storage*pressure*s &
+         density(3) = length*pi*share*sin(x + y) + rock%storage(1)*pressure*s &
                       + time*rock%permeability(1, 1)/viscosity*2.0_rk*pi**2*pressure*s
       end associate
    end function density

@@ -51,7 +51,8 @@ program coarse_mandel
    call set_up(scene, moved)
    call new_state(mesh, rest%cells, initial_t(), rest, state)
    associate (rock => rest%rock)
-      diffusivity = rock%mobility/(rock%storage + rock%biot**2/(rock%lame + 2.0_rk*rock%shear))
+      diffusivity = rock%mobility/(rock%storage(1) + rock%biot(1)**2 &
+                                   /(rock%lame(1) + 2.0_rk*rock%shear(1)))
    end associate
    dt = dt_relative*a**2/diffusivity
 
@@ -138,7 +139,7 @@ contains
          end do
          p(i) = (weight(3)*weight(4) - weight(2)*weight(5))/(weight(1)*weight(3) - weight(2)**2)
       end do
-      call table%row([time, p*a/force, -plate*rest%rock%shear*a/(force*b), drift])
+      call table%row([time, p*a/force, -plate*rest%rock%shear(1)*a/(force*b), drift])
    end subroutine write_row
 
 end program coarse_mandel

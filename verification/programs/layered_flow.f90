@@ -35,6 +35,7 @@ program layered_flow
    type(step_report_t) :: report
    type(error_t), allocatable :: error
    type(table_t) :: table
+   integer :: region
    real(rk) :: exact
    integer :: step
 
@@ -54,6 +55,15 @@ program layered_flow
    contrast = 100.0_rk
    if (command_argument_count() > 3) contrast = real_argument(4)
    call set_layers(text_argument(1))
+   do region = 1, size(scene%regions)  ! but for their permeability they are of one rock
+      associate (own => scene%regions(region)%material, all => scene%material)
+         own%young = all%young
+         own%poisson = all%poisson
+         own%biot = all%biot
+         own%porosity = all%porosity
+         own%storage = all%storage
+      end associate
+   end do
 
    allocate (scene%fractures(0))
    scene%discretization%size_boundary = real_argument(2)

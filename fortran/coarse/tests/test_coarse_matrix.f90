@@ -175,11 +175,11 @@ contains
                                                     [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :mesh%n_cells))), 0.0_rk, 1.0e-13_rk*pressure, &
                            "clamped body: equilibrium")
-      call checks%is_close(maxval([(abs(rows(3, c) + cell_area(mesh, c)*rock%storage*pressure), &
+      call checks%is_close(maxval([(abs(rows(3, c) + cell_area(mesh, c)*rock%storage(1)*pressure), &
                                     c=1, mesh%n_cells)]), 0.0_rk, 1.0e-17_rk, &
                            "clamped body: content")
       call check_fracture_rows(rows, reshape([-1.0_rk, 0.0_rk, 0.0_rk, -1.0_rk], [2, 2]) &
-                               *rock%biot*pressure, "clamped body")
+                               *rock%biot(1)*pressure, "clamped body")
    end subroutine test_clamped_pressure
 
    !> Linear pressure in a rock with a full permeability tensor: no cell gains fluid, and fracture

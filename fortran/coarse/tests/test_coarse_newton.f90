@@ -117,7 +117,7 @@ contains
       ! lambda + G in plane strain, E/(2 (1 + nu)(1 - 2 nu)).
       associate (m => scene%material)
          plane_bulk = m%young/(2.0_rk*(1.0_rk + m%poisson)*(1.0_rk - 2.0_rk*m%poisson))
-         capacity = 4.0_rk*(model%rock%storage + m%biot**2/plane_bulk) &
+         capacity = 4.0_rk*(model%rock%storage(1) + m%biot**2/plane_bulk) &
                     + norm2(inside(:, 2) - inside(:, 1))*aperture*scene%fluid%compressibility
       end associate
       rise = rate*dt/capacity

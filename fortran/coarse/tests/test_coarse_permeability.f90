@@ -144,7 +144,7 @@ contains
          scene%regions(1) = box_region(sheet(1), sheet(2), sheet(3), sheet(4), &
                                        scene%material%permeability_xx/contrast(k))
          rock = new_rock(scene%material, scene%fluid)
-         call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
+         call place_regions(mesh, scene%regions, scene%domain, scene%fluid, rock)
          worst = 0.0_rk
          layering = 0.0_rk
          do c = 1, mesh%n_cells
@@ -220,7 +220,7 @@ contains
       scene%regions(1) = box_region(-1.0_rk, 1.0_rk, -1.0_rk, 3.0_rk, 2.0e-15_rk)
       scene%regions(2) = box_region(-1.0_rk, 3.0_rk, -1.0_rk, 0.5_rk, 3.0e-15_rk)
       rock = new_rock(scene%material, scene%fluid)
-      call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
+      call place_regions(mesh, scene%regions, scene%domain, scene%fluid, rock)
       call checks%is_true(size(rock%permeability, 2) == mesh%n_cells, "of each cell")
       do c = 1, mesh%n_cells
          associate (xy => cell_centre(mesh, c))
@@ -249,7 +249,7 @@ contains
       scene%regions(1) = box_region(-1.0_rk, 1.07_rk, -1.0_rk, 3.0_rk, 2.0e-15_rk)
       scene%regions(2) = box_region(1.07_rk, 3.0_rk, -1.0_rk, 3.0_rk, 1.0e-15_rk)
       rock = new_rock(scene%material, scene%fluid)
-      call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
+      call place_regions(mesh, scene%regions, scene%domain, scene%fluid, rock)
       ! Along the layers the mean over the body is that of the areas, in every direction of cuts.
       content = sum(rock%permeability(2, :)*[(cell_area(mesh, c), c=1, mesh%n_cells)])
       call checks%is_close(content, 2.0_rk*(1.07_rk*2.0e-15_rk + 0.93_rk*1.0e-15_rk), 1.0e-25_rk, &
@@ -295,7 +295,7 @@ contains
      slope(:, 2) = slope(:, 1) + normal*(flux - dot_product(normal, applied(second, slope(:, 1)))) &
                     /dot_product(normal, applied(second, normal))
       rock = new_rock(scene%material, scene%fluid)
-      call place_regions(mesh, scene%regions, scene%domain, scene%fluid%viscosity, rock)
+      call place_regions(mesh, scene%regions, scene%domain, scene%fluid, rock)
       call discretize(mesh, rock, scene%sides, regions, matrix, error)
       call checks%no_error(error, name)
       allocate (pressure(regions%n_blocks), outflow(mesh%n_cells))
@@ -378,13 +378,17 @@ contains
       scene%domain%x_max = 2.0_rk
       scene%domain%y_max = 2.0_rk
       allocate (scene%regions(n))
+      scene%regions%material = scene%material
    end function body_with
 
    pure function box_region(x_min, x_max, y_min, y_max, permeability) result(region)
       real(rk), intent(in) :: x_min, x_max, y_min, y_max, permeability
       type(region_t) :: region
+      type(scene_t) :: scene
       real(rk) :: corners(2, 4)
 
+      scene = porous_body()
+      region%material = scene%material
       corners = box(x_min, x_max, y_min, y_max)
       region%x = corners(1, :)
       region%y = corners(2, :)

@@ -4,11 +4,13 @@ program test_fine_model
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field
-   use fine_elasticity, only: elasticity_t
+   use fine_elasticity, only: elasticity_t, rocks_t
    use fine_element, only: evaluate_element
+   use fine_error, only: energy_error_t, estimate_error
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
+   use fine_recovery, only: recover_by_patches, recovery_t
    use fine_quadrature, only: triangle_rule_7
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
@@ -18,6 +20,9 @@ program test_fine_model
 
    call patch_test(.false.)
    call patch_test(.true.)
+   call patch_of_two_rocks(1.0e-3_rk, [0.0_rk, 0.49_rk])
+   call patch_of_two_rocks(3.0_rk, [0.3_rk, 0.2_rk])
+   call patch_of_two_rocks(1.0e3_rk, [0.49_rk, 0.0_rk])
    call convergence()
    call initial_stress()
    call linear_pressure()
@@ -66,6 +71,78 @@ contains
       end do
       call checks%is_close(largest, 0.0_rk, 1.0e-4_rk, "patch test: stress")
    end subroutine patch_test
+
+   !> Two rocks with an interface that edges of the mesh follow: strains that differ by a (x) n,
+   !! with one traction on it, and a pore pressure that acts on either by its own coefficient.
+   subroutine patch_of_two_rocks(contrast, nu)
+      real(rk), intent(in) :: contrast  !< of Young's moduli [-]
+      real(rk), intent(in) :: nu(2)
+      real(rk), parameter :: interface = -0.5_rk  ! x, left of the crack [m]
+      real(rk), parameter :: pore_pressure = 2.0e6_rk, nothing = 0.0_rk
+      type(elasticity_t) :: rock(2)
+      type(rocks_t) :: rocks
+      type(mesh_t) :: mesh
+      type(fine_model_t) :: model
+      type(fine_loads_t) :: loads
+      type(recovery_t) :: recovery
+      type(energy_error_t) :: estimate
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :), exact(:, :)
+      real(rk) :: found(2, 2), gradient(2, 2, 2), lack(2), largest, stress(2, 2, 2), total(2, 2)
+      integer(ik) :: c, node
+      integer :: side
+
+      rock(1) = elasticity_t(4.0e10_rk, nu(1), 0.8_rk, .false.)
+      rock(2) = elasticity_t(contrast*4.0e10_rk, nu(2), 0.5_rk, .false.)
+      gradient(:, :, 1) = reshape([2.0e-4_rk, 5.0e-4_rk, -1.0e-4_rk, -3.0e-4_rk], [2, 2])
+      total = rock(1)%total_stress(gradient(:, :, 1), pore_pressure) &
+              - rock(2)%total_stress(gradient(:, :, 1), pore_pressure)
+      lack(1) = total(1, 1)/(rock(2)%lame_lambda() + 2.0_rk*rock(2)%shear_modulus())
+      lack(2) = total(2, 1)/rock(2)%shear_modulus()
+      gradient(:, :, 2) = gradient(:, :, 1)
+      gradient(:, 1, 2) = gradient(:, 1, 2) + lack
+      do side = 1, 2
+         stress(:, :, side) = rock(side)%total_stress(gradient(:, :, side), nothing)
+      end do
+
+      mesh = cracked_rectangle([-1.0_rk, 2.0_rk], [0.0_rk, 2.0_rk], [6_ik, 5_ik], 2_ik, 3_ik, 5_ik)
+      rocks%elasticity = rock
+      rocks%of_cell = [(merge(2_ik, 1_ik, sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk &
+                              < interface), c=1, mesh%n_cells)]
+      call model%set_mesh(mesh, rock(1), error, rocks=rocks)
+      call checks%no_error(error, "two rocks")
+      call model%prepare(loaded_everywhere(model%mesh), error)
+      call checks%no_error(error, "two rocks are set up")
+      allocate (exact(2, model%mesh%n_nodes))
+      do node = 1, model%mesh%n_nodes
+         associate (from => model%mesh%xy(:, node) - [interface, 0.0_rk])
+            exact(:, node) = matmul(gradient(:, :, merge(2, 1, from(1) < 0.0_rk)), from)
+         end associate
+      end do
+      loads = no_loads(model%mesh)
+      loads%boundary_displacement = exact
+      loads%pore_pressure = pore_pressure
+      total = rock(1)%total_stress(gradient(:, :, 1), pore_pressure)
+      loads%traction(1, :) = total(1, 2)
+      loads%traction(2, :) = total(2, 2)
+      call model%solve(loads, displacement, error)
+      call checks%no_error(error, "two rocks are solved")
+      call checks%is_close(maxval(abs(displacement - exact))/maxval(abs(exact)), 0.0_rk, &
+                           1.0e-12_rk, "two rocks: displacement")
+      largest = 0.0_rk
+      do c = 1, model%mesh%n_cells
+         side = int(rocks%of_cell(c))
+         found = rock(side)%total_stress(model%displacement_gradient(displacement, c, &
+                                                                     [0.2_rk, 0.3_rk, 0.5_rk]), &
+                                         nothing)
+         largest = max(largest, maxval(abs(found - stress(:, :, side))))
+      end do
+      call checks%is_close(largest/maxval(abs(stress)), 0.0_rk, 1.0e-10_rk, "two rocks: stress")
+      ! Recovered stresses are those of either rock up to the interface, where they jump.
+      call recover_by_patches(model, displacement, recovery)
+      call estimate_error(model, displacement, recovery, estimate)
+      call checks%is_close(estimate%relative, 0.0_rk, 1.0e-10_rk, "two rocks: no error")
+   end subroutine patch_of_two_rocks
 
    !> Order 2 in energy, 3 in displacement for a smooth field: phi(z) = psi(z) = exp(z) in
    !! 2 mu (u + i v) = kappa phi - z conj(phi') - conj(psi) is in equilibrium (Muskhelishvili).

@@ -25,7 +25,7 @@ program test_scene_regions
       "&region name='b' shape='band' x=-1, 0.5, 3 y=0.5, 0.7, 0.5", &  ! 8
       "  x_other=-1, 3 y_other=0.9, 0.9 permeability=1e-16 /", &  ! 9
       "&region name='c' shape='parabola' x_vertex=1.2, 1.4 y_vertex=2*0.5", &  ! 10
-      "  curvature=2*1.0 permeability=1e-13 /", &  ! 11
+      "  curvature=2*1.0 permeability=1e-13 young=3e9 poisson=0.3 biot=0.9 porosity=0.2 /", &  ! 11
       "&side name='left' x_displacement=0.0 /", &  ! 12
       "&side name='bottom' y_displacement=0.0 /", &  ! 13
       "&time end=1.0 step=1.0 /", &  ! 14
@@ -38,6 +38,7 @@ program test_scene_regions
    call check_names()
    call check_points()
    call check_permeability()
+   call check_rock()
    call check_round_trip()
    call delete_file(path)
    call checks%finish()
@@ -101,7 +102,8 @@ contains
       call refuse(10, "&region name='c' shape='parabola' x=1 x_vertex=1.2, 1.4 y_vertex=2*0.5", &
                 ":10: &region: x is given, but the shape 'parabola' has x_vertex, y_vertex and "// &
                   "curvature instead"//doc)
-      call refuse(3, "", ":4: &region: needs a fluid, but the group &fluid is missing"//doc)
+      call refuse(3, "", ":5: &region: permeability needs a fluid, but the group &fluid is "// &
+                  "missing"//doc)
    end subroutine check_names
 
    subroutine check_points()
@@ -136,8 +138,9 @@ contains
    end subroutine check_points
 
    subroutine check_permeability()
-    call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: permeability [m2], which a region "// &
-                  "needs, is missing"//doc)
+      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: name is given, but the region "// &
+                  "has no rock of its own: it must give at least one of young, poisson, biot, "// &
+                  "porosity, permeability, toughness"//doc)
      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
                   "is -1e-14 but must be a finite number greater than 0.0 [m2]"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-14 permeability_xx=1e-14 /", &
@@ -161,6 +164,35 @@ contains
                 "of region 'p' and the permeability of the rock around it or of another region "// &
                   "differ by more than a factor of 1e12 but must not"//doc)
    end subroutine check_permeability
+
+   !> The rock of a region, each of its numbers and what follows from them together.
+   subroutine check_rock()
+      character(len=*), parameter :: first = "  y=0.1, 0.1, 0.4, 0.4 "
+
+      call refuse(5, first//"young=-1e9 /", ":5: &region: young is -1e9 but must be a finite "// &
+                  "number greater than 0.0 [Pa]"//doc)
+      call refuse(5, first//"poisson=0.5 /", ":5: &region: poisson is 0.5 but must be a finite "// &
+                  "number greater than -1.0 and less than 0.5"//doc)
+      call refuse(5, first//"porosity=0.9 /", ":5: &region: porosity of region 'p' makes its "// &
+                  "Biot coefficient 0.8 smaller than its porosity, 0.9, but it must be at "// &
+                  "least that"//doc)
+      call refuse(5, first//"biot=0.005 /", ":5: &region: biot of region 'p' makes its Biot "// &
+                  "coefficient 0.005 smaller than its porosity, 0.01, but it must be at least "// &
+                  "that"//doc)
+      call refuse(5, first//"biot=0.0 porosity=0.0 /", ":5: &region: biot of region 'p' gives "// &
+                  "no storage: phi c_p and the part of the solid are both zero, but their sum "// &
+                  "must be positive"//doc)
+      call refuse(3, "&fluid compressibility=0.0 viscosity=1.0e-3 /", ":4: &region: name 'p' "// &
+                  "stands for a rock whose Skempton coefficient B = alpha/(K S + alpha^2) is "// &
+                  "1.429 with a fluid of no compressibility, but that must be at most 1", &
+                  and_4="&region name='p' x=0.1, 0.5, 0.5, 0.1 biot=0.5 porosity=0.4")
+      call refuse(5, first//"toughness=1e6 /", ":5: &region: toughness of region 'p' is given, "// &
+                  "but that of &material, which the rest of the body has, is missing"//doc)
+      call refuse(5, first//"young=1e20 /", ":5: &region: young of region 'p' and that of the "// &
+                  "rock around it or of another region differ by more than a factor of 1e9 "// &
+                  "but must not"//doc)
+      call refuse(5, first//"density=2700.0 /", ":5: &region: unknown name density")
+   end subroutine check_rock
 
    subroutine check_round_trip()
       type(scene_t) :: first, second

@@ -183,7 +183,7 @@ contains
       call estimate_error(model, displacement, recovery, estimate)
       estimated = estimate%relative
       ! Without loads on the faces the intensities are the work of the extraction's forces.
-     force = extraction_forces(model, frame_of_tip(model%mesh, 1_ik), dimensionless%radius, plateau)
+      force = extraction_forces(model, frame_of_tip(model, 1_ik), dimensionless%radius, plateau)
       call checks%is_close(sum(force(:, :, 1)*displacement)/scale, dimensionless%k1, 1.0e-9_rk, &
                            "K_I is linear in the displacement")
       call checks%is_close(sum(force(:, :, 2)*displacement)/scale, dimensionless%k2, 1.0e-9_rk, &

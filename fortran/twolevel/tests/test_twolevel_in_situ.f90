@@ -35,8 +35,8 @@ contains
       real(rk) :: stiffness
 
       rock = new_rock(scene%material, scene%fluid)
-      stiffness = rock%lame + rock%shear
-      pressure = -rock%biot*mean_stress/(stiffness*rock%storage + rock%biot**2)
+      stiffness = rock%lame(1) + rock%shear(1)
+      pressure = -rock%biot(1)*mean_stress/(stiffness*rock%storage(1) + rock%biot(1)**2)
    end function undrained_pressure
 
    !> Rock that tractions press, undrained, and rock that was so pressed in situ, at the pressure
