@@ -104,6 +104,8 @@ module output_columns
       column_t("connected_stimulated_m", "m", with_wells, &
                "Part of stimulated_length_m that is so connected"), &
       column_t("n_clusters", "-", with_fractures, "Groups of fractures that hang together"), &
+      column_t("max_slip_rate_m_s", "m/s", with_fluid, &
+               "Largest velocity of slip, mean of the step"), &
       column_t("connections_per_branch", "-", with_fractures, &
                "How many ends of a branch of the network are connected, in the mean: 0 to 2 "// &
                "(Sanderson and Nixon 2015)")]

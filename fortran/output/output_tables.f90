@@ -103,6 +103,7 @@ contains
          call table%put("connected_length_m", row%connected_length)
          call table%put("connected_stimulated_m", row%connected_stimulated)
          call table%put("n_clusters", row%n_clusters)
+         call table%put("max_slip_rate_m_s", row%max_slip_rate)
          call table%put("connections_per_branch", row%connections_per_branch)
          call table%end_row()
       end associate

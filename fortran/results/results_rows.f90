@@ -20,6 +20,7 @@ module results_rows
       real(rk) :: mass_error_relative = 0.0_rk  !< [-]
       real(rk) :: max_slip = 0.0_rk  !< [m]
       real(rk) :: max_opening = 0.0_rk  !< [m]
+      real(rk) :: max_slip_rate = 0.0_rk  !< with a fluid; mean of the step [m/s]
       integer(ik) :: n_stick = 0
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0

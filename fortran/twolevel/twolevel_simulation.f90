@@ -336,6 +336,9 @@ contains
       row%dt = merge(0.0_rk, self%dt, self%is_initial)
       row%newton_iterations = self%report%iterations
       row%seismic_moment = self%seismic_moment
+      if (row%dt > 0.0_rk .and. self%mesh%fracture%n_cells > 0) then
+         row%max_slip_rate = maxval(abs(self%state%jump(2, :, :) - self%state%slip_before))/row%dt
+      end if
       call self%stimulation%describe(self, row)
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
