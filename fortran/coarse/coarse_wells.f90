@@ -55,15 +55,20 @@ contains
    end subroutine lost
 
    !> A limited well has the pressure of its limit, and less than its rate.
-   pure logical function is_at_limit(self, well, rate)
+   pure logical function is_at_limit(self, well, rate, head)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
       real(rk), intent(in) :: rate  !< into the well, at its head [m2/s]
-      real(rk), parameter :: rounding = 1.0e-9_rk
+      real(rk), intent(in) :: head  !< pressure there [Pa]
+      real(rk), parameter :: rounding(2) = [1.0e-9_rk, 1.0e-6_rk]  ! of the rate, of the pressure
 
       is_at_limit = .false.
       if (self%control(well) /= control_limited) return
-      is_at_limit = rate/self%rate(well) < 1.0_rk - rounding
+      associate (limit => self%pressure(well))
+         is_at_limit = rate/self%rate(well) < 1.0_rk - rounding(1) .and. &
+                       sign(1.0_rk, self%rate(well))*(head - limit) &
+                       > -rounding(2)*max(abs(head), abs(limit))
+      end associate
    end function is_at_limit
 
 end module coarse_wells

@@ -33,7 +33,8 @@ contains
       integer(ik) :: w
 
       associate (wells => self%model%wells, now => self%state)
-         at_limit = [(wells%is_at_limit(w, now%well_rate(w)), w=1, wells%n_all)]
+         at_limit = [(wells%is_at_limit(w, now%well_rate(w), now%well_head(w)), &
+                     w=1, wells%n_all)]
       end associate
    end function are_at_limit
 
