@@ -151,6 +151,7 @@ def test_units_end_the_names_of_columns(described: dict[str, list[Entry]]) -> No
         "J/m": "_j",
         "N m/m": "_nm",
         "degree": "_deg",
+        "m/s": "_m_s",
         "m2/s": "_m2_s",
         "m2/s/Pa": "_m2_s_pa",
         "N m": "_nm",

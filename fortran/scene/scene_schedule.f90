@@ -239,7 +239,9 @@ contains
          reason = "has no value"
       else
          call read_value(parameter, cell, tokens%items(:tokens%length - 1), value, reason)
-         if (.not. allocated(reason) .and. size(value%reals) > 1) reason = "has several values"
+         if (.not. allocated(reason)) then
+            if (size(value%reals) > 1) reason = "has several values"
+         end if
       end if
       if (allocated(reason)) reason = column_name(parameter)//" "//reason
    end subroutine read_cell

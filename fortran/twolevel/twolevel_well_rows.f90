@@ -112,8 +112,11 @@ contains
                     + dot_product(levels%joint_share(:, w), state%joint_pressure)
          between = between_cells(levels%scene%injections, levels%share)
          if (.not. between(w)) return
-         pressure = pressure + flow*sum(levels%share(:, w)**2*6.0_rk*model%settings%viscosity &
-                                        *model%condensed%length/state%aperture**3)
+         ! Not the lengths of the condensed matrix: before the first step there may be none.
+         associate (length => levels%mesh%fracture%cell_s(2, :) - levels%mesh%fracture%cell_s(1, :))
+            pressure = pressure + flow*6.0_rk*model%settings%viscosity &
+                       *sum(levels%share(:, w)**2*length/state%aperture**3)
+         end associate
       end associate
    end function pressure_at
 

@@ -8,6 +8,7 @@ continuous, p = 0 at the drained top z = 0, dp/dz = 0 at the sealed bottom.
 
 import csv
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 VISCOSITY = 1.0e-4  # [Pa s]
@@ -17,6 +18,9 @@ TOP = {"young": 40.0e9, "poisson": 0.2, "biot": 0.8, "porosity": 0.01, "k": 5.0e
 BOTTOM = {"young": 8.0e9, "poisson": 0.35, "biot": 0.95, "porosity": 0.1, "k": 4.0e-19, "h": 0.6}
 END = 50000.0  # [s]
 STEP = 1250.0  # of the runs that vary the cells [s]
+
+
+Mode = tuple[float, float, float, float, float]
 
 
 def layer(rock: dict[str, float]) -> tuple[float, float, float, float, float]:
@@ -66,7 +70,7 @@ def eigenvalues(count: int) -> list[float]:
     return found
 
 
-def terms(count: int) -> list[tuple[float, float, float, float, float]]:
+def terms(count: int) -> list[Mode]:
     """Rate, wave numbers, factor below, and what the initial state has of each eigenfunction."""
     result = []
     for rate in eigenvalues(count):
@@ -82,7 +86,7 @@ def terms(count: int) -> list[tuple[float, float, float, float, float]]:
     return result
 
 
-def pressure(z: float, factor, modes) -> float:
+def pressure(z: float, factor: Callable[[float], float], modes: list[Mode]) -> float:
     """Return p [Pa] at the depth z [m]; factor(rate) is what time leaves of a mode."""
     total = 0.0
     for rate, a, b, below, share in modes:
@@ -91,7 +95,7 @@ def pressure(z: float, factor, modes) -> float:
     return total
 
 
-def settlement(factor, modes) -> float:
+def settlement(factor: Callable[[float], float], modes: list[Mode]) -> float:
     """Of the top, downwards [m]: the integral of (s - alpha p)/(lambda + 2 G)."""
     total = LOAD * (H1 / S1 + H2 / S2)
     for rate, a, b, below, share in modes:

@@ -125,7 +125,8 @@ def simulate(
 ) -> list[tuple[float, ...]]:
     """Rows of time, flow, pressure in the fracture, pressure at the head, fluid into the head."""
     rock = Rock()
-    head, injected, rows = START, 0.0, []
+    head, injected = START, 0.0
+    rows: list[tuple[float, ...]] = []
     n = round(end / STEP)
     for k in range(n):
         time = k * STEP
@@ -160,7 +161,7 @@ def laplace_check(rows: list[tuple[float, ...]], rate: float, end: float) -> flo
     def transform(s: complex) -> complex:
         root = np.sqrt(s * STORAGE / (PERMEABILITY / VISCOSITY))
         rock = 2 * WIDTH * PERMEABILITY / VISCOSITY * root * np.tanh(root * HEIGHT)
-        return rate / s / (rock + s * APERTURE * WIDTH * COMPRESSIBILITY)
+        return complex(rate / s / (rock + s * APERTURE * WIDTH * COMPRESSIBILITY))
 
     worst = 0.0
     for time, _, pressure, _, _ in rows:
