@@ -34,7 +34,7 @@ contains
 
       associate (wells => self%model%wells, now => self%state)
          at_limit = [(wells%is_at_limit(w, now%well_rate(w), now%well_head(w)), &
-                     w=1, wells%n_all)]
+                      w=1, wells%n_all)]
       end associate
    end function are_at_limit
 
