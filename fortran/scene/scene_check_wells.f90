@@ -87,6 +87,7 @@ contains
       do i = 1, size(scene%injections)
          record = sheet%find("injection", i)
          call check_stages(sheet, record, scene%injections(i), error)
+         if (.not. allocated(error)) call check_pressure(sheet, record, scene, i, error)
          if (.not. allocated(error)) call check_place(sheet, record, scene, i, error)
          if (.not. allocated(error) .and. any(scene%injections(:i - 1)%name &
                                               == scene%injections(i)%name)) then
@@ -125,6 +126,22 @@ contains
       call refuse(error, sheet, record, "end", "is "//real_text(well%end)//" but must be after "// &
                   last//real_text(well%stage_start(n)))
    end subroutine check_stages
+
+   !> A fracture bears no pressure below that of vapour, so no well there can have or reach one.
+   pure subroutine check_pressure(sheet, record, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< well
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (well => scene%injections(i), lowest => scene%fluid%vapour_pressure)
+         if (well%fracture == 0 .or. .not. allocated(well%pressure)) return
+         if (.not. any(well%pressure < lowest)) return
+         call refuse(error, sheet, record, "pressure", "is "//real_text(minval(well%pressure))// &
+                     " but must be at least the vapour pressure, "//real_text(lowest))
+      end associate
+   end subroutine check_pressure
 
    !> One value for all stages, or one each.
    pure subroutine check_count(sheet, record, name, given, stages, error)

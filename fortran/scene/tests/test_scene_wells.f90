@@ -113,6 +113,8 @@ contains
       call refuse("&injection x=0.3 y=0.2 radius=1e-4 pressure=1e6 turbulence=1 /", here// &
                   "turbulence is given, but a well in the rock whose rate follows from "// &
                   "pressures must not have it"//doc)
+      call refuse("&initial pressure=1e6 / &injection fracture='f1' rate=-1e-7 pressure=-1e5 /", &
+                  here//"pressure is -100000.0 but must be at least the vapour pressure, 0.0"//doc)
       call refuse("&injection fracture='f1' rate=1e-7 storage=-1 /", here//"storage is -1 but "// &
                   "must be a finite number at least 0.0 [m2/Pa]"//doc)
       call refuse("&injection name='a' fracture='f1' rate=1e-7 / &injection name='a' x=1 y=0.1 "// &
