@@ -425,7 +425,7 @@ contains
                               state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
-         if (self%wells%n > 0) call feed(self, state%well_flow)
+         if (self%wells%n > 0) call feed(self, state%well_flow(:self%wells%n))
       end if
       call timers%start(phase_solve)
       call self%condensed%expand(q, rhs, state%unknowns, error)
@@ -453,7 +453,7 @@ contains
    !> The flow of wells that was an unknown is one of the sources of the step.
    subroutine feed(self, flow)
       class(coarse_model_t), intent(inout) :: self
-      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+      real(rk), intent(in) :: flow(:)  !< (wells in fractures) [m2/s]
 
       self%cells%injection = self%cells%injection + matmul(self%wells%share, flow)
       if (self%joints%n > 0) self%joints%injection = self%joints%injection &
