@@ -15,6 +15,7 @@ module coarse_model
    use coarse_damping, only: dampers, jumps_of
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
+   use coarse_fluid_law, only: compressed_fluid
    use coarse_fractures, only: newton_settings_t
    use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
@@ -31,6 +32,7 @@ module coarse_model
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
    use coarse_wells, only: wells_t
    use mesh_types, only: mesh_t, point_interior
+   use scene_fluid_law, only: has_law, new_fluid_law
    use scene_types, only: boundary_side_t, initial_t, scene_t
    implicit none(type, external)
    private
@@ -96,6 +98,11 @@ contains
                                            vapour_pressure=fluid%vapour_pressure, &
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
+         if (has_law(fluid)) then
+            self%settings%fluid_law = new_fluid_law(fluid)
+            ! A density counts its compression itself.
+            if (fluid%density_law /= "linear") self%settings%compressibility = 0.0_rk
+         end if
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
       if (.not. allocated(error)) then
@@ -447,6 +454,9 @@ contains
             held = after%aperture - after%void
             report%compressed = sum(self%condensed%length*held*self%settings%compressibility &
                                     *(after%pressure - before%pressure))
+            if (allocated(self%settings%fluid_law)) then
+               report%compressed = report%compressed + fluid_gained(self, before, after)
+            end if
             held = held - (before%aperture - before%void)
             balance = balance + sum(self%condensed%length*held) + report%compressed &
                       - dt*sum(self%cells%injection)
@@ -467,6 +477,28 @@ contains
          end if
       end associate
    end subroutine book_fluid
+
+   !> What density has added to the fluid of the fractures, where it follows pressure [m2].
+   pure real(rk) function fluid_gained(self, before, after) result(gained)
+      class(coarse_model_t), intent(in) :: self
+      type(state_t), intent(in) :: before, after
+      real(rk) :: in_situ
+      integer(ik) :: i
+
+      gained = 0.0_rk
+      if (.not. self%settings%fluid_law%changes_density) return
+      in_situ = 0.0_rk
+      do i = 1, size(after%pressure, kind=ik)
+         if (allocated(self%cells%pressure_in_situ)) in_situ = self%cells%pressure_in_situ(i)
+         associate (law => self%settings%fluid_law, length => self%condensed%length(i))
+            gained = gained &
+                     + length*(compressed_fluid(law, after%aperture(i) - after%void(i), &
+                                                after%pressure(i) + in_situ) &
+                               - compressed_fluid(law, before%aperture(i) - before%void(i), &
+                                                  before%pressure(i) + in_situ))
+         end associate
+      end do
+   end function fluid_gained
 
    !> Pairs of fracture cells that exchange fluid along their fracture.
    subroutine find_connections(mesh, connections)

@@ -5,7 +5,8 @@
 module scene_parameters
    use base_kinds, only: rk
    use scene_intervals, only: at_least_one, at_least_zero, below_one, biot_range, &
-                              dilation_range, interval_t, newton_range, passes_range, &
+                              dilation_range, exponent_range, interval_t, newton_range, &
+                              passes_range, &
                               poisson_range, porosity_range, positive, rosette_range, share, &
                               steps_range, tolerance_range
    implicit none(type, external)
@@ -71,7 +72,7 @@ module scene_parameters
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
       ! Towards other names of its group:
-      character(len=24) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
+      character(len=28) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
       character(len=20) :: with = ""  !< given only if this is given too
       character(len=20) :: at_most = ""  !< a number that it must not exceed
    end type parameter_t
@@ -238,6 +239,31 @@ module scene_parameters
                   derived=.true., &
                   meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
                   "about 0 if pressures count from vacuum"), &
+      parameter_t("fluid", "viscosity_law", kind_choice, default="'constant'", &
+                  choices="constant|exponential|table", &
+                  meaning="How the viscosity in fractures follows pressure. The rock keeps "// &
+                  "`viscosity` and `compressibility`"), &
+      parameter_t("fluid", "viscosity_exponent", unit="1/Pa", need=need_choice, &
+                  absent="no exponential law", range=exponent_range, &
+                  of="viscosity_law=exponential", &
+                  meaning="beta in mu = viscosity exp(beta (p - reference_pressure))"), &
+      parameter_t("fluid", "density_law", kind_choice, default="'linear'", &
+                  choices="linear|exponential|table", &
+                  meaning="That in fractures. linear: a volume V stores V c_p dp of a step's "// &
+                  "dp. Exponential: exp(compressibility (p - reference_pressure))"), &
+      parameter_t("fluid", "reference_pressure", unit="Pa", &
+                  absent="pressure of &initial, if there is a law", derived=.true., &
+                  meaning="Pressure at which the fluid has its `viscosity`, and the density in "// &
+                  "which rates, volumes and balances count it"), &
+      parameter_t("fluid", "table_pressure", kind_reals, "Pa", absent="no table", &
+                  meaning="Rising pressures of a table. Between them the logarithms are "// &
+                  "linear, beyond them values constant, of which run.json warns"), &
+      parameter_t("fluid", "table_viscosity", kind_reals, "Pa s", need_choice, &
+                  absent="no table", range=positive, of="viscosity_law=table", &
+                  meaning="Viscosities at these pressures"), &
+      parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, &
+                  absent="no table", range=positive, of="density_law=table", &
+                  meaning="Densities at these pressures, not falling; only ratios count"), &
       parameter_t("region", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
