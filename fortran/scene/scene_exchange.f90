@@ -259,6 +259,7 @@ contains
          call exchange(record, "growth_states", scene%output%growth_states, reading)
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump, reading)
          call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length, reading)
+         call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate, reading)
       case default  ! the repeated groups
          return
       end select

@@ -570,7 +570,11 @@ module scene_parameters
       parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
                   scenes=in_fluid, &
                 meaning="Assumed length of the fractures out of the plane, for area and moment "// &
-                  "in slip_events.csv; nothing else depends on it")]
+                  "in slip_events.csv; nothing else depends on it"), &
+      parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &
+                  scenes=in_fluid, &
+                  meaning="Slip rate from which slip is seismic: where the largest one of a "// &
+                  "patch passes it, an event of slip_events.csv ends and another one begins")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]

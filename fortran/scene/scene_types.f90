@@ -229,6 +229,7 @@ module scene_types
       !> slip or opening that stimulates faces, and mean slip that makes an event, at least [m]
       real(rk) :: stimulated_jump = 1.0e-6_rk
       real(rk) :: out_of_plane_length = 1.0_rk  !< of slip events [m]
+      real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< from which they are seismic [m/s]
    end type output_t
 
    !> The whole problem.
