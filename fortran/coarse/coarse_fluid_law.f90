@@ -12,11 +12,12 @@
 module coarse_fluid_law
    use base_kinds, only: ik, rk
    use coarse_fractures, only: cell_fluid_t, fracture_system_t
+   use coarse_state, only: fracture_cells_t, state_t
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
-   public :: add_fluid_law, compressed_fluid, flow_thickness
+   public :: add_fluid_law, flow_thickness, fluid_gained
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends of a cell
 
@@ -166,15 +167,25 @@ contains
       end associate
    end subroutine flow_thickness
 
-   !> What a filled aperture holds beside itself, at the density of the reference pressure [m].
-   pure real(rk) function compressed_fluid(law, filled, pressure) result(more)
+   !> What density has added to the fluid of the fractures, at that of the reference pressure [m2].
+   pure real(rk) function fluid_gained(law, cells, length, before, after) result(gained)
       type(fluid_law_t), intent(in) :: law
-      real(rk), intent(in) :: filled  !< [m]
-      real(rk), intent(in) :: pressure  !< whole [Pa]
-      real(rk) :: density, slope
+      type(fracture_cells_t), intent(in) :: cells
+      real(rk), intent(in) :: length(:)  !< (cells) [m]
+      type(state_t), intent(in) :: before, after
+      real(rk) :: density(2), in_situ, slope
+      integer(ik) :: i
 
-      call law%density_at(pressure, density, slope)
-      more = filled*(density - 1.0_rk)
-   end function compressed_fluid
+      gained = 0.0_rk
+      if (.not. law%changes_density) return
+      in_situ = 0.0_rk
+      do i = 1, size(after%pressure, kind=ik)
+         if (allocated(cells%pressure_in_situ)) in_situ = cells%pressure_in_situ(i)
+         call law%density_at(before%pressure(i) + in_situ, density(1), slope)
+         call law%density_at(after%pressure(i) + in_situ, density(2), slope)
+         gained = gained + length(i)*((after%aperture(i) - after%void(i))*(density(2) - 1.0_rk) &
+                                      - (before%aperture(i) - before%void(i))*(density(1) - 1.0_rk))
+      end do
+   end function fluid_gained
 
 end module coarse_fluid_law

@@ -87,6 +87,7 @@ contains
             call take(own%poisson, all%poisson)
             call take(own%biot, all%biot)
             call take(own%porosity, all%porosity)
+            call take(own%density, all%density)
             call take(own%toughness, all%toughness)
             if (.not. own%permeability_xx > 0.0_rk) cycle
             all%permeability_xx = own%permeability_xx

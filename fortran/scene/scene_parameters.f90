@@ -307,6 +307,10 @@ module scene_parameters
                   meaning="Component yy of the permeability tensor"), &
       parameter_t("region", "permeability_xy", unit="m2", scenes=in_fluid, absent="0", &
                   meaning="Component xy of the permeability tensor"), &
+      parameter_t("region", "density", unit="kg/m3", scenes=in_fluid, range=positive, &
+                  absent="that of &material", derived=.true., &
+                  meaning="Density of the rock with what fills its pores; the body settles "// &
+                  "under it. Not with a stress in situ that changes with y, nor with windows"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
                   absent="that of &material", derived=.true., &
                   meaning="Fracture toughness K_IC, which counts where a tip is"), &
