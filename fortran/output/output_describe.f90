@@ -108,8 +108,8 @@ contains
                     "one from then on. An event is over when nothing of it slips any "// &
                     "more, or when its largest slip rate passes `seismic_slip_rate` of "// &
                     "`&output`: what slips faster is an event of its own, from its nucleation "// &
-                    "to its arrest. Events of less mean slip than `stimulated_jump` of `&output`"// &
-                    " are left out, and the slip of the initial equilibrium is none. "// &
+                    "to its arrest. Events of less mean slip than `stimulated_jump` of "// &
+                    "`&output` are left out, and the slip of the initial equilibrium is none. "// &
                     "Without `radiation_damping` the simulation is quasi-static: slip lasts as "// &
                     "long as the injection drives it, what jumps has the rate of the step that "// &
                     "it falls into, and moment and magnitude are those of all of it, whether "// &

@@ -91,8 +91,8 @@ contains
       call put_lines(path, lines)
       call expect(":14: &region: density is 2700.0 but must be that of &material, 2500.0, "// &
                   "beside a stress in situ that changes with y: one gradient does not carry "// &
-                  "two weights; leave sxx_per_y and syy_per_y out, and the body settles under its "// &
-                  "weight"//doc)
+                  "two weights; leave sxx_per_y and syy_per_y out, and the body settles "// &
+                  "under its weight"//doc)
       lines(5:7) = [character(len=100) :: "/", "", ""]
       call put_lines(path, lines)
       call expect(":14: &region: density is 2700.0 but nothing gives it weight; give &gravity, "// &
