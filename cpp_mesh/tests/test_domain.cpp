@@ -323,12 +323,6 @@ void refusals(Checks& checks) {
     cm_spec window = spec;
     window.is_window = 1;
     refuse(checks, window, {}, "window", "must be a rectangle");
-    ApiMesh mesh, patched;
-    mesh.create(spec, TestNetwork({{{0.3, 0.5}, {0.7, 0.5}}}));
-    checks.is_true(!patched.remesh(mesh, TestNetwork({{{0.3, 0.5}, {0.7, 0.5}, {0.8, 0.5}}}),
-                                   {{0.7, 0.5}}, 0.1, 0.05),
-                   "patches of polygons: refused");
-    checks.says(patched.error, "only a mesh of a rectangle", "patches of polygons: reason");
 }
 
 } // namespace

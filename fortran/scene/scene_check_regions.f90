@@ -20,8 +20,8 @@ module scene_check_regions
 
    !> What makes the rock of a region another one than that of the scene.
    character(len=15), parameter :: of_rock(8) = [character(len=15) :: &
-                                      "young", "poisson", "biot", "porosity", "permeability", &
-                                      "permeability_xx", "density", "toughness"]
+                                           "young", "poisson", "biot", "porosity", "permeability", &
+                                                 "permeability_xx", "density", "toughness"]
    !> Young's moduli of two rocks beside each other: beyond that rounding would decide [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
 

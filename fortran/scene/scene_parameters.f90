@@ -396,9 +396,8 @@ module scene_parameters
                   "beside pressure"), &
       parameter_t("side", "time", kind_reals, "s", absent="nothing changes", scenes=in_fluid, &
                   range=at_least_zero, &
-                  meaning="Times of the values of the side, of which each has one or as many. "// &
-                  "They are straight between these times; where two are equal they jump right "// &
-                  "after it. No step straddles one of them"), &
+                meaning="Of the values of the side, each of which has one or as many; they are "// &
+                "straight between times and jump after two that are equal. No step straddles it"), &
       parameter_t("side", "schedule", kind_text, absent="no table", scenes=in_fluid, &
                   meaning="CSV file beside the scene file with a row per time, instead of time "// &
                   "and values: columns time_s, x_traction_pa, pressure_pa, inflow_m_s and so on"), &

@@ -1,8 +1,8 @@
 """Write one scene six ways that must not matter: mirrored, turned, in other units, ...
 
-`python make_scenes.py` writes the files *.nml of this case. The scene has what fields ask for: a well
-with storage, losses and a limit, one in the rock, friction that weakens, sides in the course of time,
-a spring, an inflow, a region of other rock.
+`python make_scenes.py` writes the files *.nml of this case. The scene has what fields ask for: a
+well with storage, losses and a limit, one in the rock, friction that weakens, sides in the course
+of time, a spring, an inflow, a region of other rock.
 """
 
 from __future__ import annotations
