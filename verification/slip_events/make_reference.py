@@ -103,7 +103,7 @@ def step(
 def simulate(n: int, share: float, fine: float) -> Event:
     """With n cells on half of the fracture; steps that slip by a share of D_c, fine ones in it."""
     h = HALF / n
-    x = h * (np.arange(n) + 0.5)
+    x: FloatArray = np.asarray(h * (np.arange(n) + 0.5), dtype=np.float64)
     matrix = stiffness(x, h)
     fluid = Fluid(x)
     slip = np.zeros(n)
