@@ -317,7 +317,9 @@ contains
       integer(ik), intent(in) :: end  !< 1 start, 2 end
 
       law = self%cells%law(cell)
-      if (allocated(self%before%slip_path)) law = law%aged(self%before%slip_path(end, cell))
+      if (allocated(self%before%slip_path)) then
+         law = law%aged(self%before%slip_path(end, cell), self%before%opened(end, cell))
+      end if
    end function law_at
 
    !> Opening of a cell, the mean of its ends' [u]_n.

@@ -192,6 +192,7 @@ contains
       end do
       mean = sum(self%length)/self%n
       call pivot_to_solution(on_spring/(self%stiffness*mean), self%load/mean, self%law, &
+                             self%stiffness*self%law%compliance*mean/self%length, &
                              self%slip_given, self%stiffness*self%slip_before, &
                              self%stiffness*self%given, x, has_start)
       self%way = 0

@@ -317,6 +317,33 @@ module scene_parameters
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   of="law=friction", &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
+      parameter_t("fracture", "normal_stiffness", unit="Pa/m", with="closure", range=positive, &
+                  absent="closed faces are rigid", &
+                  meaning="Stiffness k_ni at which faces that touch without pressure begin to "// &
+                  "close under it, s = k_ni d/(1 - d/closure)"), &
+      parameter_t("fracture", "closure", unit="m", with="normal_stiffness", range=positive, &
+                  absent="closed faces are rigid", &
+                  meaning="Largest closure d under contact pressure; aperture is that of faces "// &
+                  "that touch without. Wings do not close"), &
+      parameter_t("fracture", "cohesion", unit="Pa", range=positive, of="law=friction", &
+                  absent="no bond", &
+                  meaning="Shear strength of a bond beside friction. Slip of weakening_slip "// &
+                  "breaks it for good; friction_residual may be friction"), &
+      parameter_t("fracture", "tensile_strength", unit="Pa", range=positive, of="law=friction", &
+                  with="opening_weakening", absent="no bond", &
+                  meaning="Tension that the same bond bears, with no more than cohesion/friction"), &
+      parameter_t("fracture", "opening_weakening", unit="m", range=positive, of="law=friction", &
+                  with="tensile_strength", absent="no bond", &
+                  meaning="Opening that breaks the bond, with the energy tensile_strength "// &
+                  "opening_weakening/2"), &
+      parameter_t("fracture", "toughness", unit="Pa m^1/2", range=positive, &
+                  absent="that of the rock", &
+                  meaning="K_IC at which its tips and those of its wings grow, whatever rock "// &
+                  "they are in"), &
+      parameter_t("fracture", "skin", unit="Pa s/m", scenes=in_fluid, range=positive, &
+                  absent="no skin", &
+                  meaning="Pressure over flux that a layer on each face takes between fracture "// &
+                  "and rock; faces that grow have none"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
                   meaning="The faces slide but never part, and friction goes on with the "// &
