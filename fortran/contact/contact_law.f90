@@ -83,6 +83,7 @@ module contact_law
       procedure :: spring
       procedure :: apart
       procedure :: is_bonded
+      procedure :: bond_left
       procedure :: strength
       procedure :: as_grown
       procedure, private :: numbers
@@ -90,6 +91,10 @@ module contact_law
    end type contact_law_t
 
    integer, parameter :: n_numbers = 12  !< of a law, but for its age
+
+   !> Of the opening that breaks a bond: so far it closes as if it had not opened, for what rounding
+   !! has left of an opening that is none has no stiffness.
+   real(rk), parameter :: hardly_open = 1.0e-6_rk
 
    !> What a bond bears where its faces are apart by w and have slipped in the step.
    type :: strength_t
@@ -181,7 +186,8 @@ contains
       law%friction = self%friction - self%weakening*min(path, self%weakening_slip)
       law%weakening_slip = max(0.0_rk, self%weakening_slip - path)
       law%bond = max(0.0_rk, self%bond - self%wear_by_slip*path - self%wear_by_opening*opened)
-      law%opened = opened
+      law%opened = 0.0_rk
+      if (opened*self%wear_by_opening > hardly_open) law%opened = opened
    end function aged
 
    !> The law of faces that have grown from these: they are broken, and fit each other.
@@ -265,6 +271,17 @@ contains
       is_bonded = self%bond > 0.0_rk .and. (self%tension > 0.0_rk .or. self%cohesion > 0.0_rk)
    end function is_bonded
 
+   !> What is left of a bond: b [-].
+   elemental real(rk) function bond_left(self, apart, slip) result(bond)
+      class(contact_law_t), intent(in) :: self
+      real(rk), intent(in) :: apart  !< w [m]
+      real(rk), intent(in) :: slip  !< of the step [m]
+
+      bond = self%bond
+      if (self%wears) bond = max(0.0_rk, bond - self%wear_by_slip*abs(slip) - &
+                                 self%wear_by_opening*max(0.0_rk, apart - self%opened))
+   end function bond_left
+
    !> What the bond bears.
    pure type(strength_t) function strength(self, apart, slip) result(found)
       class(contact_law_t), intent(in) :: self
@@ -272,11 +289,9 @@ contains
       real(rk), intent(in) :: slip  !< of the step [m]
       real(rk) :: bond, bond_by(2)
 
-      bond = self%bond
+      bond = self%bond_left(apart, slip)
       bond_by = 0.0_rk
       if (self%wears) then
-         bond = bond - self%wear_by_slip*abs(slip) &
-                - self%wear_by_opening*max(0.0_rk, apart - self%opened)
          bond_by(2) = -self%wear_by_slip
          if (apart > self%opened) bond_by(1) = -self%wear_by_opening
       end if
@@ -285,7 +300,7 @@ contains
       found%cohesion_by = self%cohesion*bond_by
       found%tension = self%tension*bond
       found%tension_by = self%tension*bond_by
-      if (.not. apart < self%opened) return
+      if (.not. (self%opened > 0.0_rk .and. apart < self%opened)) return
       ! Closing again, to the origin.
       associate (share => max(0.0_rk, apart)/self%opened)
          found%tension = found%tension*share
