@@ -6,7 +6,7 @@ module app_geometry
    use base_number, only: integer_text
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_spec
-   use mechanics_outline, only: scene_corner, scene_edge
+   use scene_outline, only: scene_corner, scene_edge
    use mesh_builder, only: mesh_spec_t
    use mesh_check, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &

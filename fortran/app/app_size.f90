@@ -6,7 +6,7 @@ module app_size
    use base_number, only: brief_text
    use base_plane, only: polygon_area
    use growth_network, only: network_of_scene, total_length
-   use mechanics_outline, only: outline_of_scene, outline_t
+   use scene_outline, only: outline_of_scene, outline_t
    use mechanics_results, only: touches
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t, time_t

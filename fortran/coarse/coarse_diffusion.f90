@@ -31,8 +31,8 @@ contains
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
-      logical, intent(in) :: is_given(:)  !< (sides) the scalar is given; else nothing flows there
-      real(rk), intent(in) :: given(:)  !< (sides) its value [Pa]
+      logical, intent(in) :: is_given(:)  !< (sides) the scalar is given, else the flux
+      real(rk), intent(in) :: given(:)  !< (sides) its value [Pa], or the flux out of the body [m/s]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(response_t), intent(out) :: response  !< fluxes [m/s]
@@ -98,11 +98,11 @@ contains
       end do
    end subroutine add_fracture_faces
 
-   !> Outer boundary: the scalar is given, or nothing flows.
+   !> Outer boundary: the scalar is given, or the flux.
    subroutine apply_sides(mesh, is_given, given, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       logical, intent(in) :: is_given(:)  !< (sides)
-      real(rk), intent(in) :: given(:)  !< (sides) [Pa]
+      real(rk), intent(in) :: given(:)  !< (sides) [Pa] or [m/s]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
@@ -116,7 +116,7 @@ contains
             if (is_given(side)) then
                local%rhs(j, last) = local%rhs(j, last) - 0.5_rk*face_length(mesh, f)*given(side)
             else
-               call fix_unknown(local, j, 0.0_rk)
+               call fix_unknown(local, j, given(side))
             end if
          end associate
       end do

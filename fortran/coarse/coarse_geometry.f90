@@ -6,7 +6,7 @@ module coarse_geometry
    implicit none(type, external)
    private
 
-   public :: cell_area, corner_geometry, face_length
+   public :: cell_area, corner_geometry, face_length, outward_normal
 
 contains
 
@@ -47,6 +47,22 @@ contains
 
       length = norm2(mesh%xy(:, mesh%face_nodes(2, f)) - mesh%xy(:, mesh%face_nodes(1, f)))
    end function face_length
+
+   !> Unit vector out of the body on a face of its outer boundary [-].
+   pure function outward_normal(mesh, f) result(normal)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: f
+      real(rk) :: normal(2)
+      real(rk) :: along(2), inward(2)
+
+      associate (ends => mesh%xy(:, mesh%face_nodes(:, f)), &
+                 corners => mesh%xy(:, mesh%cell_nodes(:, mesh%face_cells(1, f))))
+         along = ends(:, 2) - ends(:, 1)
+         inward = sum(corners, dim=2)/3.0_rk - ends(:, 1)
+      end associate
+      normal = [along(2), -along(1)]/norm2(along)
+      if (dot_product(normal, inward) > 0.0_rk) normal = -normal
+   end function outward_normal
 
    !> Area of a cell.
    pure function cell_area(mesh, cell) result(area)

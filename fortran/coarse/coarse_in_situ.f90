@@ -96,22 +96,20 @@ contains
       pressure_at = self%pressure + self%pressure_per_y*(y - self%y_datum)
    end function pressure_at
 
-   !> What acts on a side beyond the state in situ, of a traction that the scene gives [Pa].
-   pure function side_traction(self, given, side, y) result(traction)
+   !> What acts on the outer boundary beyond the state in situ, of a traction of the scene [Pa].
+   pure function side_traction(self, given, outward, y) result(traction)
       class(in_situ_state_t), intent(in) :: self
       real(rk), intent(in) :: given(2)  !< [Pa]
-      integer(ik), intent(in) :: side  !< left, right, bottom, top
+      real(rk), intent(in) :: outward(2)  !< unit vector [-]
       real(rk), intent(in) :: y  !< [m]
       real(rk) :: traction(2)
-      real(rk), parameter :: outward(2, 4) = reshape([-1.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, &
-                                                      0.0_rk, -1.0_rk, 0.0_rk, 1.0_rk], [2, 4])
       real(rk) :: stress(3)
 
       traction = given
       if (self%is_held) return
       stress = self%stress_at(y)
-      traction = traction - [dot_product(stress([1, 3]), outward(:, side)), &
-                             dot_product(stress([3, 2]), outward(:, side))]
+      traction = traction - [dot_product(stress([1, 3]), outward), &
+                             dot_product(stress([3, 2]), outward)]
    end function side_traction
 
    !> Add to the load on the condensed fractures what gives them the contact tractions of the whole

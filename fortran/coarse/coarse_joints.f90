@@ -12,11 +12,11 @@ module coarse_joints
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
    use mesh_types, only: fracture_mesh_t, mesh_t, point_boundary, point_interior, point_tip
-   use scene_types, only: boundary_side_t
+   use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
 
-   public :: find_joints, joints_t
+   public :: find_joints, joints_t, renew_outlets
 
    !> Joints and outlets of one mesh. A branch is a cell that reaches one of them; its flow is
    !! positive into it.
@@ -141,6 +141,18 @@ contains
          is_joint = .true.
       end select
    end function is_joint
+
+   !> Take other pressures of the sides.
+   pure subroutine renew_outlets(mesh, sides, joints)
+      type(mesh_t), intent(in) :: mesh
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(joints_t), intent(inout) :: joints
+      logical :: is_given(mesh%fracture%n_points)
+      real(rk) :: given(mesh%fracture%n_points)
+
+      call find_side_pressures(mesh, sides, is_given, given)
+      joints%side_pressure = given(joints%point)
+   end subroutine renew_outlets
 
    !> The fracture points on sides whose pressure is given; in a corner the mean of two.
    pure subroutine find_side_pressures(mesh, sides, is_given, given)

@@ -18,11 +18,11 @@ module coarse_matrix
    use coarse_rock, only: rock_t
    use coarse_stress, only: find_stress_stencil
    use mesh_types, only: mesh_t
-   use scene_types, only: boundary_side_t
+   use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
 
-   public :: discretize, matrix_t
+   public :: discretize, matrix_t, renew_sides
 
    !> Lower triangle in blocks, by rows; the diagonal block is the last one of its row.
    type :: matrix_t
@@ -75,23 +75,16 @@ contains
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(response_t) :: flux, traction
       type(share_t) :: elastic, flow
-      integer(ik) :: at, c, info, r
+      integer(ik) :: at, c, r
 
       call find_regions(mesh, regions, rock%stiffness)
       call find_pattern(mesh, regions, matrix)
       do r = 1, regions%n_regions
-         call find_stress_stencil(mesh, rock, sides, regions, r, traction, elastic, info, in_situ)
-         if (info == 0) call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, &
-                                               sides%pressure, regions, r, flux, flow, info)
-         if (info /= 0) then
-            call refuse_place(mesh%xy(:, regions%nodes%at(r, 1_ik)), error)
-            return
-         end if
-         call move_alloc(traction%matrix, regions%traction(r)%matrix)
-         call move_alloc(flux%matrix, regions%flux(r)%matrix)
+         call find_stencils(mesh, rock, sides, regions, r, elastic, flow, error, in_situ)
+         if (allocated(error)) return
          call add_region(regions, r, elastic, flow, matrix)
+         call add_known(regions, r, elastic, flow, matrix)
       end do
       do c = 1, mesh%n_cells
          at = min(c, size(rock%shear, kind=ik))
@@ -102,6 +95,57 @@ contains
          end associate
       end do
    end subroutine discretize
+
+   !> Take other values on the sides, of the same kinds: what is known around the boundary's vertices.
+   subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(regions_t), intent(inout) :: regions
+      type(matrix_t), intent(inout) :: matrix
+      type(error_t), allocatable, intent(out) :: error
+      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
+      type(share_t) :: elastic, flow
+      integer(ik) :: r
+
+      matrix%elastic_known = 0.0_rk
+      matrix%flow_known = 0.0_rk
+      do r = 1, regions%n_regions
+         associate (faces => regions%faces)
+            if (.not. any(mesh%face_side(faces%item(faces%first(r):faces%last(r))) > 0)) cycle
+         end associate
+         call find_stencils(mesh, rock, sides, regions, r, elastic, flow, error, in_situ)
+         if (allocated(error)) return
+         call add_known(regions, r, elastic, flow, matrix)
+      end do
+   end subroutine renew_sides
+
+   !> Stress and flow around one vertex.
+   subroutine find_stencils(mesh, rock, sides, regions, region, elastic, flow, error, in_situ)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(boundary_side_t), intent(in) :: sides(:)
+      type(regions_t), intent(inout) :: regions
+      integer(ik), intent(in) :: region
+      type(share_t), intent(out) :: elastic, flow
+      type(error_t), allocatable, intent(out) :: error
+      type(in_situ_state_t), intent(in), optional :: in_situ
+      type(response_t) :: flux, traction
+      integer(ik) :: info
+
+      call find_stress_stencil(mesh, rock, sides, regions, region, traction, elastic, info, in_situ)
+      if (info == 0) then
+         call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, &
+                                merge(sides%pressure, -sides%inflow, sides%pressure_given), &
+                                regions, region, flux, flow, info)
+      end if
+      if (info /= 0) then
+         call refuse_place(mesh%xy(:, regions%nodes%at(region, 1_ik)), error)
+         return
+      end if
+      call move_alloc(traction%matrix, regions%traction(region)%matrix)
+      call move_alloc(flux%matrix, regions%flux(region)%matrix)
+   end subroutine find_stencils
 
    !> The error of cells that no stencil can be found on.
    subroutine refuse_place(xy, error)
@@ -174,10 +218,24 @@ contains
                                           + elastic%matrix(at_a:at_a + 2, at_b:at_b + 2)
             matrix%flow(entry) = matrix%flow(entry) + flow%matrix(a, b)
          end do
-         matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
-                                        + elastic%known(at_a:at_a + 2)
-         matrix%flow_known(row) = matrix%flow_known(row) + flow%known(a)
       end do
    end subroutine add_region
+
+   !> Add what the boundary data of one region give.
+   subroutine add_known(regions, region, elastic, flow, matrix)
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(share_t), intent(in) :: elastic, flow
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik) :: a, at
+
+      do a = 1, regions%blocks%length(region)
+         at = at_component(a, 1)
+         associate (row => regions%blocks%at(region, a))
+            matrix%elastic_known(:, row) = matrix%elastic_known(:, row) + elastic%known(at:at + 2)
+            matrix%flow_known(row) = matrix%flow_known(row) + flow%known(a)
+         end associate
+      end do
+   end subroutine add_known
 
 end module coarse_matrix

@@ -19,9 +19,10 @@ module coarse_model
    use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
-   use coarse_joints, only: find_joints, joints_t
-   use coarse_matrix, only: discretize, matrix_t
+   use coarse_joints, only: find_joints, joints_t, renew_outlets
+   use coarse_matrix, only: discretize, matrix_t, renew_sides
    use coarse_newton, only: solve_fractures
+   use coarse_points, only: add_point_forces, hold_points
    use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t
@@ -31,7 +32,9 @@ module coarse_model
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
    use coarse_wells, only: wells_t
    use mesh_types, only: mesh_t, point_interior
-   use scene_types, only: boundary_side_t, initial_t, scene_t
+   use scene_outline, only: sides_of_scene
+   use scene_sides, only: boundary_side_t
+   use scene_types, only: initial_t, scene_t
    implicit none(type, external)
    private
 
@@ -40,7 +43,7 @@ module coarse_model
    !> Everything that belongs to one mesh.
    type :: coarse_model_t
       type(rock_t) :: rock
-      type(boundary_side_t) :: sides(4)  !< pressures beyond those in situ
+      type(boundary_side_t), allocatable :: sides(:)  !< pressures beyond those in situ
       type(in_situ_state_t), allocatable :: in_situ  !< beyond which pressures and stresses count
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -60,9 +63,11 @@ module coarse_model
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
-      real(rk), allocatable :: weight(:, :)  !< (2, n_cells) that no stress in situ carries [N/m]
+      !> (2, n_cells) force that no stress in situ carries: weight, point loads; none if absent [N/m]
+      real(rk), allocatable :: weight(:, :)
    contains
       procedure :: set_mesh
+      procedure :: change_sides
       procedure :: equilibrate
       procedure :: advance
       procedure, private :: is_damped
@@ -86,7 +91,8 @@ contains
          self%rock_resistance = relative_resistance(mesh, self%rock, scene%fluid%viscosity)
       end if
       call place_in_situ(self, mesh, scene)
-      self%drained = any(scene%sides%pressure_given)
+      self%drained = any(self%sides%pressure_given .or. abs(self%sides%inflow) > 0.0_rk &
+                         .or. self%sides%changes())
       associate (choice => scene%discretization, fluid => scene%fluid)
          self%settings = newton_settings_t(tolerance=choice%newton_tolerance, &
                                            iterations_max=choice%newton_max, &
@@ -99,6 +105,7 @@ contains
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
       if (.not. allocated(error)) then
+         if (scene%has_points()) call hold_points(scene, mesh, self%matrix, self%weight)
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
          if (allocated(self%in_situ)) then
@@ -124,21 +131,21 @@ contains
       real(rk) :: force(2)  ! [N/m3]
       integer(ik) :: c
 
-      self%sides = scene%sides
       call find_in_situ(scene, self%rock%biot(1), self%in_situ)
       force = weight_of_scene(scene)
+      call take_sides(self, scene)
       if (allocated(self%in_situ)) then
-         self%sides%pressure = self%sides%pressure - self%in_situ%pressure
          force(2) = force(2) + self%in_situ%stress_per_y(2)
          self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
                                          c=1, mesh%fracture%n_cells)]
       end if
       if (allocated(self%weight)) deallocate (self%weight)
-      if (.not. any(abs(force) > 0.0_rk)) return
+      if (.not. (any(abs(force) > 0.0_rk) .or. scene%has_points())) return
       allocate (self%weight(2, mesh%n_cells))
       do c = 1, mesh%n_cells
          self%weight(:, c) = cell_area(mesh, c)*force
       end do
+      if (scene%has_points()) call add_point_forces(scene, mesh, self%weight)
 
    contains
 
@@ -152,6 +159,30 @@ contains
       end function middle_height
 
    end subroutine place_in_situ
+
+   !> What the scene prescribes on the sides, beyond the state in situ.
+   pure subroutine take_sides(self, scene)
+      class(coarse_model_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      self%sides = sides_of_scene(scene)
+      if (allocated(self%in_situ)) self%sides%pressure = self%sides%pressure - self%in_situ%pressure
+   end subroutine take_sides
+
+   !> Take other values on the sides, of the same kinds, in the course of time.
+   subroutine change_sides(self, mesh, scene, timers, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call timers%start(phase_assemble)
+      call take_sides(self, scene)
+      call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
+      if (self%joints%n > 0) call renew_outlets(mesh, self%sides, self%joints)
+      call timers%stop(phase_assemble)
+   end subroutine change_sides
 
    !> Whether the rock is condensed onto its fractures as a full matrix: as asked for, or where it
    !! costs less: its elimination grows with the cube of the fracture cells, that of the sparse one

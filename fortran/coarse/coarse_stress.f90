@@ -25,13 +25,13 @@ module coarse_stress
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
-   use coarse_geometry, only: corner_geometry, face_length
+   use coarse_geometry, only: corner_geometry, face_length, outward_normal
    use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
    use coarse_regions, only: fracture_end_region, regions_t, traction_face
    use coarse_rock, only: rock_t
    use mesh_types, only: mesh_t
-   use scene_types, only: boundary_side_t
+   use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
 
@@ -193,7 +193,7 @@ contains
       matrix(col, row) = matrix(col, row) + value
    end subroutine add_symmetric
 
-   !> Outer boundary: a component is either displaced as given or loaded as given.
+   !> Outer boundary: a component is displaced as given, loaded as given, or both on a spring.
    subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
@@ -208,16 +208,24 @@ contains
       do j = 1, regions%faces%length(region)
          f = regions%faces%at(region, j)
          if (mesh%face_side(f) == 0) cycle
-         associate (side => sides(mesh%face_side(f)), half_length => 0.5_rk*face_length(mesh, f))
-            traction = side%traction
+         associate (side => sides(mesh%face_side(f)), half_length => 0.5_rk*face_length(mesh, f), &
+                    outward => outward_normal(mesh, f))
+            traction = side%traction + side%normal_traction*outward &
+                       + side%shear_traction*[-outward(2), outward(1)]
             if (present(in_situ)) then
-               traction = in_situ%side_traction(side%traction, mesh%face_side(f), &
+               traction = in_situ%side_traction(traction, outward, &
                                                 mesh%xy(2, regions%nodes%at(region, 1_ik)))
             end if
             do axis = 1, 2
                n = 2*(j - 1) + axis
                if (side%displacement_given(axis)) then
                   local%rhs(n, last) = local%rhs(n, last) + half_length*side%displacement(axis)
+               else if (side%spring(axis) > 0.0_rk) then
+                  ! The side moves by what the traction lacks of the given one, over the spring.
+                  associate (give => half_length/side%spring(axis))
+                     local%matrix(n, n) = local%matrix(n, n) + give
+                     local%rhs(n, last) = local%rhs(n, last) + give*traction(axis)
+                  end associate
                else
                   call fix_unknown(local, n, traction(axis))
                end if

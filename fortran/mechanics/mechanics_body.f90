@@ -11,11 +11,12 @@ module mechanics_body
    use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
+   use fine_springs, only: add_side_springs
    use fine_recovery, only: recover_by_patches, recovery_t
    use growth_network, only: end_pieces
    use mechanics_faces, only: face_conditions, face_pressure, given_slip
    use mechanics_loads, only: body_loads, held_boundary
-   use mechanics_outline, only: outline_of_scene, outline_t
+   use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
@@ -184,7 +185,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(fine_mesh_t), intent(in), optional :: fine_before
       type(contact_t), intent(in), optional :: contact_before
-      integer(ik) :: worst
+      integer(ik) :: side, worst
 
       call mesh_quality(self%mesher, self%smallest_angle, worst, error)
       if (allocated(error)) return
@@ -202,6 +203,11 @@ contains
       end if
       call timers%stop(phase_assemble)
       if (allocated(error)) return
+      associate (sides => sides_of_scene(scene))
+         do side = 1, size(sides, kind=ik)
+            call add_side_springs(self%model%mesh, side, sides(side)%spring, self%model%stiffness)
+         end do
+      end associate
       associate (fine => self%model%mesh)
          self%contact = new_contact(fine)
          if (present(fine_before) .and. present(contact_before)) then

@@ -8,8 +8,9 @@ module mechanics_loads
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use mechanics_faces, only: face_pressure
-   use mechanics_outline, only: sides_of_scene
-   use scene_types, only: boundary_side_t, in_situ_t, scene_t
+   use scene_outline, only: sides_of_scene
+   use scene_sides, only: boundary_side_t
+   use scene_types, only: in_situ_t, scene_t
    implicit none(type, external)
    private
 

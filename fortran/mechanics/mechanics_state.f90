@@ -9,7 +9,7 @@ module mechanics_state
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_t
    use mechanics_onset, only: reading_t
-   use mechanics_outline, only: outline_of_scene, outline_t
+   use scene_outline, only: outline_of_scene, outline_t
    use mechanics_pieces, only: cuts_through
    use scene_types, only: scene_t
    use simulation_rocks, only: relative_toughness

@@ -60,8 +60,8 @@ contains
       else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)
-         if (.not. allocated(error)) call check_restraints(sheet, scene, error)
       end if
+      if (.not. allocated(error)) call check_restraints(sheet, scene, error)
       if (.not. allocated(error)) call check_laws(sheet, scene, error)
       if (.not. allocated(error)) call check_faces(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)
@@ -150,6 +150,17 @@ contains
          return
       end if
       if (scene%discretization%window_is_body) return
+      if (scene%domain%shape /= "rectangle") then
+         call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
+                     real_text(scene%discretization%window)//" but must be 'body' where the "// &
+                     "body is no rectangle: a square could reach beyond it")
+         return
+      else if (scene%has_points()) then
+         call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
+                     real_text(scene%discretization%window)//" but must be 'body' in a body "// &
+                     "with restraints or point loads, which a square would not know")
+         return
+      end if
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
       if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
          call refuse(error, sheet, sheet%find("fine"), "window", "is "// &

@@ -45,18 +45,13 @@ contains
       end associate
    end subroutine check_domain
 
-   !> The scene can have this shape.
+   !> What a shape needs.
    pure subroutine check_shape(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
 
-      if (scene%domain%shape /= "rectangle" .and. scene%has_fluid()) then
-         call refuse(error, sheet, sheet%find("domain"), "shape", "is '"// &
-                     trim(scene%domain%shape)//"' but must be 'rectangle' in a scene with &fluid")
-      else if (scene%domain%shape == "polygon") then
-         call check_corners(sheet, scene%domain, error)
-      end if
+      if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
    end subroutine check_shape
 
    !> A polygon has corners.

@@ -3,6 +3,7 @@ module scene_check_mechanics
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
    use scene_sheet, only: refuse, sheet_t
+   use scene_sides, only: boundary_side_t
    use scene_types, only: boundary_part_t, scene_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
@@ -33,7 +34,7 @@ contains
       held = 0.0_rk
       do side = 1, merge(4, 0, scene%domain%shape == "rectangle")
          do k = 1, 2
-            call hold(ends(:, k, side), scene%sides(side)%displacement_given, held)
+            call hold(ends(:, k, side), bears(scene%sides(side)), held)
          end do
       end do
       if (allocated(scene%parts)) then
@@ -46,8 +47,7 @@ contains
             call hold([point%x, point%y], point%displacement_given, held)
          end associate
       end do
-      holder = "&side"  ! &restraint is for mechanics-only scenes
-      if (.not. scene%has_fluid()) holder = "&side or a &restraint"
+      holder = "&side or a &restraint"
       if (.not. held(1, 1) > 0.0_rk) then
         call raise_error(error, "", sheet%path//": nothing holds the body against moving in x; "// &
                           "give a "//holder//" an x_displacement (see docs/input.md)")
@@ -61,8 +61,7 @@ contains
       if (.not. rest > smallest*(held(1, 1) + held(2, 2))) then
          if (scene%domain%shape == "rectangle") then
             holder = "&side, left or right, an x_displacement, or bottom or top a "// &
-                     "y_displacement"
-            if (.not. scene%has_fluid()) holder = holder//", or a &restraint either"
+                     "y_displacement, or a &restraint either"
          else
             holder = holder//" that keeps it from turning a displacement too"
          end if
@@ -72,6 +71,14 @@ contains
 
    contains
 
+      !> Which displacements of a side cannot be any.
+      pure function bears(side)
+         type(boundary_side_t), intent(in) :: side
+         logical :: bears(2)
+
+         bears = side%displacement_given .or. side%spring > 0.0_rk
+      end function bears
+
       !> The ends of a polygon's edges, or three points of an arc.
       pure subroutine hold_part(part, sums)
          type(boundary_part_t), intent(in) :: part
@@ -79,14 +86,14 @@ contains
          real(rk) :: arc(2), angle
          integer :: i, n
 
-         if (.not. any(part%displacement_given)) return
+         if (.not. any(bears(part%boundary_side_t))) return
          associate (d => scene%domain)
             if (allocated(part%edges)) then
                n = size(d%x)
                do i = 1, size(part%edges)
                   associate (first => part%edges(i), next => mod(part%edges(i), n) + 1)
-                     call hold([d%x(first), d%y(first)], part%displacement_given, sums)
-                     call hold([d%x(next), d%y(next)], part%displacement_given, sums)
+                     call hold([d%x(first), d%y(first)], bears(part%boundary_side_t), sums)
+                     call hold([d%x(next), d%y(next)], bears(part%boundary_side_t), sums)
                   end associate
                end do
                return
@@ -96,7 +103,7 @@ contains
             do i = 0, 2
                angle = arc(1) + 0.5_rk*real(i, rk)*(arc(2) - arc(1))
                call hold([d%x_centre + d%radius*cos(angle), d%y_centre + d%radius*sin(angle)], &
-                         part%displacement_given, sums)
+                         bears(part%boundary_side_t), sums)
             end do
          end associate
       end subroutine hold_part
@@ -187,9 +194,10 @@ contains
 
       do i = 1, size(scene%fractures)
          associate (fracture => scene%fractures(i), record => sheet%find("fracture", i))
-            if (scene%has_fluid() .and. fracture%law /= "friction") then
+            if (scene%has_fluid() .and. any(fracture%law == ["open", "slip"])) then
                call refuse(error, sheet, record, "law", "is '"//trim(fracture%law)// &
-                           "' but must be 'friction' in a scene with &fluid")
+                           "' but must be 'friction' or 'frictionless' in a scene with &fluid, "// &
+                           "whose faces bear on each other or on the fluid")
                return
             else if (fracture%law == "open" .and. fracture%held_closed) then
                call refuse(error, sheet, record, "held_closed", "is .true., but the faces of "// &

@@ -6,6 +6,7 @@ module scene_check_sides
    use base_tolerances, only: same_direction
    use scene_parameters, only: groups, side_names
    use scene_sheet, only: record_t, refuse, sheet_t
+   use scene_sides, only: side_quantities
    use scene_types, only: boundary_part_t, scene_t
    use scene_values, only: value_t
    use scene_words, only: real_text
@@ -30,6 +31,7 @@ contains
          if (groups(sheet%records(i)%group)%name /= "side") cycle
          call check_place(sheet, i, shape%text, error)
          if (.not. allocated(error)) call check_values(sheet, i, error)
+         if (.not. allocated(error)) call check_course(sheet, i, error)
          if (allocated(error)) return
       end do
    end subroutine check_sides
@@ -85,8 +87,19 @@ contains
                call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
                            axes(axis)//"_displacement but only one of them can be prescribed")
                return
+            else if (record%is_given(axes(axis)//"_displacement") .and. &
+                     record%is_given(axes(axis)//"_spring")) then
+               call refuse(error, sheet, i, axes(axis)//"_spring", "is given beside "// &
+                           axes(axis)//"_displacement but a side that is displaced as "// &
+                           "prescribed must not stand on springs")
+               return
             end if
          end do
+         if (record%is_given("inflow") .and. record%is_given("pressure")) then
+            call refuse(error, sheet, i, "inflow", "is given beside pressure but only one of "// &
+                        "them can be prescribed")
+            return
+         end if
          if (.not. (record%is_given("normal_traction") .or. &
                     record%is_given("shear_traction"))) return
          do k = 1, size(by_axis)
@@ -98,6 +111,56 @@ contains
          end do
       end associate
    end subroutine check_values
+
+   !> Each value is one or has as many as there are times, and these go on.
+   pure subroutine check_course(sheet, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: i  !< index of the record
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: time, value
+      integer(ik) :: k, n, most, wrong
+
+      time = sheet%records(i)%value("time")
+      n = 1
+      if (time%is_set) n = size(time%reals, kind=ik)
+      most = 1
+      do k = 1, size(side_quantities, kind=ik)
+         value = sheet%records(i)%value(trim(side_quantities(k)))
+         if (.not. value%is_set) cycle
+         most = max(most, size(value%reals, kind=ik))
+         if (any(size(value%reals) == [1_ik, n])) cycle
+         if (time%is_set) then
+            call refuse(error, sheet, i, trim(side_quantities(k)), "has "// &
+                        integer_text(size(value%reals, kind=ik))//" values but must have one, "// &
+                        "or as many as time, "//integer_text(n))
+         else
+            call refuse(error, sheet, i, trim(side_quantities(k)), "has "// &
+                        integer_text(size(value%reals, kind=ik))//" values but must have one, "// &
+                        "unless time says when they hold")
+         end if
+         return
+      end do
+      if (.not. time%is_set) return
+      wrong = 0
+      do k = n, 2, -1
+         if (time%reals(k) < time%reals(k - 1)) wrong = k
+      end do
+      if (most == 1) then
+         call refuse(error, sheet, i, "time", "is given, but no value of the side changes with "// &
+                     "it; one must have "//integer_text(max(n, 2_ik))//" values, one per time")
+      else if (wrong > 0) then
+         call refuse(error, sheet, i, "time", "goes back from "// &
+                     real_text(time%reals(wrong - 1))//" to "//real_text(time%reals(wrong))// &
+                     ", but must rise")
+      else
+         do k = 3, n
+            if (time%reals(k) > time%reals(k - 2)) cycle
+            call refuse(error, sheet, i, "time", "has "//real_text(time%reals(k))//" three "// &
+                        "times but at most two can be equal, before and after a jump")
+            return
+         end do
+      end if
+   end subroutine check_course
 
    !> The first of two names that is given.
    pure function given_of(record, first, second) result(name)

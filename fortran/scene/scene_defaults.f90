@@ -132,6 +132,12 @@ contains
                          .or. (side%pressure_given .and. side%pressure > 0.0_rk)
          end associate
       end do
+      is_pressed = is_pressed .or. any(scene%sides%normal_traction < 0.0_rk)
+      if (.not. allocated(scene%parts)) return
+      associate (side => scene%parts)
+         is_pressed = is_pressed .or. any(side%normal_traction < 0.0_rk) &
+                      .or. any(side%pressure_given .and. side%pressure > 0.0_rk)
+      end associate
    end function is_pressed
 
    pure subroutine default(value, otherwise)

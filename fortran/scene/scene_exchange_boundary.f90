@@ -3,7 +3,11 @@ module scene_exchange_boundary
    use base_kinds, only: rk
    use scene_exchange_values, only: exchange, radians, to_degrees
    use scene_sheet, only: record_t
-   use scene_types, only: boundary_part_t, boundary_side_t, point_load_t, restraint_t
+   use scene_sides, only: boundary_side_t, of_inflow, of_normal_traction, of_pressure, &
+                          of_shear_traction, of_x_displacement, of_x_traction, &
+                          of_y_displacement, of_y_traction, side_course_t, &
+                          side_quantities
+   use scene_types, only: boundary_part_t, point_load_t, restraint_t
    implicit none(type, external)
    private
 
@@ -41,21 +45,48 @@ contains
                                     record%is_set("y_displacement")]
          side%pressure_given = record%is_set("pressure")
       end if
-      if (side%pressure_given) call exchange(record, "pressure", side%pressure, reading)
-      call exchange(record, "normal_traction", side%normal_traction, reading, nothing=0.0_rk)
-      call exchange(record, "shear_traction", side%shear_traction, reading, nothing=0.0_rk)
+      if (reading .or. side%changes()) call exchange(record, "time", side%course%time, reading)
+      if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, side%course, reading)
+      call exchange_value(record, of_inflow, side%inflow, side%course, reading, nothing=0.0_rk)
+      call exchange_value(record, of_normal_traction, side%normal_traction, side%course, reading, nothing=0.0_rk)
+      call exchange_value(record, of_shear_traction, side%shear_traction, side%course, reading, nothing=0.0_rk)
+      call exchange(record, "x_spring", side%spring(1), reading, nothing=0.0_rk)
+      call exchange(record, "y_spring", side%spring(2), reading, nothing=0.0_rk)
       if (record%is_set("normal_traction") .or. record%is_set("shear_traction")) return
       if (side%displacement_given(1)) then
-         call exchange(record, "x_displacement", side%displacement(1), reading)
+         call exchange_value(record, of_x_displacement, side%displacement(1), side%course, reading)
       else
-         call exchange(record, "x_traction", side%traction(1), reading)
+         call exchange_value(record, of_x_traction, side%traction(1), side%course, reading)
       end if
       if (side%displacement_given(2)) then
-         call exchange(record, "y_displacement", side%displacement(2), reading)
+         call exchange_value(record, of_y_displacement, side%displacement(2), side%course, reading)
       else
-         call exchange(record, "y_traction", side%traction(2), reading)
+         call exchange_value(record, of_y_traction, side%traction(2), side%course, reading)
       end if
    end subroutine exchange_side
+
+   !> A quantity of a side: one value, or one per time.
+   pure subroutine exchange_value(record, quantity, value, course, reading, nothing)
+      type(record_t), intent(inout) :: record
+      integer, intent(in) :: quantity  !< index into side_quantities
+      real(rk), intent(inout) :: value  !< [unit of the quantity]
+      type(side_course_t), intent(inout) :: course
+      logical, intent(in) :: reading
+      real(rk), intent(in), optional :: nothing  !< what an absent value is
+      real(rk), allocatable :: list(:)
+      character(len=:), allocatable :: name
+
+      name = trim(side_quantities(quantity))
+      if (.not. reading .and. allocated(course%values(quantity)%of)) then
+         call exchange(record, name, course%values(quantity)%of, reading)
+         return
+      end if
+      call exchange(record, name, value, reading, nothing)
+      if (.not. reading) return
+      call exchange(record, name, list, reading)
+      if (.not. allocated(list)) return
+      if (size(list) > 1) call move_alloc(list, course%values(quantity)%of)
+   end subroutine exchange_value
 
    pure subroutine exchange_restraint(record, restraint, reading)
       type(record_t), intent(inout) :: record

@@ -25,7 +25,7 @@ contains
    !! to each other are told once.
    pure function near_ends(fractures, domain, near) result(list)
       type(fracture_t), intent(in) :: fractures(:)
-      type(domain_t), intent(in) :: domain  !< a rectangle
+      type(domain_t), intent(in) :: domain  !< its sides count if it is a rectangle
       real(rk), intent(in) :: near  !< [m]
       type(near_end_t), allocatable :: list(:)
       real(rk) :: distance, last(2, 2), room(4)
@@ -38,7 +38,7 @@ contains
             last = last_segment(fractures(i), end)
             room = [last(1, 1) - domain%x_min, domain%x_max - last(1, 1), &
                     last(2, 1) - domain%y_min, domain%y_max - last(2, 1)]
-            do side = 1, 4
+            do side = 1, merge(4, 0, domain%shape == "rectangle")
                if (is_near(room(side))) list = [list, near_end_t(i, 0, side, room(side))]
             end do
             do j = 1, size(fractures)

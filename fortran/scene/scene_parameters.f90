@@ -106,11 +106,12 @@ module scene_parameters
              meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
               "its edges, of a disc its rim or an arc of it. Per component either the "// &
               "displacement or the total traction is prescribed; what is not given is free of "// &
-              "traction. The displacements must hold the body against translation and rotation."), &
-      group_t("restraint", repeated=.true., scenes=in_mechanics, &
+              "traction. The displacements or springs must hold the body against translation and "// &
+              "rotation. With a fluid all values may change with time."), &
+      group_t("restraint", repeated=.true., &
               meaning="A point of the body held in place. It becomes a node of the mesh, and "// &
               "must not lie on a fracture, unless at a tip: each face has nodes of its own."), &
-      group_t("point_load", repeated=.true., scenes=in_mechanics, &
+      group_t("point_load", repeated=.true., &
               meaning="A force at a point of the body, per metre of thickness, times the load "// &
               "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &
               "unless at a tip: each face has nodes of its own."), &
@@ -358,31 +359,46 @@ module scene_parameters
                   meaning="Of a rectangle `left`, `right`, `bottom` or `top`; else any, "// &
                   "different from that of every other side"), &
       parameter_t("side", "edges", kind_wholes, absent="no polygon", range=at_least_one, &
-                  scenes=in_mechanics, &
                   meaning="Numbers of a polygon's edges, required there"), &
       parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
-                  scenes=in_mechanics, with="arc_to_deg", &
+                  with="arc_to_deg", &
                 meaning="Where an arc of a disc's rim begins, counter-clockwise from the x axis"), &
       parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
-                  scenes=in_mechanics, with="arc_from_deg", &
+                  with="arc_from_deg", &
                   meaning="Where it ends, above arc_from_deg by at most 360"), &
-      parameter_t("side", "x_displacement", unit="m", absent="traction is given", &
+      parameter_t("side", "x_displacement", kind_reals, "m", absent="traction is given", &
                   meaning="Prescribed displacement in x"), &
-      parameter_t("side", "y_displacement", unit="m", absent="traction is given", &
+      parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is given", &
                   meaning="Prescribed displacement in y"), &
-      parameter_t("side", "x_traction", unit="Pa", absent="0, or displacement is given", &
+      parameter_t("side", "x_traction", kind_reals, "Pa", absent="0, or displacement is given", &
                   meaning="Total traction in x: on the right side, compression is negative"), &
-      parameter_t("side", "y_traction", unit="Pa", absent="0, or displacement is given", &
+      parameter_t("side", "y_traction", kind_reals, "Pa", absent="0, or displacement is given", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
-      parameter_t("side", "normal_traction", unit="Pa", absent="0", scenes=in_mechanics, &
+      parameter_t("side", "normal_traction", kind_reals, "Pa", absent="0", &
                   meaning="Traction along the outward normal, compression is negative; beside "// &
                   "neither displacements nor tractions in x and y"), &
-      parameter_t("side", "shear_traction", unit="Pa", absent="0", scenes=in_mechanics, &
+      parameter_t("side", "shear_traction", kind_reals, "Pa", absent="0", &
                   meaning="Traction along the side in the direction that has the body on its "// &
                   "left; as normal_traction"), &
-      parameter_t("side", "pressure", unit="Pa", absent="no flow", scenes=in_fluid, &
+      parameter_t("side", "x_spring", unit="Pa/m", absent="none", range=positive, &
+                  meaning="The side stands on springs in x: traction against its displacement "// &
+                  "and over it, beside the tractions that are given"), &
+      parameter_t("side", "y_spring", unit="Pa/m", absent="none", range=positive, &
+                  meaning="The same in y"), &
+      parameter_t("side", "pressure", kind_reals, "Pa", absent="no flow", scenes=in_fluid, &
                   meaning="Prescribed pore pressure; of a fluid with a density that at y_datum "// &
                   "of &in_situ"), &
+      parameter_t("side", "inflow", kind_reals, "m/s", absent="no flow", scenes=in_fluid, &
+                  meaning="Volume that comes in per time and area; negative: goes out. Not "// &
+                  "beside pressure"), &
+      parameter_t("side", "time", kind_reals, "s", absent="nothing changes", scenes=in_fluid, &
+                  range=at_least_zero, &
+                  meaning="Times of the values of the side, of which each has one or as many. "// &
+                  "They are straight between these times; where two are equal they jump right "// &
+                  "after it. No step straddles one of them"), &
+      parameter_t("side", "schedule", kind_text, absent="no table", scenes=in_fluid, &
+                  meaning="CSV file beside the scene file with a row per time, instead of time "// &
+                  "and values: columns time_s, x_traction_pa, pressure_pa, inflow_m_s and so on"), &
       parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
       parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
       parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &

@@ -1,4 +1,5 @@
-!> Tables in CSV files that stand for lists of a scene file: the stages of a well.
+!> Tables in CSV files that stand for lists of a scene file: the stages of a well, the course of a
+!! side.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
 !! `pressure_pa`. Rows that begin with # are comments. What a table says becomes values of the
@@ -18,6 +19,9 @@ module scene_schedule
 
    public :: load_schedules
 
+   !> What the first time of a table says besides.
+   character(len=*), parameter :: start = "start"
+
    integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no table
 
 contains
@@ -30,11 +34,9 @@ contains
       integer :: i
 
       do i = 1, sheet%length
-         if (groups(sheet%records(i)%group)%name /= "injection") cycle
+         if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
          if (.not. file%is_set) cycle
-         call refuse_both(sheet, i, error)
-         if (allocated(error)) return
          call load_table(sheet, i, path_beside(sheet%path, file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
@@ -43,15 +45,16 @@ contains
       end do
    end subroutine load_schedules
 
-   !> What the table says must not stand in the scene file as well.
-   pure subroutine refuse_both(sheet, record, error)
+   !> What the table says, and when it begins, must not stand in the scene file as well.
+   pure subroutine refuse_both(sheet, record, names, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
+      character(len=*), intent(in) :: names(:)
       type(error_t), allocatable, intent(out) :: error
-      character(len=8), parameter :: names(4) = ["time    ", "rate    ", "pressure", "start   "]
       integer :: k
 
       do k = 1, size(names)
+         if (parameter_index(sheet%records(record)%group, trim(names(k))) == 0) cycle
          if (.not. sheet%records(record)%is_given(trim(names(k)))) cycle
          call refuse(error, sheet, record, trim(names(k)), "is given beside schedule, whose "// &
                      "table says it, but must be given once")
@@ -90,6 +93,11 @@ contains
          cells = split(rows(row)%text)
          if (.not. allocated(item)) then
             call find_columns(cells, sheet%records(record)%group, item, reason)
+            if (.not. allocated(reason)) then
+               call refuse_both(sheet, record, [character(len=20) :: &
+                                parameters(item)%name, start], error)
+               if (allocated(error)) return
+            end if
          else if (size(cells) /= size(item)) then
            reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
                      integer_text(size(item, kind=ik))//", one per column"

@@ -1,10 +1,11 @@
 !> What a scene is: the problem as the user states it, in SI units, after reading and checking.
 module scene_types
    use base_kinds, only: ik, rk
+   use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
 
-   public :: adaptive_t, boundary_part_t, boundary_side_t, discretization_t, domain_t, fluid_t
+   public :: adaptive_t, boundary_part_t, discretization_t, domain_t, fluid_t
    public :: fracture_t, growth_t, in_situ_t
    public :: initial_t
    public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, region_t, restraint_t
@@ -86,17 +87,6 @@ module scene_types
    contains
       procedure :: length => fracture_length
    end type fracture_t
-
-   !> One side of the body. Per component either displacement or total traction is prescribed.
-   type :: boundary_side_t
-      logical :: displacement_given(2) = .false.  !< x, y: else traction is given
-      real(rk) :: displacement(2) = 0.0_rk  !< [m]
-      real(rk) :: traction(2) = 0.0_rk  !< total traction [Pa]
-      !> along the outward normal, and along the boundary with the body on the left [Pa]
-      real(rk) :: normal_traction = 0.0_rk, shear_traction = 0.0_rk
-      logical :: pressure_given = .false.  !< else no flow
-      real(rk) :: pressure = 0.0_rk  !< [Pa]
-   end type boundary_side_t
 
    !> A part of the boundary of a polygon or a disc.
    type, extends(boundary_side_t) :: boundary_part_t
@@ -259,6 +249,7 @@ module scene_types
       procedure :: has_fluid
       procedure :: has_fractures
       procedure :: has_wells
+      procedure :: has_points
    end type scene_t
 
 contains
@@ -290,6 +281,14 @@ contains
       has_wells = allocated(self%injections)
       if (has_wells) has_wells = size(self%injections) > 0
    end function has_wells
+
+   !> Points of the body are held or loaded.
+   pure logical function has_points(self)
+      class(scene_t), intent(in) :: self
+
+      has_points = allocated(self%restraints) .and. allocated(self%point_loads)
+      if (has_points) has_points = size(self%restraints) + size(self%point_loads) > 0
+   end function has_points
 
    pure integer(ik) function stage_count(self)
       class(injection_t), intent(in) :: self

@@ -69,7 +69,7 @@ contains
          is_finer = seen%of_elements >= seen%of_edge
          if (is_finer .and. .not. seen%can_be_finer()) then
             is_finer = .not. seen%of_edge > worth_it*seen%of_elements
-         else if (.not. window%can_be_larger(self%scene)) then
+         else if (.not. window%can_be_larger()) then
             is_finer = .true.
          end if
          if (is_finer) then
@@ -84,7 +84,7 @@ contains
                call self%reference%make_anew(tip)
             end if
          else
-            if (.not. window%can_be_larger(self%scene)) return
+            if (.not. window%can_be_larger()) return
             takes_body = costs_as_body(self, 2.0_rk*window%edge_length(self%scene)) .and. &
                          uncertainty(self%tip(tip), self%rules%toughness) < far_off
             if (takes_body) then

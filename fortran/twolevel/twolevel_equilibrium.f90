@@ -28,7 +28,7 @@ module twolevel_equilibrium
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
-   use twolevel_wells, only: last_switch
+   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 

@@ -26,9 +26,8 @@ contains
       scale = abs(scene%initial%pressure)
       do i = 1, size(scene%sides)
          associate (side => scene%sides(i))
-            scale = max(scale, maxval(abs(side%traction)), abs(side%normal_traction), &
-                        abs(side%shear_traction), abs(side%pressure), &
-                        scene%material%young*maxval(abs(side%displacement))/extent)
+            scale = max(scale, side%largest_stress(), &
+                        scene%material%young*side%largest_displacement()/extent)
          end associate
       end do
       call find_in_situ(scene, scene%material%biot, in_situ)

@@ -86,7 +86,7 @@ contains
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
-         call summary%note(any(scene%sides%pressure_given), "flow across the outer boundary", &
+         call summary%note(self%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
          call summary%note(self%model%joints%n > 0, meeting, not_meeting)
          if (allocated(self%model%in_situ)) call summary%use_feature("stress in situ, hydrostatic")

@@ -18,7 +18,9 @@ module twolevel_state
    use growth_segment, only: segment_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
-   use scene_types, only: domain_t, scene_t
+   use scene_outline, only: outline_of_scene, outline_t
+   use scene_types, only: scene_t
+   use simulation_body, only: shape_body
    use simulation_laws, only: law_of_fracture
    use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
@@ -26,6 +28,7 @@ module twolevel_state
    use simulation_rocks, only: follow_outlines
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
+   use twolevel_schedule, only: follow_sides
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
    use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
@@ -111,6 +114,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call self%set_scene(scene)
+      call follow_sides(self%scene, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
       self%coarse_network = self%start
@@ -121,7 +125,7 @@ contains
       if (allocated(error)) return
       call first_cells(self)
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
-      call self%model%set_mesh(self%mesh, scene, timers, error)
+      call self%model%set_mesh(self%mesh, self%scene, timers, error)
       if (allocated(error)) return
       call feed_wells(self, error)
       if (allocated(error)) return
@@ -232,23 +236,17 @@ contains
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
+      type(outline_t) :: outline
 
+      outline = outline_of_scene(scene)
       rules = growth_rules_t(toughness=scene%material%toughness, &
                              increment=scene%growth%increment, exponent=scene%growth%exponent, &
                              together=together, &
                              joins=scene%growth%law /= "equilibrium", heads=.true., &
                              near=max(near_way*scene%growth%increment, &
                                       near_in_mesh*scene%discretization%size_fracture), &
-                             outline=corners(scene%domain))
+                             outline=outline%corners)
    end function rules_of_scene
-
-   !> Of the rectangle, counter-clockwise [m].
-   pure function corners(d) result(xy)
-      type(domain_t), intent(in) :: d
-      real(rk) :: xy(2, 4)
-
-      xy = reshape([d%x_min, d%y_min, d%x_max, d%y_min, d%x_max, d%y_max, d%x_min, d%y_max], [2, 4])
-   end function corners
 
    !> What to mesh.
    pure function coarse_spec(scene) result(spec)
@@ -260,6 +258,7 @@ contains
                          size_fracture=scene%discretization%size_fracture, &
                          size_boundary=scene%discretization%size_boundary)
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
+      call shape_body(scene, spec)
       if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
    end function coarse_spec
 
@@ -326,6 +325,11 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
+      if (any(self%model%sides%changes())) then
+         call follow_sides(self%scene, self%state%time + dt)
+         call self%model%change_sides(self%mesh, self%scene, timers, error)
+         if (allocated(error)) return
+      end if
       associate (rates => rate(self%scene%injections, self%state%time, dt))
          self%model%cells%injection = matmul(self%share, rates)
          if (self%model%joints%n > 0) then
@@ -512,6 +516,7 @@ contains
 
       asked = .true.
       if (allocated(self%asked)) asked = self%asked
+      call follow_sides(self%scene, self%state%time)
       call timers%start(phase_tips)
       call self%update_values()
       call self%windows%evaluate(self%scene, self%network, self%tip, asked, self%mesher, &

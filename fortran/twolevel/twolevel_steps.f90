@@ -14,7 +14,7 @@ module twolevel_steps
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_well_limits, only: note_wells, share_before_switch
-   use twolevel_wells, only: last_switch, next_switch
+   use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
    private
 

@@ -127,11 +127,11 @@ contains
             if (.not. self%windows%is_asked(w, self%tip)) cycle
             associate (window => self%windows%window(w))
                call window%intensities_with(tips, better, error, &
-                                            edge=window%curved_edge(scene, mesh, displacement, &
+                                            edge=window%curved_edge(mesh, displacement, &
                                                                     gradient))
                if (allocated(error)) return
                call window%intensities_with(tips, worse, error, &
-                                            edge=window%curved_edge(scene, mesh, linear, straight))
+                                            edge=window%curved_edge(mesh, linear, straight))
                if (allocated(error)) return
             end associate
          end do

@@ -15,7 +15,7 @@ module twolevel_well_limits
    use results_chronicle, only: event_well
    use scene_types, only: injection_t
    use twolevel_state, only: two_levels_t
-   use twolevel_wells, only: last_switch
+   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 

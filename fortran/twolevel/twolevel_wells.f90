@@ -11,8 +11,8 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-   public :: ask_wells, between_cells, control_wells, feed_joints, last_switch, mean_pressure
-   public :: next_switch, rate, share_wells, transfer_shares
+   public :: ask_wells, between_cells, control_wells, feed_joints, mean_pressure
+   public :: rate, share_wells, transfer_shares
 
 contains
 
@@ -207,43 +207,5 @@ contains
                 /(count(is_well) + count(is_fed))
       end if
    end function mean_pressure
-
-   !> The last time at which a stage of a well began or one ended, or the scene began [s].
-   pure function last_switch(scene, now) result(time)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: now  !< [s]
-      real(rk) :: time
-      integer(ik) :: k, w
-
-      time = 0.0_rk
-      do w = 1, size(scene%injections, kind=ik)
-         associate (well => scene%injections(w))
-            do k = 1, well%stage_count()
-               if (well%stage_start(k) <= now) time = max(time, well%stage_start(k))
-            end do
-            if (well%end <= now) time = max(time, well%end)
-         end associate
-      end do
-   end function last_switch
-
-   !> The next time at which a stage of a well begins or one ends, or the scene does [s].
-   pure function next_switch(scene, now) result(time)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: now  !< [s]
-      real(rk) :: time
-      real(rk) :: later
-      integer(ik) :: k, w
-
-      time = scene%time%end
-      later = now*(1.0_rk + same_time)
-      do w = 1, size(scene%injections, kind=ik)
-         associate (well => scene%injections(w))
-            do k = 1, well%stage_count()
-               if (well%stage_start(k) > later) time = min(time, well%stage_start(k))
-            end do
-            if (well%end > later) time = min(time, well%end)
-         end associate
-      end do
-   end function next_switch
 
 end module twolevel_wells

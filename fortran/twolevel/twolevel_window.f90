@@ -13,7 +13,6 @@ module twolevel_window
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
-   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side
    use fine_contact, only: contact_t
    use fine_contact_transfer, only: transfer_contact
    use fine_faces, only: face_conditions_t
@@ -23,13 +22,15 @@ module twolevel_window
    use fine_model, only: fine_model_t
    use growth_network, only: end_pieces
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
-   use mesh_types, only: mesh_t, network_t, side_count
+   use mesh_types, only: mesh_t, network_t
    use scene_types, only: material_t, scene_t
+   use simulation_body, only: shape_body
    use simulation_rocks, only: follow_outlines, keep_off, place_rocks, regions_of_other_rock
    use tips_intensity, only: tip_intensity
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
+   use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
@@ -65,6 +66,8 @@ module twolevel_window
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
+      type(window_sides_t) :: sides
+      real(rk), allocatable :: force_in_situ(:, :)  !< (2, n_nodes) beside that of sides in time [N/m]
       real(rk), allocatable :: pressure_in_situ(:)  !< (fracture cells) if the scene has any [Pa]
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
       !> Of the last solution; its slip is the history of the next.
@@ -99,10 +102,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       real(rk), allocatable :: piece(:, :)
-      integer(ik) :: i, side
+      integer(ik) :: i
 
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
       call place(self, scene, network, tips)
+      self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
       spec%x_min = self%lower(1)
       spec%y_min = self%lower(2)
       spec%x_max = self%upper(1)
@@ -110,6 +114,7 @@ contains
       spec%size_fracture = self%element_size
       spec%size_boundary = spec%size_fracture + grading*norm2(self%upper - self%lower)/2.0_rk
       spec%is_window = .true.
+      if (self%is_body) call shape_body(scene, spec)
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
       spec%joint_size = joint_share*spec%size_fracture
@@ -143,13 +148,19 @@ contains
       end do
       self%loads = no_loads(self%model%mesh)
       call load_in_situ(self, scene)
-      do side = 1, side_count
-         if (on_body(self, scene, side)) then
-            call add_side_traction(self%model%mesh, side, scene%sides(side)%traction, &
-                                   self%loads%force)
-         end if
-      end do
+      if (any(self%sides%of%changes())) self%force_in_situ = self%loads%force
+      call self%sides%add_loads(self%model%mesh, self%loads%force)
    end subroutine build
+
+   !> Take what the sides have now, in the course of time.
+   pure subroutine follow_sides(self, scene)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      call self%sides%change(scene)
+      self%loads%force = self%force_in_situ
+      call self%sides%add_loads(self%model%mesh, self%loads%force)
+   end subroutine follow_sides
 
    !> The state in situ and the weight. The tractions that hold the one count where nothing is held.
    pure subroutine load_in_situ(self, scene)
@@ -227,70 +238,11 @@ contains
    end function crack_modulus
 
    !> It is not the whole body yet.
-   pure logical function can_be_larger(self, scene)
+   pure logical function can_be_larger(self)
       class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      integer :: side
 
-      can_be_larger = .not. all([(on_body(self, scene, side), side=1, side_count)])
+      can_be_larger = .not. all(self%sides%on_body)
    end function can_be_larger
-
-   !> A side of the window lies on that side of the body.
-   pure logical function on_body(self, scene, side)
-      class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      integer(ik), intent(in) :: side
-
-      select case (side)
-      case (1)
-         on_body = self%lower(1) <= scene%domain%x_min
-      case (2)
-         on_body = self%upper(1) >= scene%domain%x_max
-      case (3)
-         on_body = self%lower(2) <= scene%domain%y_min
-      case default
-         on_body = self%upper(2) >= scene%domain%y_max
-      end select
-   end function on_body
-
-   !> Which displacements are given on the window's edge: all, and those of the scene where it lies
-   !! on a side of the body.
-   pure function held_edge(self, scene) result(boundary)
-      class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      type(fine_boundary_t) :: boundary
-      integer(ik) :: axis, side
-
-      boundary = free_boundary(self%model%mesh)
-      do side = 1, side_count
-         do axis = 1, 2
-            if (on_body(self, scene, side) .and. &
-                .not. scene%sides(side)%displacement_given(axis)) cycle
-            call hold_side(self%model%mesh, side, axis, boundary)
-         end do
-      end do
-   end function held_edge
-
-   !> Displacements that the scene gives on sides of the body, in the place of the coarse level's.
-   pure subroutine take_given(self, scene, edge)
-      class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(inout) :: edge(:, :)  !< (2, n_nodes) [m]
-      integer(ik) :: axis, face
-
-      associate (fine => self%model%mesh)
-         do face = 1, size(fine%boundary_sides, kind=ik)
-            associate (side => fine%boundary_sides(face), &
-                       nodes => [fine%boundary_faces(:, face), fine%boundary_middles(face)])
-               if (.not. on_body(self, scene, side)) cycle
-               do axis = 1, 2
-                  if (.not. scene%sides(side)%displacement_given(axis)) cycle
-                  edge(axis, nodes) = scene%sides(side)%displacement(axis)
-               end do
-            end associate
-         end do
-      end associate
-   end subroutine take_given
 
    !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves.
    !! There the pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the
@@ -312,6 +264,7 @@ contains
       else
          call self%model%set_mesh(self%mesh, elasticity(1), error)
       end if
+      if (.not. allocated(error)) call self%sides%add_springs(self%model%mesh, self%model%stiffness)
       self%undrained = undrained
    end subroutine set_rock
 
@@ -389,7 +342,8 @@ contains
             end associate
          end do
       end associate
-      self%loads%boundary_displacement = self%curved_edge(scene, coarse, values%displacement, &
+      if (any(self%sides%of%changes())) call follow_sides(self, scene)
+      self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
                                                           values%gradient)
       if (self%undrained) then
          self%loads%pore_pressure = scene%initial%pressure
@@ -404,7 +358,7 @@ contains
                               scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
-         call self%model%prepare(conditions, error, held_edge(self, scene))
+         call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
          if (allocated(error)) return
       end if
       call self%model%solve(self%loads, self%displacement, error, self%contact)
@@ -421,9 +375,8 @@ contains
    !> The window's edge with displacements that are quadratic in each coarse cell: linear between
    !! the nodes, and half of what the gradients there add; on sides of the body those of the scene,
    !! where it gives them. Zero at other nodes.
-   pure function curved_edge(self, scene, coarse, displacement, gradient) result(edge)
+   pure function curved_edge(self, coarse, displacement, gradient) result(edge)
       class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
       real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
       real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
@@ -444,7 +397,7 @@ contains
             end associate
          end do
       end associate
-      call take_given(self, scene, edge)
+      call self%sides%take_given(self%model%mesh, edge)
    end function curved_edge
 
    !> K_I and K_II under the last solution's loads with other displacements on the edge, or another

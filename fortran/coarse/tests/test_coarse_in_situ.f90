@@ -69,7 +69,7 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2000.0_rk*g])
       call checks%is_close(maxval(abs(state%stress_at(8.0_rk) - [-0.5_rk, -0.5_rk, 0.0_rk] &
                                       *(1.0e6_rk + 2000.0_rk*g))), 0.0_rk, 1.0e-9_rk, &
                            "stress without strain")
-      traction = state%side_traction([1.0_rk, 2.0_rk], 2_ik, 10.0_rk)
+      traction = state%side_traction([1.0_rk, 2.0_rk], [1.0_rk, 0.0_rk], 10.0_rk)
       call checks%is_close(maxval(abs(traction - [0.5e6_rk + 1.0_rk, 2.0_rk])), 0.0_rk, tight, &
                            "a total traction, beyond that stress")
       scene = basin()
@@ -77,7 +77,7 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2000.0_rk*g])
       call checks%is_close(maxval(abs(state%stress_at(2999.0_rk) &
                                       - [-2.018e6_rk, -2500.0_rk*g, 1.0e6_rk])), 0.0_rk, tight, &
                            "stress in situ")
-      traction = state%side_traction([1.0_rk, 2.0_rk], 2_ik, 10.0_rk)
+      traction = state%side_traction([1.0_rk, 2.0_rk], [1.0_rk, 0.0_rk], 10.0_rk)
       call checks%is_close(maxval(abs(traction - [1.0_rk, 2.0_rk])), 0.0_rk, 0.0_rk, &
                            "tractions beside the stress in situ")
       scene%in_situ%per_y(2) = 2499.0_rk*g  ! rounded by the user

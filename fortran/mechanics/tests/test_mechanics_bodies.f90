@@ -6,7 +6,7 @@ program test_mechanics_bodies
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use mechanics_fields, only: cell_stress
-   use mechanics_outline, only: outline_of_scene, outline_t
+   use scene_outline, only: outline_of_scene, outline_t
    use mechanics_simulation, only: mechanics_simulation_t
    use scene_defaults, only: resolve_defaults
    use scene_types, only: boundary_part_t, fracture_t, restraint_t, scene_t

@@ -159,14 +159,14 @@ contains
       call refuse(15, "&side name='left' x_displacement=0.0 x_traction=1.0 /", &
                   ":15: &side: x_traction is given beside x_displacement but only one of them "// &
                   "can be prescribed"//doc)
-      call refuse(15, "", ": nothing holds the body against moving in x; give a &side an "// &
-                  "x_displacement"//doc)
-      call refuse(16, "", ": nothing holds the body against moving in y; give a &side a "// &
-                  "y_displacement"//doc)
+      call refuse(15, "", ": nothing holds the body against moving in x; give a &side or a "// &
+                  "&restraint an x_displacement"//doc)
+      call refuse(16, "", ": nothing holds the body against moving in y; give a &side or a "// &
+                  "&restraint a y_displacement"//doc)
       call refuse_two(15, "&side name='left' y_displacement=0.0 /", &
                       16, "&side name='bottom' x_displacement=0.0 /", &
                       ": the body can rotate; give a &side, left or right, an x_displacement, "// &
-                      "or bottom or top a y_displacement"//doc)
+                      "or bottom or top a y_displacement, or a &restraint either"//doc)
       call refuse(5, "  biot=0.8 porosity=0.9", &
                   ":5: &material: biot is 0.8 but must be at least the porosity, 0.9"//doc)
       call refuse_two(5, "  biot=0.0 porosity=0.0", 4, "  poisson=0.2", &

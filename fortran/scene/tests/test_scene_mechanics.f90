@@ -28,7 +28,7 @@ program test_scene_mechanics
    call refuse(6, "&side name='top' pressure=1 /", ":6: &side: pressure needs a fluid")
    call refuse(10, "&growth enabled=.true. threshold=0.5 /", "threshold needs a fluid")
    call refuse(8, trim(good(8))//" &fluid compressibility=0 viscosity=1 /", &
-               ":4: &restraint: is for mechanics-only scenes, but this one has the group &fluid")
+               ":8: &load: is for mechanics-only scenes, but this one has the group &fluid")
    call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 /", "friction, which the law 'friction' "// &
                "needs, is missing")
    call accept("friction", 3, "&fracture name='f' x=0.5 1 y=2*0.5 friction=0.5 /")

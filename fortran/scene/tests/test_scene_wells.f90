@@ -72,9 +72,14 @@ contains
    subroutine check_table()
       call put_lines(table, [character(len=40) :: "# stages", "rate_m2_s, time_s", " 1e-7 , 0", &
                              "", "2.5e-7,60", "# and shut in", "0,120"])
-      call read_with("&injection fracture='f1' schedule='"//table//"' pressure=9e6 /")
-      call checks%fails_with(error, path//":10: &injection: pressure is given beside schedule", &
+      call read_with("&injection fracture='f1' schedule='"//table//"' rate=1e-7 /")
+      call checks%fails_with(error, path//":10: &injection: rate is given beside schedule", &
                              "what a table says is given once")
+      call read_with("&injection fracture='f1' schedule='"//table//"' start=1.0 /")
+      call checks%fails_with(error, path//":10: &injection: start is given beside schedule", &
+                             "when a table begins as well")
+      call read_with("&injection fracture='f1' schedule='"//table//"' pressure=9e6 /")
+      call checks%no_error(error, "a limit beside a table of rates")
       call read_with("&injection fracture='f1' schedule='"//table//"' /")
       call checks%no_error(error, "a table")
       associate (well => scene%injections(1))

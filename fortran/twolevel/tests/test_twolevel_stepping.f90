@@ -4,7 +4,8 @@ program test_twolevel_stepping
    use base_kinds, only: rk
    use scene_types, only: injection_t, scene_t, time_t
    use twolevel_stepping, only: stepper_t, trial_t
-   use twolevel_wells, only: next_switch, rate
+   use twolevel_schedule, only: next_switch
+   use twolevel_wells, only: rate
    implicit none(type, external)
 
    !> Steps of a given length, and such that their error is small.

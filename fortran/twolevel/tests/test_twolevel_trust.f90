@@ -195,7 +195,7 @@ contains
                gradient(:, 2, v) = [-x, 4.0_rk*y - 3.0_rk*x + 1.0_rk]
             end associate
          end do
-         edge = window%curved_edge(simulation%scene, mesh, values, gradient)
+         edge = window%curved_edge(mesh, values, gradient)
          worst = 0.0_rk
          do v = 1, window%model%mesh%n_nodes
             if (.not. window%model%mesh%on_boundary(v)) cycle

@@ -1,8 +1,9 @@
 !> The outer boundary of the body as a closed polygon.
-module mechanics_outline
+module scene_outline
    use base_kinds, only: ik, rk
    use base_plane, only: polygon_area
-   use scene_types, only: boundary_part_t, boundary_side_t, domain_t, scene_t
+   use scene_sides, only: boundary_side_t
+   use scene_types, only: boundary_part_t, domain_t, scene_t
    implicit none(type, external)
    private
 
@@ -24,12 +25,15 @@ contains
    pure function outline_of_scene(scene) result(outline)
       type(scene_t), intent(in) :: scene
       type(outline_t) :: outline
-      integer :: n
 
-      n = size(scene%restraints)
-      allocate (outline%fixed_points(2, n + size(scene%point_loads)))
-      outline%fixed_points(1, :) = [scene%restraints%x, scene%point_loads%x]
-      outline%fixed_points(2, :) = [scene%restraints%y, scene%point_loads%y]
+      if (scene%has_points()) then
+         outline%fixed_points = transpose(reshape([scene%restraints%x, scene%point_loads%x, &
+                                                   scene%restraints%y, scene%point_loads%y], &
+                                                  [size(scene%restraints) &
+                                                   + size(scene%point_loads), 2]))
+      else
+         allocate (outline%fixed_points(2, 0))
+      end if
       associate (d => scene%domain)
          select case (d%shape)
          case ("disc")
@@ -242,4 +246,4 @@ contains
       end do
    end subroutine sort
 
-end module mechanics_outline
+end module scene_outline

@@ -1,0 +1,136 @@
+!> What a scene prescribes on the sides of the body, at one time or in the course of time.
+module scene_sides
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: boundary_side_t, in_time, side_course_t, side_quantities
+   public :: of_inflow, of_normal_traction, of_pressure, of_shear_traction, of_x_displacement
+   public :: of_x_traction, of_y_displacement, of_y_traction
+
+   !> What may change with time, by its name in a scene file.
+   character(len=16), parameter :: side_quantities(8) = [character(len=16) :: &
+                                                         "x_displacement", "y_displacement", &
+                                                         "x_traction", "y_traction", &
+                                                         "normal_traction", "shear_traction", &
+                                                         "pressure", "inflow"]
+   integer, parameter :: of_x_displacement = 1, of_y_displacement = 2, of_x_traction = 3, &
+                         of_y_traction = 4, of_normal_traction = 5, of_shear_traction = 6, &
+                         of_pressure = 7, of_inflow = 8
+
+   !> The values of a quantity at the times of a course.
+   type :: list_t
+      real(rk), allocatable :: of(:)  !< (times); unallocated: it does not change
+   end type list_t
+
+   !> Values in time: straight between the times, the first before and the last after them. Where
+   !! two times are equal the value jumps right after that time.
+   type :: side_course_t
+      real(rk), allocatable :: time(:)  !< in rising order; unallocated: nothing changes [s]
+      type(list_t) :: values(size(side_quantities))
+   end type side_course_t
+
+   !> One side of the body, now. Per component either displacement or total traction is prescribed,
+   !! or the side stands on springs, whose forces act beside that traction.
+   type :: boundary_side_t
+      logical :: displacement_given(2) = .false.  !< x, y: else traction is given
+      real(rk) :: displacement(2) = 0.0_rk  !< [m]
+      real(rk) :: traction(2) = 0.0_rk  !< total traction [Pa]
+      !> along the outward normal, and along the boundary with the body on the left [Pa]
+      real(rk) :: normal_traction = 0.0_rk, shear_traction = 0.0_rk
+      real(rk) :: spring(2) = 0.0_rk  !< traction against the displacement, over it [Pa/m]
+      logical :: pressure_given = .false.  !< else inflow is, mostly none
+      real(rk) :: pressure = 0.0_rk  !< [Pa]
+      real(rk) :: inflow = 0.0_rk  !< volume that comes in per time and area [m/s]
+      type(side_course_t) :: course
+   contains
+      procedure :: changes
+      procedure :: set_time
+      procedure :: largest_stress
+      procedure :: largest_displacement
+   end type boundary_side_t
+
+contains
+
+   !> Something of it changes with time.
+   elemental logical function changes(self)
+      class(boundary_side_t), intent(in) :: self
+
+      changes = allocated(self%course%time)
+   end function changes
+
+   !> Take the values of a time.
+   elemental subroutine set_time(self, time)
+      class(boundary_side_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+
+      if (.not. self%changes()) return
+      call set(of_x_displacement, self%displacement(1))
+      call set(of_y_displacement, self%displacement(2))
+      call set(of_x_traction, self%traction(1))
+      call set(of_y_traction, self%traction(2))
+      call set(of_normal_traction, self%normal_traction)
+      call set(of_shear_traction, self%shear_traction)
+      call set(of_pressure, self%pressure)
+      call set(of_inflow, self%inflow)
+
+   contains
+
+      pure subroutine set(quantity, value)
+         integer, intent(in) :: quantity
+         real(rk), intent(inout) :: value  !< [unit of the quantity]
+
+         associate (list => self%course%values(quantity))
+            if (allocated(list%of)) value = in_time(self%course%time, list%of, time)
+         end associate
+      end subroutine set
+
+   end subroutine set_time
+
+   !> The value at a time, from those at the times of a course [unit of the values].
+   pure real(rk) function in_time(times, values, time)
+      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: values(:)
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik) :: k
+
+      k = count(times < time, kind=ik)
+      if (k == 0) then
+         in_time = values(1)
+      else if (k == size(times)) then
+         in_time = values(k)
+      else
+         associate (share => (time - times(k))/(times(k + 1) - times(k)))
+            in_time = (1.0_rk - share)*values(k) + share*values(k + 1)
+         end associate
+      end if
+   end function in_time
+
+   !> Of all tractions and pressures at any time [Pa].
+   elemental real(rk) function largest_stress(self) result(largest)
+      class(boundary_side_t), intent(in) :: self
+      integer :: k
+
+      largest = max(maxval(abs(self%traction)), abs(self%normal_traction), &
+                    abs(self%shear_traction), abs(self%pressure))
+      do k = of_x_traction, of_pressure
+         associate (list => self%course%values(k))
+            if (allocated(list%of)) largest = max(largest, maxval(abs(list%of)))
+         end associate
+      end do
+   end function largest_stress
+
+   !> Of the displacements at any time [m].
+   elemental real(rk) function largest_displacement(self) result(largest)
+      class(boundary_side_t), intent(in) :: self
+      integer :: k
+
+      largest = maxval(abs(self%displacement))
+      do k = of_x_displacement, of_y_displacement
+         associate (list => self%course%values(k))
+            if (allocated(list%of)) largest = max(largest, maxval(abs(list%of)))
+         end associate
+      end do
+   end function largest_displacement
+
+end module scene_sides

@@ -1,0 +1,147 @@
+!> Where the edge of a window lies on sides of the body: what the scene prescribes there.
+module twolevel_window_sides
+   use base_kinds, only: ik, rk
+   use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, &
+                            fine_boundary_t, free_boundary, hold_side, nearest_node
+   use fine_mesh, only: fine_mesh_t
+   use fine_springs, only: add_side_springs
+   use scene_outline, only: sides_of_scene
+   use scene_sides, only: boundary_side_t
+   use scene_types, only: point_load_t, restraint_t, scene_t
+   implicit none(type, external)
+   private
+
+   public :: window_sides, window_sides_t
+
+   !> The sides of a window, by their numbers in its mesh.
+   type :: window_sides_t
+      type(boundary_side_t), allocatable :: of(:)
+      logical, allocatable :: on_body(:)  !< else the coarse level gives the displacement
+      type(restraint_t), allocatable :: restraints(:)  !< of the whole body; none in a part of it
+      type(point_load_t), allocatable :: point_loads(:)  !< likewise
+   contains
+      procedure :: change
+      procedure :: held_edge
+      procedure :: take_given
+      procedure :: add_loads
+      procedure :: add_springs
+   end type window_sides_t
+
+contains
+
+   !> The sides of the whole body, or of a rectangle in it.
+   pure function window_sides(scene, is_body, lower, upper) result(sides)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: is_body
+      real(rk), intent(in) :: lower(2), upper(2)  !< corners of the rectangle [m]
+      type(window_sides_t) :: sides
+
+      sides%of = sides_of_scene(scene)
+      allocate (sides%restraints(0), sides%point_loads(0))
+      if (scene%has_points()) then
+         sides%restraints = scene%restraints
+         sides%point_loads = scene%point_loads
+      end if
+      if (is_body) then
+         sides%on_body = spread(.true., 1, size(sides%of))
+      else
+         associate (d => scene%domain)
+            sides%on_body = [lower(1) <= d%x_min, upper(1) >= d%x_max, &
+                             lower(2) <= d%y_min, upper(2) >= d%y_max]
+         end associate
+      end if
+   end function window_sides
+
+   !> Take what the scene prescribes now.
+   pure subroutine change(self, scene)
+      class(window_sides_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      self%of = sides_of_scene(scene)
+   end subroutine change
+
+   !> Which displacements are given on the window's edge: all, and those of the scene where it lies
+   !! on a side of the body.
+   pure function held_edge(self, fine) result(boundary)
+      class(window_sides_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      type(fine_boundary_t) :: boundary
+      integer(ik) :: axis, node, side
+
+      boundary = free_boundary(fine)
+      do side = 1, size(self%on_body, kind=ik)
+         do axis = 1, 2
+            if (self%on_body(side) .and. .not. self%of(side)%displacement_given(axis)) cycle
+            call hold_side(fine, side, axis, boundary)
+         end do
+      end do
+      do side = 1, size(self%restraints, kind=ik)
+         associate (point => self%restraints(side))
+            node = nearest_node(fine, [point%x, point%y])
+            boundary%prescribed(:, node) = boundary%prescribed(:, node) .or. &
+                                           point%displacement_given
+         end associate
+      end do
+   end function held_edge
+
+   !> Displacements that the scene gives on sides of the body, in the place of the coarse level's.
+   pure subroutine take_given(self, fine, edge)
+      class(window_sides_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(inout) :: edge(:, :)  !< (2, n_nodes) [m]
+      integer(ik) :: axis, face, k
+
+      do face = 1, size(fine%boundary_sides, kind=ik)
+         associate (side => fine%boundary_sides(face), &
+                    nodes => [fine%boundary_faces(:, face), fine%boundary_middles(face)])
+            if (.not. self%on_body(side)) cycle
+            do axis = 1, 2
+               if (.not. self%of(side)%displacement_given(axis)) cycle
+               edge(axis, nodes) = self%of(side)%displacement(axis)
+            end do
+         end associate
+      end do
+      do k = 1, size(self%restraints, kind=ik)
+         associate (point => self%restraints(k))
+            associate (place => edge(:, nearest_node(fine, [point%x, point%y])))
+               where (point%displacement_given) place = point%displacement
+            end associate
+         end associate
+      end do
+   end subroutine take_given
+
+   !> Add the tractions and forces that the scene gives.
+   pure subroutine add_loads(self, fine, force)
+      class(window_sides_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
+      integer(ik) :: side
+
+      do side = 1, size(self%on_body, kind=ik)
+         if (.not. self%on_body(side)) cycle
+         associate (given => self%of(side))
+            call add_side_traction(fine, side, given%traction, force)
+            if (.not. any(abs([given%normal_traction, given%shear_traction]) > 0.0_rk)) cycle
+            call add_side_stress(fine, side, given%normal_traction, given%shear_traction, force)
+         end associate
+      end do
+      do side = 1, size(self%point_loads, kind=ik)
+         associate (load => self%point_loads(side))
+            call add_point_force(fine, [load%x, load%y], load%force, force)
+         end associate
+      end do
+   end subroutine add_loads
+
+   !> Add the springs that sides of the body stand on.
+   pure subroutine add_springs(self, fine, stiffness)
+      class(window_sides_t), intent(in) :: self
+      type(fine_mesh_t), intent(in) :: fine
+      real(rk), intent(inout) :: stiffness(:, :, :)  !< (12, 12, n_cells) [Pa]
+      integer(ik) :: side
+
+      do side = 1, size(self%on_body, kind=ik)
+         if (self%on_body(side)) call add_side_springs(fine, side, self%of(side)%spring, stiffness)
+      end do
+   end subroutine add_springs
+
+end module twolevel_window_sides
