@@ -141,9 +141,11 @@ contains
 
       ratio = 1.0_rk
       if (.not. scene%material%toughness < huge(1.0_rk)) return
-      if (scene%fractures(fracture)%toughness < huge(1.0_rk)) then
-         ratio = scene%fractures(fracture)%toughness/scene%material%toughness
-         return
+      if (allocated(scene%fractures)) then
+         if (scene%fractures(fracture)%toughness < huge(1.0_rk)) then
+            ratio = scene%fractures(fracture)%toughness/scene%material%toughness
+            return
+         end if
       end if
       if (.not. allocated(scene%regions)) return
       if (all(abs(scene%regions%material%toughness - scene%material%toughness) <= 0.0_rk)) return
