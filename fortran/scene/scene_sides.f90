@@ -4,7 +4,7 @@ module scene_sides
    implicit none(type, external)
    private
 
-   public :: boundary_side_t, in_time, side_course_t, side_quantities
+   public :: boundary_side_t, in_time, mean_in_time, side_course_t, side_quantities
    public :: of_inflow, of_normal_traction, of_pressure, of_shear_traction, of_x_displacement
    public :: of_x_traction, of_y_displacement, of_y_traction
 
@@ -59,10 +59,12 @@ contains
       changes = allocated(self%course%time)
    end function changes
 
-   !> Take the values of a time.
-   elemental subroutine set_time(self, time)
+   !> Take the values of a time, and of the inflow the mean since an earlier one: what comes in is
+   !! then what the course says, however long the steps.
+   elemental subroutine set_time(self, time, since)
       class(boundary_side_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: since  !< at most that [s]
 
       if (.not. self%changes()) return
       call set(of_x_displacement, self%displacement(1))
@@ -72,7 +74,9 @@ contains
       call set(of_normal_traction, self%normal_traction)
       call set(of_shear_traction, self%shear_traction)
       call set(of_pressure, self%pressure)
-      call set(of_inflow, self%inflow)
+      associate (list => self%course%values(of_inflow))
+         if (allocated(list%of)) self%inflow = mean_in_time(self%course%time, list%of, since, time)
+      end associate
 
    contains
 
@@ -105,6 +109,27 @@ contains
          end associate
       end if
    end function in_time
+
+   !> The mean value between two times; where these are the same the value then.
+   pure real(rk) function mean_in_time(times, values, since, time) result(mean)
+      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: values(:)
+      real(rk), intent(in) :: since, time  !< [s]
+      real(rk) :: ends(2)
+      integer(ik) :: k
+
+      mean = in_time(times, values, time)
+      if (.not. time > since) return
+      mean = values(1)*max(0.0_rk, min(time, times(1)) - since) &
+             + values(size(values))*max(0.0_rk, time - max(since, times(size(times))))
+      do k = 2, size(times, kind=ik)
+         ends = [max(since, times(k - 1)), min(time, times(k))]
+         if (.not. ends(2) > ends(1)) cycle
+         ! Straight in between: the value in the middle.
+         mean = mean + (ends(2) - ends(1))*in_time(times, values, 0.5_rk*sum(ends))
+      end do
+      mean = mean/(time - since)
+   end function mean_in_time
 
    !> Of all tractions and pressures at any time [Pa].
    elemental real(rk) function largest_stress(self) result(largest)

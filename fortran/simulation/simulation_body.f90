@@ -23,6 +23,7 @@ contains
       if (scene%domain%shape == "rectangle") return
       spec%corners = outline%corners
       spec%edge_side = outline%edge_side
+      spec%is_window = .false.  ! whose edges are straight and cut fractures
    end subroutine shape_body
 
 end module simulation_body

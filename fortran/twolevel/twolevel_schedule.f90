@@ -11,13 +11,14 @@ module twolevel_schedule
 
 contains
 
-   !> Give the sides the values of a time.
-   elemental subroutine follow_sides(scene, time)
+   !> Give the sides the values of a time, to which a step leads from an earlier one.
+   elemental subroutine follow_sides(scene, time, since)
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: since  !< [s]
 
-      call scene%sides%set_time(time)
-      if (allocated(scene%parts)) call scene%parts%set_time(time)
+      call scene%sides%set_time(time, since)
+      if (allocated(scene%parts)) call scene%parts%set_time(time, since)
    end subroutine follow_sides
 
    !> The last time at which a stage of a well began or one ended, a course of a side turned, or the

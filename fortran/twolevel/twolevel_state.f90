@@ -114,7 +114,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call self%set_scene(scene)
-      call follow_sides(self%scene, 0.0_rk)
+      call follow_sides(self%scene, 0.0_rk, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
       self%coarse_network = self%start
@@ -326,7 +326,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (any(self%model%sides%changes())) then
-         call follow_sides(self%scene, self%state%time + dt)
+         call follow_sides(self%scene, self%state%time + dt, self%state%time)
          call self%model%change_sides(self%mesh, self%scene, timers, error)
          if (allocated(error)) return
       end if
@@ -516,7 +516,7 @@ contains
 
       asked = .true.
       if (allocated(self%asked)) asked = self%asked
-      call follow_sides(self%scene, self%state%time)
+      call follow_sides(self%scene, self%state%time, self%state%time)
       call timers%start(phase_tips)
       call self%update_values()
       call self%windows%evaluate(self%scene, self%network, self%tip, asked, self%mesher, &
