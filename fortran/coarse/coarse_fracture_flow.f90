@@ -25,8 +25,8 @@ module coarse_fracture_flow
 contains
 
    !> Flux between the rock and cell i on both sides: lambda = (kappa/mu)(p - p_F)/(a/2), kappa =
-   !! a^2/12, in a row with the skin; at a tip with what the flux there needs (coarse_tips). Its equations are those of p+
-   !! and p-.
+   !! a^2/12, in a row with the skin; at a tip with what the flux there needs (coarse_tips). Its
+   !! equations are those of p+ and p-.
    pure subroutine fill_exchange(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]

@@ -139,8 +139,8 @@ contains
       end do
    end subroutine add_contact_tractions
 
-   !> What presses the faces of a fracture cell on each other in its middle, beyond the pressure; not
-   !! negative [Pa].
+   !> What presses the faces of a fracture cell on each other in its middle, beyond the pressure; no
+   !! less than nothing [Pa].
    pure real(rk) function contact_pressure(self, fracture, cell) result(pressure)
       class(in_situ_state_t), intent(in) :: self
       type(fracture_mesh_t), intent(in) :: fracture

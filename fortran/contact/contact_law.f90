@@ -20,8 +20,8 @@
 !! Joints close under pressure (Bandis, Lumsden and Barton 1983): pressed with s = -f_n their faces
 !! come nearer than where they touch, by
 !!   d(s) = s/(k_ni + s/d_max),   that is   s = k_ni d/(1 - d/d_max),
-!! so a closed point has [u]_n - g + d(s) = 0 in place of [u]_n - g = 0, and open ones are as ever, for
-!! d(0) = 0. In s the law has no pole and is concave, linear under tension; in d Newton's method
+!! so a closed point has [u]_n - g + d(s) = 0 in place of [u]_n - g = 0, and open ones are as ever,
+!! for d(0) = 0. In s the law has no pole and is concave, linear under tension; in d Newton's method
 !! would leave d < d_max. Its equation is multiplied by that of two springs in a row,
 !! 1/(1/c + 1/k_ni) in place of c, with which it has the size of -f_n where states change. What
 !! closure the faces have where jumps count from, d_rest, is taken off: those of a scene with a
@@ -373,7 +373,8 @@ contains
          residual(2) = traction(2) - friction*pressure*way
          by_traction(2, :) = [friction*way*(1.0_rk - spring*closing), 1.0_rk]
          by_jump(2, :) = friction*way*spring*[1.0_rk, -gap_slope]
-         by_jump(2, 2) = by_jump(2, 2) - way*way_of_slip(jump(2) - slip_before, way)*by_slip*pressure
+         by_jump(2, 2) = by_jump(2, 2) &
+                         - way*way_of_slip(jump(2) - slip_before, way)*by_slip*pressure
       end if
    end subroutine contact_equations
 

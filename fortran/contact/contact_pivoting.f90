@@ -52,8 +52,8 @@ contains
 
    !> Jumps that fulfil the law, up to round-off that may have grown with the number of pivots.
    !! Lengths are scaled out, jumps are multiplied by the law's stiffness: all is stress.
-   subroutine pivot_to_solution(stiffness, load, law, compliance, slip_given, slip_before, given, x, &
-                                is_solved)
+   subroutine pivot_to_solution(stiffness, load, law, compliance, slip_given, slip_before, given, &
+                                x, is_solved)
       real(rk), intent(in) :: stiffness(:, :)  !< (2 n, 2 n) an equation per column [-]
       real(rk), intent(in) :: load(:)  !< (2 n) n, tau pair by pair [Pa]
       type(contact_law_t), intent(in) :: law(:)  !< (n)

@@ -101,7 +101,10 @@ module scene_parameters
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary. With a fluid such an end is "// &
               "sealed, unless the side has a pressure, which then is that of the end; and "// &
-              "fractures may cross, touch or share ends as long as none grows."), &
+              "fractures may cross, touch or share ends as long as none grows. Of a joint that "// &
+              "closes under pressure (normal_stiffness), jumps and stress intensity factors "// &
+              "count from faces that touch without, in a scene with a stress in situ from "// &
+              "that. What grows from a fracture has its friction, but no closure, bond or skin."), &
       group_t("side", repeated=.true., &
              meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
               "its edges, of a disc its rim or an arc of it. Per component either the "// &
@@ -332,7 +335,7 @@ module scene_parameters
                   "breaks it for good; friction_residual may be friction"), &
       parameter_t("fracture", "tensile_strength", unit="Pa", range=positive, of="law=friction", &
                   with="opening_weakening", absent="no bond", &
-                  meaning="Tension that the same bond bears, with no more than cohesion/friction"), &
+                  meaning="Tension that the same bond bears, at most cohesion/friction"), &
       parameter_t("fracture", "opening_weakening", unit="m", range=positive, of="law=friction", &
                   with="tensile_strength", absent="no bond", &
                   meaning="Opening that breaks the bond, with the energy tensile_strength "// &

@@ -128,8 +128,8 @@ contains
                             .or. any(scene%fractures%toughness < huge(1.0_rk))
    end function has_other_toughness
 
-   !> K_IC of an end of a fracture, its own or that of the rock it grows in, over that of the scene's
-   !! rock [-].
+   !> K_IC of an end of a fracture, its own or that of the rock it grows in, over that of the
+   !! scene's rock [-].
    pure real(rk) function relative_toughness(scene, network, fracture, end) result(ratio)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network

@@ -1,5 +1,5 @@
-!> Bonds: derivatives, states, history, the energy that breaking takes, and bodies that a bond lets go
-!! of at once.
+!> Bonds: derivatives, states, history, the energy that breaking takes, and bodies that a bond lets
+!! go of at once.
 program test_contact_bond
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
@@ -204,8 +204,8 @@ contains
       call checks%is_close(jump(2), 0.0_rk, 1.0e-15_rk, "holds below its strength")
    end subroutine test_shear
 
-   !> Springs too soft to hold it: it lets go altogether, on whatever length, and ends where the spring
-   !! alone is in equilibrium. Below its strength it holds.
+   !> Springs too soft to hold it: it lets go altogether, on whatever length, and ends where the
+   !! spring alone is in equilibrium. Below its strength it holds.
    subroutine test_sudden()
       type(contact_law_t) :: law
       real(rk) :: jump(2), traction(2)

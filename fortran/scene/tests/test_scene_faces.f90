@@ -70,7 +70,8 @@ contains
       call refuse(good, 6, "  closure=5.0e-4", ":5: &fracture: normal_stiffness is "// &
                   "missing but must be given with closure"//doc)
       call refuse(good, 6, "  normal_stiffness=0.0 closure=5.0e-4", ":6: &fracture: "// &
-                  "normal_stiffness is 0.0 but must be a finite number greater than 0.0 [Pa/m]"//doc)
+                  "normal_stiffness is 0.0 but must be a finite number greater than 0.0 "// &
+                  "[Pa/m]"//doc)
       call refuse(good, 6, "  normal_stiffness=1.0e10 closure=1.0e-3", ":6: &fracture: closure "// &
                   "is 0.001 m but must be at most 0.98 of the aperture, 9.8e-4 m, for some of "// &
                   "it stays open under any stress"//doc)
@@ -87,7 +88,8 @@ contains
                   "&fracture: tensile_strength is 1.1e7 Pa but must be at most "// &
                   "cohesion/friction, 1.0e7 Pa, where the shear strength is none"//doc)
       call refuse(good, 7, "  friction_residual=0.5 weakening_slip=1.0e-3 cohesion=-1.0", &
-                  ":7: &fracture: cohesion is -1.0 but must be a finite number greater than 0.0 [Pa]"//doc)
+                  ":7: &fracture: cohesion is -1.0 but must be a finite number greater than "// &
+                  "0.0 [Pa]"//doc)
    end subroutine check_bond
 
    subroutine check_others()
@@ -107,8 +109,8 @@ contains
                   "but faces that are held closed, held_closed = .true., cannot close further; "// &
                   "leave one out"//doc)
       call refuse(dry, 3, "&fracture name='f1' x=0.9, 1.1 y=0.5, 0.6 law='open'", ":4: "// &
-                  "&fracture: normal_stiffness is given, but the faces of the law 'open' do not "// &
-                  "touch; give 'friction' or 'frictionless'"//doc)
+                  "&fracture: normal_stiffness is given, but the faces of the law 'open' do "// &
+                  "not touch; give 'friction' or 'frictionless'"//doc)
       call refuse(dry, 4, "  held_closed=.true. friction_residual=0.1 weakening_slip=1e-3 "// &
                   "cohesion=1e6", ":4: &fracture: cohesion is given, but a bond of faces that "// &
                   "are held closed, held_closed = .true., never breaks; leave one out"//doc)
