@@ -20,10 +20,6 @@ void check_request(const Mesh& old_mesh, double radius, double size) {
         throw MeshError("the size of new cells and the radius of the patch must be positive");
     if (!old_mesh.plane.rosettes.empty())
         throw MeshError("a mesh with rosettes cannot be remeshed; make a new one");
-    if (!old_mesh.specification.domain.is_rectangle() ||
-        !old_mesh.specification.fixed_points.empty())
-        throw MeshError("only a mesh of a rectangle without fixed points can be remeshed in a "
-                        "patch; make a new one");
 }
 
 // A joint nearer to a node inside a fracture than this share of a cell moves the node to its place:
@@ -85,7 +81,8 @@ Graph grown_graph(const Mesh& old_mesh, const Network& network, const Tolerances
         for (const Vec2& end : segment.end)
             move_node(end, tolerances, segments);
     segments.insert(segments.end(), grown.begin(), grown.end());
-    return build_graph(segments, {}, old_mesh.specification.domain,
+    return build_graph(segments, old_mesh.specification.fixed_points,
+                       old_mesh.specification.domain,
                        old_mesh.specification.is_window, tolerances);
 }
 

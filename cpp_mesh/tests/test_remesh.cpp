@@ -352,6 +352,50 @@ void refused(Checks& checks) {
     refuse(network, 0.0, "must be positive");
 }
 
+// A disc and an L: a tip goes by a fixed point, and then to the boundary.
+void other_bodies(Checks& checks) {
+    struct Shape {
+        std::string name;
+        std::vector<double> corners;
+        Point start, tip, beside, edge;
+    };
+    Shape disc{"disc", {}, {-0.2, 0.0}, {0.2, 0.0}, {0.23, 0.02}, {1.0, 0.0}};
+    for (int k = 0; k < 256; ++k) {
+        disc.corners.push_back(std::cos(2.0 * pi * k / 256));
+        disc.corners.push_back(std::sin(2.0 * pi * k / 256));
+    }
+    const Shape ell{"L", {0, 0, 2, 0, 2, 1, 1, 1, 1, 2, 0, 2}, {0.3, 0.4}, {0.7, 0.6},
+                    {0.74, 0.65}, {1.5, 1.0}};
+    for (const Shape& shape : {disc, ell}) {
+        const int n = static_cast<int>(shape.corners.size() / 2);
+        std::vector<int32_t> sides;
+        for (int k = 0; k < n; ++k)
+            sides.push_back(1 + (4 * k) / n);
+        const std::vector<double> fixed = {shape.beside[0], shape.beside[1]};
+        cm_spec spec = rectangle_spec(2.0, 2.0, 0.02, 0.2);
+        spec.n_corners = n;
+        spec.corners = shape.corners.data();
+        spec.edge_side = sides.data();
+        spec.n_fixed = 1;
+        spec.fixed = fixed.data();
+        TestNetwork network({{shape.start, shape.tip}});
+        ApiMesh meshes[3];
+        checks.is_true(meshes[0].create(spec, network), shape.name + ": " + meshes[0].error);
+        for (int k = 1; k < 3; ++k) {
+            const Point tip = network.fractures[0].back();
+            Point next = shape.edge;
+            if (k == 1)
+                next = {0.95 * tip[0] + 0.05 * next[0], 0.95 * tip[1] + 0.05 * next[1]};
+            grow_end(network, 0, next);
+            checks.is_true(meshes[k].remesh(meshes[k - 1], network, {tip}, 0.1, 0.02),
+                           shape.name + ": " + meshes[k].error);
+            check_map(checks, meshes[k - 1], meshes[k], shape.name);
+            checks.is_equal(meshes[k].copies(shape.beside), 1, shape.name + ": the fixed point");
+        }
+        checks.is_equal(meshes[2].counts.n_tips, 1, shape.name + ": the tip has reached the side");
+    }
+}
+
 } // namespace
 
 int main() {
@@ -367,6 +411,7 @@ int main() {
     joins_boundary(checks);
     far_beyond(checks);
     several(checks);
+    other_bodies(checks);
     refused(checks);
     return checks.finish();
 }

@@ -1,6 +1,7 @@
 !> docs/input.md, written from the table of parameters.
 module scene_describe
    use scene_intervals, only: in_words
+   use scene_parity, only: describe_parity
    use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, in_mechanics
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real
    use scene_parameters, only: kind_reals, kind_wholes, need_always, need_choice, need_fluid
@@ -53,6 +54,7 @@ contains
       do i = 1, size(groups)
          call describe_group(unit, groups(i))
       end do
+      call describe_parity(unit)
    end subroutine describe_input
 
    subroutine describe_group(unit, group)

@@ -81,7 +81,7 @@ module scene_parameters
    type(group_t), parameter :: groups(*) = [ &
       group_t("scene", implied=.true., meaning="What the scene is called."), &
       group_t("domain", implied=.true., &
-         meaning="The body, of unit thickness: a rectangle, or in mechanics-only scenes a disc "// &
+         meaning="The body, of unit thickness: a rectangle, a disc "// &
               "or a polygon."), &
       group_t("material", implied=.true., &
               meaning="The rock, linear elastic and porous. The storage coefficient that "// &
@@ -168,7 +168,7 @@ module scene_parameters
                   meaning="What the scene shows, in a line"), &
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
                   choices="rectangle|disc|polygon", &
-                  meaning="Disc and polygon in mechanics-only scenes"), &
+                  meaning="Of the body"), &
       parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
                   of="shape=rectangle", &
                   meaning="Left side"), &
@@ -294,7 +294,7 @@ module scene_parameters
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
       parameter_t("fracture", "law", kind_choice, default="'friction'", &
                   choices="friction|frictionless|slip|open", &
-                  meaning="What the faces do; all but friction only in mechanics-only scenes. "// &
+                  meaning="What the faces do; open and slip only without a fluid. "// &
                   "Slip: contact with a given slip; open: free of traction, free to overlap"), &
       parameter_t("fracture", "slip", unit="m", need=need_choice, absent="not given", &
                   of="law=slip", scenes=in_mechanics, &

@@ -10,6 +10,7 @@ program test_fine_boundary
    use fine_faces, only: face_conditions_t, face_jump, loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
+   use fine_springs, only: add_side_springs
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
    implicit none(type, external)
@@ -18,6 +19,7 @@ program test_fine_boundary
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4, x = 1, y = 2
 
    call biaxial()
+   call on_springs()
    call shear_on_points()
    call gravity(0.2_rk, 1.0e-11_rk)
    call gravity(0.4999_rk, 1.0e-9_rk)
@@ -88,6 +90,41 @@ contains
                *(1.0_rk + rock%poisson)/(2.0_rk*rock%young)*6.0_rk
       call checks%is_close(model%strain_energy(displacement)/energy, 1.0_rk, 1.0e-12_rk, "energy")
    end subroutine biaxial
+
+   !> The same stress between rollers and springs against which larger tractions press.
+   subroutine on_springs()
+      real(rk), parameter :: stress(3) = [-20.0e6_rk, 10.0e6_rk, 0.0_rk]
+      real(rk), parameter :: spring(2) = [2.0e10_rk, 7.0e9_rk]
+      type(fine_model_t) :: model
+      type(fine_boundary_t) :: boundary
+      type(fine_loads_t) :: loads
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: displacement(:, :), exact(:, :)
+      real(rk) :: corner(2)
+      integer(ik) :: node
+
+      call set_body(model)
+      call add_side_springs(model%mesh, right, [spring(1), 0.0_rk], model%stiffness)
+      call add_side_springs(model%mesh, top, [0.0_rk, spring(2)], model%stiffness)
+      boundary = free_boundary(model%mesh)
+      call hold_side(model%mesh, left, x, boundary)
+      call hold_side(model%mesh, bottom, y, boundary)
+      call model%prepare(loaded_everywhere(model%mesh), error, boundary)
+      call checks%no_error(error, "springs are set up")
+      loads = no_loads(model%mesh)
+      corner = uniform_field(rock, stress, [3.0_rk, 2.0_rk])
+      call add_side_traction(model%mesh, right, [stress(1) + spring(1)*corner(1), 0.0_rk], &
+                             loads%force)
+      call add_side_traction(model%mesh, top, [0.0_rk, stress(2) + spring(2)*corner(2)], loads%force)
+      loads%traction(2, :) = stress(2)
+      call model%solve(loads, displacement, error)
+      call checks%no_error(error, "springs are solved")
+      allocate (exact, mold=displacement)
+      do node = 1, model%mesh%n_nodes
+         exact(:, node) = uniform_field(rock, stress, model%mesh%xy(:, node))
+      end do
+      call checks%is_close(difference(displacement, exact), 0.0_rk, 1.0e-11_rk, "on springs")
+   end subroutine on_springs
 
    !> Pure shear on all sides of a body held at two points only: u at the origin, u_y at (3, 0).
    subroutine shear_on_points()
