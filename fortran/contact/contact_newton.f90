@@ -221,6 +221,7 @@ contains
       type(iteration_report_t), intent(inout) :: report
       ! Next to the stiffness that would hold a bond it wears slowly.
       integer(ik), parameter :: rounds = 300, iterations_of_trial = 8
+      real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
       type(iteration_settings_t) :: briefly
       type(iteration_report_t) :: found
       real(rk) :: trial(size(x))
@@ -252,6 +253,12 @@ contains
          call system%hold_bonds(x, .false., settings%tolerance, is_worn)
       end do
       call system%let_bonds_wear()
+      if (report%outcome /= outcome_converged) return
+      ! A point that has moved and come back has a bond weaker than where it is now says.
+      call system%evaluate(x)
+      if (.not. maxval(abs(system%residual)) <= kept*system%stress_scale) then
+         report%outcome = outcome_stuck
+      end if
    end subroutine iterate_worn
 
    !> Try the slower ways to a solution, where the iteration from the last x has failed.
