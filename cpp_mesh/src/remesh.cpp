@@ -81,8 +81,7 @@ Graph grown_graph(const Mesh& old_mesh, const Network& network, const Tolerances
         for (const Vec2& end : segment.end)
             move_node(end, tolerances, segments);
     segments.insert(segments.end(), grown.begin(), grown.end());
-    return build_graph(segments, old_mesh.specification.fixed_points,
-                       old_mesh.specification.domain,
+    return build_graph(segments, old_mesh.specification.fixed_points, old_mesh.specification.domain,
                        old_mesh.specification.is_window, tolerances);
 }
 

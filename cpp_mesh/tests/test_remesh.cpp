@@ -364,7 +364,8 @@ void other_bodies(Checks& checks) {
         disc.corners.push_back(std::cos(2.0 * pi * k / 256));
         disc.corners.push_back(std::sin(2.0 * pi * k / 256));
     }
-    const Shape ell{"L", {0, 0, 2, 0, 2, 1, 1, 1, 1, 2, 0, 2}, {0.3, 0.4}, {0.7, 0.6},
+    const Shape ell{"L",          {0, 0, 2, 0, 2, 1, 1, 1, 1, 2, 0, 2},
+                    {0.3, 0.4},   {0.7, 0.6},
                     {0.74, 0.65}, {1.5, 1.0}};
     for (const Shape& shape : {disc, ell}) {
         const int n = static_cast<int>(shape.corners.size() / 2);

@@ -96,7 +96,7 @@ contains
       end do
    end subroutine discretize
 
-   !> Take other values on the sides, of the same kinds: what is known around the boundary's vertices.
+   !> Take other values on the sides, of the same kinds: what is known around the vertices there.
    subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock

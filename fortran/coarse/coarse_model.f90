@@ -63,7 +63,7 @@ module coarse_model
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
-      !> (2, n_cells) force that no stress in situ carries: weight, point loads; none if absent [N/m]
+      !> (2, n_cells) force that no stress in situ carries: weight, point loads [N/m]
       real(rk), allocatable :: weight(:, :)
    contains
       procedure :: set_mesh

@@ -46,10 +46,13 @@ contains
          side%pressure_given = record%is_set("pressure")
       end if
       if (reading .or. side%changes()) call exchange(record, "time", side%course%time, reading)
-      if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, side%course, reading)
+      if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, &
+                                                   side%course, reading)
       call exchange_value(record, of_inflow, side%inflow, side%course, reading, nothing=0.0_rk)
-      call exchange_value(record, of_normal_traction, side%normal_traction, side%course, reading, nothing=0.0_rk)
-      call exchange_value(record, of_shear_traction, side%shear_traction, side%course, reading, nothing=0.0_rk)
+      call exchange_value(record, of_normal_traction, side%normal_traction, side%course, &
+                          reading, nothing=0.0_rk)
+      call exchange_value(record, of_shear_traction, side%shear_traction, side%course, &
+                          reading, nothing=0.0_rk)
       call exchange(record, "x_spring", side%spring(1), reading, nothing=0.0_rk)
       call exchange(record, "y_spring", side%spring(2), reading, nothing=0.0_rk)
       if (record%is_set("normal_traction") .or. record%is_set("shear_traction")) return

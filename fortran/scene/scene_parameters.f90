@@ -109,7 +109,7 @@ module scene_parameters
              meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
               "its edges, of a disc its rim or an arc of it. Per component either the "// &
               "displacement or the total traction is prescribed; what is not given is free of "// &
-              "traction. The displacements or springs must hold the body against translation and "// &
+            "traction. Displacements or springs must hold the body against translation and "// &
               "rotation. With a fluid all values may change with time."), &
       group_t("restraint", repeated=.true., &
               meaning="A point of the body held in place. It becomes a node of the mesh, and "// &

@@ -95,7 +95,7 @@ contains
             call find_columns(cells, sheet%records(record)%group, item, reason)
             if (.not. allocated(reason)) then
                call refuse_both(sheet, record, [character(len=20) :: &
-                                parameters(item)%name, start], error)
+                                                parameters(item)%name, start], error)
                if (allocated(error)) return
             end if
          else if (size(cells) /= size(item)) then

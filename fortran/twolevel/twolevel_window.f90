@@ -67,7 +67,8 @@ module twolevel_window
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
-      real(rk), allocatable :: force_in_situ(:, :)  !< (2, n_nodes) beside that of sides in time [N/m]
+      !> (2, n_nodes) loads beside those of sides, where these change with time [N/m]
+      real(rk), allocatable :: force_in_situ(:, :)
       real(rk), allocatable :: pressure_in_situ(:)  !< (fracture cells) if the scene has any [Pa]
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
       !> Of the last solution; its slip is the history of the next.

@@ -9,7 +9,7 @@ from typing import NoReturn
 
 from wingcrack_post.durations import parse_times
 
-GROUPS = ("story", "network", "maps", "fractures", "tips", "probes", "view")
+GROUPS = ("story", "network", "maps", "fractures", "tips", "wells", "probes", "view")
 FORMATS = ("png", "pdf")
 
 _EPILOG = """\

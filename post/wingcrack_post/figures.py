@@ -21,6 +21,7 @@ from wingcrack_post.read import Run
 from wingcrack_post.story import story
 from wingcrack_post.stress import stress_maps
 from wingcrack_post.view import draw_view
+from wingcrack_post.wells import well_histories
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ _FIGURES = (
     _Figures("tips", "load", _one(load_figure)),
     _Figures("tips", "development", _one(development)),
     _Figures("tips", "balance", _one(balance)),
+    _Figures("wells", "wells", _one(well_histories)),
     _Figures("probes", "probes", _one(probe_histories)),
 )
 

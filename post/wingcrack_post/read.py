@@ -25,7 +25,7 @@ class Run:
     directory : Path
     history : Table
         A row per accepted step.
-    tips, fractures, probes, events, slip_events : Table or None
+    tips, fractures, probes, wells, events, slip_events : Table or None
     record, network : dict or None
         The contents of ``run.json`` and ``network.json``.
     scene : Scene or None
@@ -38,6 +38,7 @@ class Run:
     tips: Table | None
     fractures: Table | None
     probes: Table | None
+    wells: Table | None
     events: Table | None
     slip_events: Table | None
     record: dict[str, Any] | None
@@ -95,6 +96,7 @@ def read_run(directory: str | Path) -> Run:
         tips=_optional_table(root / "tips.csv"),
         fractures=_optional_table(root / "fractures.csv"),
         probes=_optional_table(root / "probes.csv"),
+        wells=_optional_table(root / "wells.csv"),
         events=_optional_table(root / "events.csv"),
         slip_events=_optional_table(root / "slip_events.csv"),
         record=_optional_json(root / "run.json"),

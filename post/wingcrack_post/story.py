@@ -21,6 +21,7 @@ from wingcrack_post.states import growth_start
 from wingcrack_post.story_map import HALO, draw_map
 from wingcrack_post.table import FloatArray, Table
 from wingcrack_post.units import MEGAPASCAL, area_unit, time_unit
+from wingcrack_post.wells import MOST_WELLS, well_rows
 
 _SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
 _COLUMNS = (
@@ -151,6 +152,10 @@ def _draw_marks(
 
 
 def _draw_pressure(axes: Axes, run: Run) -> None:
+    """Pressure and rate of the only well, or pressures of each by name."""
+    if run.wells is not None and len(list(well_rows(run.wells))) > 1:
+        _draw_pressures(axes, run, run.wells)
+        return
     time = abscissa(run, run.history.moments())[0]
     pressure = MEGAPASCAL.of(run.history.number("well_pressure_pa"))
     axes.plot(time, pressure, color=style.CYCLE[0], label="pressure")
@@ -167,6 +172,16 @@ def _draw_pressure(axes: Axes, run: Run) -> None:
     beside.yaxis.get_offset_text().set_fontsize(6)
     lines = [axes.lines[0], beside.lines[0]]
     axes.legend(handles=lines, loc="lower center")
+
+
+def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
+    for index, name, rows in well_rows(wells):
+        time = abscissa(run, wells.moments()[rows])[0]
+        colour = style.CYCLE[index % MOST_WELLS]
+        axes.plot(time, MEGAPASCAL.of(wells.number("pressure_pa")[rows]), color=colour, label=name)
+    axes.set_ylabel("pressure at depth [MPa]")
+    axes.set_title("pressure of the wells")
+    axes.legend(loc="best", ncols=2)
 
 
 def _draw_injectivity(axes: Axes, run: Run) -> None:

@@ -90,9 +90,7 @@ def column(s: float, z: float) -> float:
     return shape - b * constant
 
 
-def in_time(
-    response: Transform, times: list[float], values: list[float], time: float
-) -> float:
+def in_time(response: Transform, times: list[float], values: list[float], time: float) -> float:
     """Response to a load that is straight between times and jumps where two are equal."""
     total = 0.0
     slope = 0.0
@@ -118,7 +116,9 @@ LOAD = ([0.0, 20.0, 100.0, 100.0, 200.0], [0.0, 1.0e7, 1.0e7, 5.0e6, 5.0e6])
 INFLOW = ([0.0, 50.0, 150.0, 150.0, 300.0], [0.0, 1.0e-6, 1.0e-6, -5.0e-7, -5.0e-7])
 
 
-def write(name: str, columns: dict[str, Transform], course: tuple[list[float], list[float]]) -> None:
+def write(
+    name: str, columns: dict[str, Transform], course: tuple[list[float], list[float]]
+) -> None:
     """Write pressures over time."""
     with (Path(__file__).parent / name).open("w", newline="") as file:
         table = csv.writer(file)
@@ -129,13 +129,22 @@ def write(name: str, columns: dict[str, Transform], course: tuple[list[float], l
             table.writerow([f"{time:g}"] + [f"{v:.7e}" for v in values])
 
 
+def at_radius(r: float, spring: float) -> Transform:
+    """Return the transform of the disc's pressure at a radius."""
+    return lambda s: disc(s, r, spring)
+
+
+def at_height(z: float) -> Transform:
+    """Return the transform of the column's pressure at a height."""
+    return lambda s: column(s, z)
+
+
 def main() -> None:
     """Write the tables."""
     for name, spring in (("disc.csv", 0.0), ("springs.csv", SPRING)):
-        radii = {"centre_pa": 0.0, "half_pa": 0.5}
-        write(name, {k: (lambda s, r=r, c=spring: disc(s, r, c)) for k, r in radii.items()}, LOAD)
-    heights = {"bottom_pa": 0.0, "middle_pa": 0.5}
-    write("inflow.csv", {k: (lambda s, z=z: column(s, z)) for k, z in heights.items()}, INFLOW)
+        places = {"centre_pa": at_radius(0.0, spring), "half_pa": at_radius(0.5, spring)}
+        write(name, places, LOAD)
+    write("inflow.csv", {"bottom_pa": at_height(0.0), "middle_pa": at_height(0.5)}, INFLOW)
 
 
 if __name__ == "__main__":

@@ -192,7 +192,7 @@ contains
       call add_point_forces(scene, mesh, force)
       call checks%is_close(sum(force(1, :)), 2.0_rk, 1.0e-14_rk, "forces: all of them, x")
       call checks%is_close(sum(force(2, :)), 8.0_rk, 1.0e-14_rk, "forces: all of them, y")
-      call checks%is_true(count(force(1, :) > 0.0_rk) == count(any(mesh%cell_nodes == node, dim=1)) &
+     call checks%is_true(count(force(1, :) > 0.0_rk) == count(any(mesh%cell_nodes == node, dim=1)) &
                           .and. force(2, 7) >= 5.0_rk, "forces: on the cells there")
       call prepare(scene, rock, regions, matrix)
       force = 0.0_rk

@@ -115,7 +115,8 @@ contains
       corner = uniform_field(rock, stress, [3.0_rk, 2.0_rk])
       call add_side_traction(model%mesh, right, [stress(1) + spring(1)*corner(1), 0.0_rk], &
                              loads%force)
-      call add_side_traction(model%mesh, top, [0.0_rk, stress(2) + spring(2)*corner(2)], loads%force)
+      call add_side_traction(model%mesh, top, [0.0_rk, stress(2) + spring(2)*corner(2)], &
+                             loads%force)
       loads%traction(2, :) = stress(2)
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "springs are solved")

@@ -67,7 +67,8 @@ contains
                            "after a jump")
       call checks%is_close(in_time(times, values, 50.0_rk), 1.0_rk, 0.0_rk, "after the last time")
       call checks%is_close(mean_in_time(times, values, 0.0_rk, 60.0_rk), &
-                           (10.0_rk + 20.0_rk + 0.0_rk + 20.0_rk)/60.0_rk, 1.0e-15_rk, "mean of all")
+                           (10.0_rk + 20.0_rk + 0.0_rk + 20.0_rk)/60.0_rk, 1.0e-15_rk, &
+                           "mean of all")
       call checks%is_close(mean_in_time(times, values, 18.0_rk, 22.0_rk), &
                            (2.0_rk*2.8_rk - 2.0_rk*0.9_rk)/4.0_rk, 1.0e-14_rk, "mean over a jump")
       call checks%is_close(mean_in_time(times, values, 2.0_rk, 4.0_rk), 1.0_rk, 1.0e-15_rk, &
@@ -122,8 +123,10 @@ contains
       call expect("pressure=1e6 inflow=1e-9", ":9: &side: inflow is given beside pressure")
       call expect("x_displacement=0 x_spring=1e9", ":9: &side: x_spring is given beside "// &
                   "x_displacement")
-      call expect("y_spring=-1e9", ":9: &side: y_spring is -1e9 but must be a finite number greater than 0.0")
-      call expect("time=-1,5 x_traction=0,1", ":9: &side: time is -1 but must be a finite number at least 0.0")
+      call expect("y_spring=-1e9", ":9: &side: y_spring is -1e9 but must be a finite number"// &
+                  " greater than 0.0")
+      call expect("time=-1,5 x_traction=0,1", ":9: &side: time is -1 but must be a finite "// &
+                  "number at least 0.0")
    end subroutine check_faults
 
    subroutine expect(side, words)
