@@ -165,7 +165,7 @@ def test_missing_directory() -> None:
         (["plot"], "the following arguments are required: DIR"),
         (
             ["plot", "d", "--only", "map"],
-            "'map' is none of story, network, maps, fractures, tips, probes, view",
+            "'map' is none of story, network, maps, fractures, tips, wells, probes, view",
         ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),
