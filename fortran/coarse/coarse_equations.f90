@@ -1,9 +1,10 @@
 !> The equations of one time step on the fractures: contact at both ends of every cell, and the
-!! fluid (coarse_fracture_flow, coarse_joint_flow, coarse_well_flow). Their unknowns are those of
-!! fracture_layout_t.
+!! fluid (coarse_fracture_flow, coarse_joint_flow, coarse_well_flow, coarse_fluid_law). Their
+!! unknowns are those of fracture_layout_t.
 module coarse_equations
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
+   use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
    use coarse_joint_flow, only: fill_branch, fill_joint
    use coarse_well_flow, only: fill_well
@@ -56,6 +57,9 @@ contains
       do k = 1, self%layout%n_wells
          call fill_well(k, x, self)
       end do
+      if (allocated(self%settings%fluid_law) .and. .not. self%settings%equilibrate) then
+         call add_fluid_law(x, self%settings%fluid_law, self)
+      end if
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate

@@ -16,6 +16,7 @@ module coarse_fractures
    use coarse_wells, only: wells_t
    use contact_law, only: contact_law_t
    use contact_newton, only: contact_system_t, step_quality_t
+   use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
@@ -33,6 +34,7 @@ module coarse_fractures
       real(rk) :: damping = 0.0_rk  !< eta of radiation damping [Pa s/m]
       !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
+      type(fluid_law_t), allocatable :: fluid_law  !< of viscosity and density, if there is one
    end type newton_settings_t
 
    !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and

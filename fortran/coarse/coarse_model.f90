@@ -15,10 +15,11 @@ module coarse_model
    use coarse_damping, only: dampers, jumps_of
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
+   use coarse_fluid_law, only: fluid_gained
    use coarse_fractures, only: newton_settings_t
    use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
-   use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
+   use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: discretize, matrix_t, renew_sides
    use coarse_newton, only: solve_fractures
@@ -30,8 +31,10 @@ module coarse_model
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
+   use coarse_weight, only: find_weight
    use coarse_wells, only: wells_t
    use mesh_types, only: mesh_t, point_interior
+   use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene
    use scene_sides, only: boundary_side_t
    use scene_types, only: initial_t, scene_t
@@ -102,6 +105,11 @@ contains
                                            vapour_pressure=fluid%vapour_pressure, &
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
+         if (has_law(fluid)) then
+            self%settings%fluid_law = new_fluid_law(fluid)
+            ! A density counts its compression itself.
+            if (fluid%density_law /= "linear") self%settings%compressibility = 0.0_rk
+         end if
       end associate
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
       if (.not. allocated(error)) then
@@ -128,23 +136,18 @@ contains
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(scene_t), intent(in) :: scene
-      real(rk) :: force(2)  ! [N/m3]
       integer(ik) :: c
 
       call find_in_situ(scene, self%rock%biot(1), self%in_situ)
-      force = weight_of_scene(scene)
       call take_sides(self, scene)
       if (allocated(self%in_situ)) then
-         force(2) = force(2) + self%in_situ%stress_per_y(2)
          self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
                                          c=1, mesh%fracture%n_cells)]
       end if
-      if (allocated(self%weight)) deallocate (self%weight)
-      if (.not. (any(abs(force) > 0.0_rk) .or. scene%has_points())) return
-      allocate (self%weight(2, mesh%n_cells))
-      do c = 1, mesh%n_cells
-         self%weight(:, c) = cell_area(mesh, c)*force
-      end do
+      call find_weight(mesh, scene, self%in_situ, self%weight)
+      if (scene%has_points() .and. .not. allocated(self%weight)) then
+         allocate (self%weight(2, mesh%n_cells), source=0.0_rk)
+      end if
       if (scene%has_points()) call add_point_forces(scene, mesh, self%weight)
 
    contains
@@ -428,7 +431,7 @@ contains
                               state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
-         if (self%wells%n > 0) call feed(self, state%well_flow)
+         if (self%wells%n > 0) call feed(self, state%well_flow(:self%wells%n))
       end if
       call timers%start(phase_solve)
       call self%condensed%expand(q, rhs, state%unknowns, error)
@@ -456,7 +459,7 @@ contains
    !> The flow of wells that was an unknown is one of the sources of the step.
    subroutine feed(self, flow)
       class(coarse_model_t), intent(inout) :: self
-      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+      real(rk), intent(in) :: flow(:)  !< (wells in fractures) [m2/s]
 
       self%cells%injection = self%cells%injection + matmul(self%wells%share, flow)
       if (self%joints%n > 0) self%joints%injection = self%joints%injection &
@@ -481,6 +484,11 @@ contains
             held = after%aperture - after%void
             report%compressed = sum(self%condensed%length*held*self%settings%compressibility &
                                     *(after%pressure - before%pressure))
+            if (allocated(self%settings%fluid_law)) then
+               report%compressed = report%compressed &
+                                   + fluid_gained(self%settings%fluid_law, self%cells, &
+                                                  self%condensed%length, before, after)
+            end if
             held = held - (before%aperture - before%void)
             balance = balance + sum(self%condensed%length*held) + report%compressed &
                       - dt*sum(self%cells%injection)

@@ -32,7 +32,8 @@ module coarse_permeability
    implicit none(type, external)
    private
 
-   public :: bearable, conduction_t, layered, place_regions, relative_resistance, share_of_cell
+   public :: bearable, conduction_t, layered, mean_of_regions, place_regions
+   public :: relative_resistance, share_of_cell
 
    !> How a rock conducts, each xx, yy, xy.
    type :: conduction_t
@@ -102,6 +103,27 @@ contains
       conduction%permeability = permeability
       conduction%resistivity = [resistivity(1, 1), resistivity(2, 2), resistivity(1, 2)]
    end function conduction
+
+   !> The mean over each cell of what the scene's rock and each region have.
+   pure function mean_of_regions(mesh, regions, domain, values) result(mean)
+      type(mesh_t), intent(in) :: mesh
+      type(region_t), intent(in) :: regions(:)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: values(0:)  !< of the scene's rock first [any unit]
+      real(rk) :: mean(mesh%n_cells)
+      type(outline_t) :: outlines(size(regions))
+      real(rk) :: along(2, size(regions)), part(0:size(regions))
+      integer(ik) :: c
+      integer :: i
+
+      do i = 1, size(regions)
+         outlines(i)%corners = region_outline(regions(i), domain)
+      end do
+      do c = 1, mesh%n_cells
+         call parts_of_cell(mesh%xy(:, mesh%cell_nodes(:, c)), outlines, part, along)
+         mean(c) = dot_product(part, values)/sum(part)
+      end do
+   end function mean_of_regions
 
    !> Resistance of the rock on both sides of each fracture cell over that of the scene's rock [-].
    pure function relative_resistance(mesh, rock, viscosity) result(ratio)

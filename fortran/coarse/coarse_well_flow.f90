@@ -10,6 +10,7 @@
 !! from their middles. All terms rise with q, so that Newton's method on the active one ends.
 module coarse_well_flow
    use base_kinds, only: ik, rk
+   use coarse_fluid_law, only: flow_thickness
    use coarse_fracture_flow, only: conducting_aperture
    use coarse_fractures, only: fracture_system_t
    use coarse_wells, only: control_limited, control_pressure, control_shut
@@ -148,15 +149,19 @@ contains
       class(fracture_system_t), intent(in) :: eq
       real(rk), intent(out) :: resistance  !< [Pa s/m2]
       real(rk), intent(out) :: slope  !< [Pa s/m3]
-      real(rk) :: aperture
+      real(rk) :: aperture, thickness, unused
 
       call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
                                eq%opening(x, i), aperture, slope)
       resistance = 6.0_rk*eq%settings%viscosity*eq%condensed%length(i)/aperture**3
+      if (allocated(eq%settings%fluid_law)) then
+         call flow_thickness(i, x, eq%settings%fluid_law, eq, thickness, unused)
+         resistance = resistance*thickness
+      end if
       slope = -3.0_rk*resistance/aperture*slope
    end subroutine half_cell
 
-   !> How the resistance of half a cell follows its opening.
+   !> How the resistance of half a cell follows its opening, and its pressure if the fluid does.
    pure subroutine add_opening(w, i, x, per_head, eq)
       integer(ik), intent(in) :: w
       integer(ik), intent(in) :: i  !< cell
@@ -164,6 +169,7 @@ contains
       real(rk), intent(in) :: per_head  !< [-]
       class(fracture_system_t), intent(inout) :: eq
       real(rk) :: by_jump, resistance, slope
+      real(rk) :: by_pressure, thickness
       integer(ik) :: end, jumps(2)
 
       jumps = eq%layout%at_jump(i, both)
@@ -173,6 +179,11 @@ contains
       do end = 1, 2
          call eq%slopes%add(eq%layout%at_well(w), jumps(end), per_head*by_jump)
       end do
+      if (.not. allocated(eq%settings%fluid_law)) return
+      call flow_thickness(i, x, eq%settings%fluid_law, eq, thickness, by_pressure)
+      by_pressure = eq%wells%share(i, w)**2*resistance*by_pressure/thickness &
+                    *x(eq%layout%at_well(w))*eq%unit/eq%dt
+      call eq%slopes%add(eq%layout%at_well(w), eq%layout%at_pressure(i), per_head*by_pressure)
    end subroutine add_opening
 
 end module coarse_well_flow

@@ -17,7 +17,8 @@ module output_columns
    public :: slip_event_columns, tip_columns, well_columns
    public :: fracture_fields, intersection_fields, matrix_fields
    public :: network_keys, record_keys
-   public :: contact_words, end_words, event_words, joint_words, status_words, well_words
+   public :: contact_words, end_words, event_words, joint_words, slip_words, status_words, &
+             well_words
 
    ! Runs in which a column, key or field is written.
    character(len=*), parameter :: always = "always"
@@ -212,8 +213,11 @@ module output_columns
 
    type(column_t), parameter :: slip_event_columns(*) = [ &
     column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of their ends"), &
-      column_t("time_s", "s", with_fluid, "When the patch began to slip"), &
-      column_t("end_s", "s", with_fluid, "When it had come to rest, or when the run ended"), &
+      column_t("time_s", "s", with_fluid, &
+               "When the patch began to slip, or passed seismic_slip_rate"), &
+      column_t("end_s", "s", with_fluid, &
+               "When it had come to rest or passed seismic_slip_rate, or when the run "// &
+               "ended"), &
       column_t("fracture", "-", with_fluid, &
                "Number of the fracture, from 1 in the scene's order"), &
       column_t("x_m", "m", with_fluid, "Centre of the event, weighed with the slip"), &
@@ -234,7 +238,19 @@ module output_columns
                "Share of the moment from cells that were open: no friction there"), &
       column_t("sudden_share", "-", with_fluid, &
                "Share of the moment from steps in which growth was unstable: it comes at once"), &
-      column_t("ended_by", "-", with_fluid, "What ended it")]
+      column_t("ended_by", "-", with_fluid, "What ended it"), &
+      column_t("kind", "-", with_fluid, &
+               "Whether some cell slips faster than seismic_slip_rate of &output in every step"), &
+      column_t("duration_s", "s", with_fluid, "end_s - time_s"), &
+      column_t("x_onset_m", "m", with_fluid, &
+               "Where it nucleates: the middle of the cell that slips fastest in its first step"), &
+      column_t("y_onset_m", "m", with_fluid, "y of the same"), &
+      column_t("largest_slip_rate_m_s", "m/s", with_fluid, &
+               "Largest slip rate of a cell, as the mean over a time step"), &
+      column_t("mean_slip_rate_m_s", "m/s", with_fluid, "Mean slip over duration"), &
+      column_t("stress_drop_pa", "Pa", with_fluid, &
+               "Static stress drop: fall of the shear traction from before to after the event, "// &
+               "mean over its area")]
 
    type(column_t), parameter :: record_keys(*) = [ &
       column_t("scene", "-", always, "The scene's name"), &
@@ -381,7 +397,12 @@ module output_columns
 
    type(word_t), parameter :: end_words(*) = [ &
       word_t("stick", "nothing of it slips any more"), &
+      word_t("speed", "its slip rate passed seismic_slip_rate; what goes on is another event"), &
       word_t("run", "the run ended while it still slipped")]
+
+   type(word_t), parameter :: slip_words(*) = [ &
+      word_t("seismic", "faster than seismic_slip_rate"), &
+      word_t("aseismic", "slower")]
 
    type(word_t), parameter :: joint_words(*) = [ &
       word_t("boundary", "a fracture ends on the outer boundary"), &

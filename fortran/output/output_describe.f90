@@ -3,8 +3,8 @@ module output_describe
    use output_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
                              fracture_columns, fracture_fields, history_columns, &
                              intersection_fields, joint_words, matrix_fields, network_keys, &
-                             probe_columns, record_keys, slip_event_columns, status_words, &
-                             tip_columns, well_columns, well_words, word_t
+                             probe_columns, record_keys, slip_event_columns, slip_words, &
+                             status_words, tip_columns, well_columns, well_words, word_t
    implicit none(type, external)
    private
 
@@ -106,16 +106,20 @@ contains
                     "in contact or open. Patches of steps that follow each other belong"// &
                     " to one event if they have faces in common; events that meet are "// &
                     "one from then on. An event is over when nothing of it slips any "// &
-                    "more. Events of less mean slip than `stimulated_jump` of `&output`"// &
-                    " are left out, and the slip of the initial equilibrium is none. "// &
-                    "The simulation is quasi-static: slip lasts as long as the "// &
-                    "injection drives it, and moment and magnitude are those of all of "// &
-                    "it, whether or not it would be heard; what comes at once, by "// &
+                    "more, or when its largest slip rate passes `seismic_slip_rate` of "// &
+                    "`&output`: what slips faster is an event of its own, from its nucleation "// &
+                    "to its arrest. Events of less mean slip than `stimulated_jump` of "// &
+                    "`&output` are left out, and the slip of the initial equilibrium is none. "// &
+                    "Without `radiation_damping` the simulation is quasi-static: slip lasts as "// &
+                    "long as the injection drives it, what jumps has the rate of the step that "// &
+                    "it falls into, and moment and magnitude are those of all of it, whether "// &
+                    "or not it would be heard; what comes at once, by "// &
                     "unstable growth, is `sudden_share` of it. The moments add up to "// &
                     "what seismic_moment_nm of history.csv has gained since the first "// &
                     "state, times `out_of_plane_length`, but for the events left out.", &
                     slip_event_columns)
       call describe_words(unit, "ended_by", end_words)
+      call describe_words(unit, "kind", slip_words)
       call describe(unit, "wells.csv", "With wells: a row per well and row of history.csv.", &
                     well_columns)
       call describe_words(unit, "control", well_words)

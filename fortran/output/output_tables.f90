@@ -259,7 +259,14 @@ contains
          call table%put("magnitude", event%magnitude)
          call table%put("open_share", event%open_share)
          call table%put("sudden_share", event%sudden_share)
-         call table%put("ended_by", trim(merge("stick", "run  ", event%sticks)))
+         call table%put("ended_by", trim(event%ended_by))
+         call table%put("kind", trim(merge("seismic ", "aseismic", event%is_seismic)))
+         call table%put("duration_s", event%end - event%time)
+         call table%put("x_onset_m", event%onset_xy(1))
+         call table%put("y_onset_m", event%onset_xy(2))
+         call table%put("largest_slip_rate_m_s", event%largest_slip_rate)
+         call table%put("mean_slip_rate_m_s", event%mean_slip_rate)
+         call table%put("stress_drop_pa", event%stress_drop)
          call table%end_row()
       end associate
    end subroutine slip_event_row

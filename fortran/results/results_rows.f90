@@ -55,10 +55,15 @@ module results_rows
       real(rk) :: mean_slip = 0.0_rk  !< [m]
       real(rk) :: moment = 0.0_rk  !< [N m]
       real(rk) :: largest_rate = 0.0_rk  !< of the moment, mean over a step [N m/s]
+      logical :: is_seismic = .false.  !< the slip of some cell is faster than a threshold
+      real(rk) :: onset_xy(2) = 0.0_rk  !< where it was fastest in its first step [m]
+      real(rk) :: largest_slip_rate = 0.0_rk  !< of a cell, mean over a step [m/s]
+      real(rk) :: mean_slip_rate = 0.0_rk  !< over its area and duration [m/s]
+      real(rk) :: stress_drop = 0.0_rk  !< mean over its area [Pa]
       real(rk) :: magnitude = 0.0_rk  !< [-]
       real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
       real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
-      logical :: sticks = .false.  !< it has ended before the run
+      character(len=5) :: ended_by = ""  !< word of output_columns
    end type slip_event_t
 
    !> A well after a step, a row of wells.csv.

@@ -7,6 +7,7 @@ module scene_check
    use base_tolerances, only: round_off
    use scene_check_column, only: check_column
    use scene_check_faces, only: check_faces
+   use scene_check_fluid, only: check_fluid, check_given_fluid
    use scene_check_geometry, only: check_domain, check_fractures, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
@@ -39,6 +40,7 @@ contains
       if (.not. allocated(error)) call check_sides(sheet, error)
       if (.not. allocated(error)) call check_table(sheet, error)
       if (.not. allocated(error)) call check_given_wells(sheet, error)
+      if (.not. allocated(error)) call check_given_fluid(sheet, error)
    end subroutine check_sheet
 
    !> The numbers must go together.
@@ -57,6 +59,7 @@ contains
       if (scene%has_fluid()) then
          if (.not. allocated(error)) call check_weight(sheet, scene, error)
          if (.not. allocated(error)) call check_column(sheet, scene, error)
+         if (.not. allocated(error)) call check_fluid(sheet, scene%fluid, error)
       else
          if (.not. allocated(error)) call check_load(sheet, scene, error)
          if (.not. allocated(error)) call check_weight(sheet, scene, error)

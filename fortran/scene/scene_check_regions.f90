@@ -19,9 +19,9 @@ module scene_check_regions
    public :: check_given_regions, check_regions
 
    !> What makes the rock of a region another one than that of the scene.
-   character(len=15), parameter :: of_rock(7) = [character(len=15) :: "young", "poisson", "biot", &
-                                                    "porosity", "permeability", "permeability_xx", &
-                                                                                        "toughness"]
+   character(len=15), parameter :: of_rock(8) = [character(len=15) :: &
+                                      "young", "poisson", "biot", "porosity", "permeability", &
+                                      "permeability_xx", "density", "toughness"]
    !> Young's moduli of two rocks beside each other: beyond that rounding would decide [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
 
@@ -43,7 +43,7 @@ contains
          if (.not. any([(sheet%records(i)%is_given(trim(of_rock(k))), k=1, size(of_rock))])) then
             call refuse(error, sheet, i, "name", "is given, but the region has no rock of its "// &
                         "own: it must give at least one of young, poisson, biot, porosity, "// &
-                        "permeability, toughness")
+                        "permeability, density, toughness")
             return
          end if
          do axis = 1, 2

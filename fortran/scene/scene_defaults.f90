@@ -4,6 +4,7 @@ module scene_defaults
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use scene_exchange_rock, only: not_given
+   use scene_fluid_law, only: has_law
    use scene_types, only: injection_t, material_t, region_t, scene_t
    implicit none(type, external)
    private
@@ -24,6 +25,11 @@ contains
       call choose_steps(scene)
       if (scene%has_fluid() .and. .not. scene%fluid%vapour_pressure > -huge(1.0_rk)) then
          if (is_pressed(scene)) scene%fluid%vapour_pressure = 0.0_rk
+      end if
+      if (scene%has_fluid() .and. has_law(scene%fluid)) then
+         associate (reference => scene%fluid%reference_pressure)
+            if (.not. reference > -huge(1.0_rk)) reference = scene%initial%pressure
+         end associate
       end if
       associate (d => scene%discretization)
          if (scene%has_fluid()) then
@@ -81,6 +87,7 @@ contains
             call take(own%poisson, all%poisson)
             call take(own%biot, all%biot)
             call take(own%porosity, all%porosity)
+            call take(own%density, all%density)
             call take(own%toughness, all%toughness)
             if (.not. own%permeability_xx > 0.0_rk) cycle
             all%permeability_xx = own%permeability_xx

@@ -213,6 +213,14 @@ contains
          call exchange(record, "density", scene%fluid%density, reading, nothing=0.0_rk)
          call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, reading, &
                        nothing=-unlimited)
+         call exchange(record, "viscosity_law", scene%fluid%viscosity_law, reading)
+         call exchange(record, "viscosity_exponent", scene%fluid%viscosity_exponent, reading)
+         call exchange(record, "density_law", scene%fluid%density_law, reading)
+         call exchange(record, "reference_pressure", scene%fluid%reference_pressure, reading, &
+                       nothing=-unlimited)
+         call exchange_list(record, "table_pressure", scene%fluid%table_pressure, reading)
+         call exchange_list(record, "table_viscosity", scene%fluid%table_viscosity, reading)
+         call exchange_list(record, "table_density", scene%fluid%table_density, reading)
       case ("initial")
          call exchange(record, "fracture_pressure", scene%initial%fracture_pressure, reading)
          call exchange(record, "pressure", scene%initial%pressure, reading)
@@ -251,6 +259,7 @@ contains
          call exchange(record, "growth_states", scene%output%growth_states, reading)
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump, reading)
          call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length, reading)
+         call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate, reading)
       case default  ! the repeated groups
          return
       end select

@@ -61,6 +61,7 @@ contains
             own%poisson = not_given
             own%biot = not_given
             own%porosity = not_given
+            own%density = not_given
             own%toughness = not_given
          end if
          call exchange(record, "young", own%young, reading)
@@ -68,6 +69,7 @@ contains
          call exchange(record, "biot", own%biot, reading)
          call exchange(record, "porosity", own%porosity, reading)
          call exchange_permeability(record, own, reading)
+         call exchange(record, "density", own%density, reading, nothing=0.0_rk)
          call exchange(record, "toughness", own%toughness, reading, nothing=huge(1.0_rk))
       end associate
    end subroutine exchange_region

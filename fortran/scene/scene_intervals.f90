@@ -11,7 +11,7 @@ module scene_intervals
    public :: at_least_one, at_least_zero, below_one, biot_range, dilation_range, newton_range
    public :: poisson_range, porosity_range
    public :: positive, rosette_range, share, steps_range, tolerance_range
-   public :: passes_range
+   public :: exponent_range, passes_range
 
    !> Values between two bounds; a bound at +-huge is none, for every value is finite.
    type :: interval_t
@@ -34,6 +34,8 @@ module scene_intervals
    !> With fewer than 6 sectors an element at the tip spans more than 60 degrees.
    type(interval_t), parameter :: rosette_range = interval_t(6.0_rk, 64.0_rk)
    type(interval_t), parameter :: steps_range = interval_t(1.0_rk, 100000.0_rk)
+   !> Of the viscosity: oils and brines are below 1e-7 1/Pa.
+   type(interval_t), parameter :: exponent_range = interval_t(-1.0e-6_rk, 1.0e-6_rk)  !< [1/Pa]
    type(interval_t), parameter :: passes_range = interval_t(1.0_rk, 20.0_rk)
    type(interval_t), parameter :: newton_range = interval_t(1.0_rk, 1000.0_rk)
 

@@ -5,7 +5,8 @@
 module scene_parameters
    use base_kinds, only: rk
    use scene_intervals, only: at_least_one, at_least_zero, below_one, biot_range, &
-                              dilation_range, interval_t, newton_range, passes_range, &
+                              dilation_range, exponent_range, interval_t, newton_range, &
+                              passes_range, &
                               poisson_range, porosity_range, positive, rosette_range, share, &
                               steps_range, tolerance_range
    implicit none(type, external)
@@ -71,7 +72,7 @@ module scene_parameters
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
       ! Towards other names of its group:
-      character(len=24) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
+      character(len=28) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
       character(len=20) :: with = ""  !< given only if this is given too
       character(len=20) :: at_most = ""  !< a number that it must not exceed
    end type parameter_t
@@ -242,6 +243,31 @@ module scene_parameters
                   derived=.true., &
                   meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
                   "about 0 if pressures count from vacuum"), &
+      parameter_t("fluid", "viscosity_law", kind_choice, default="'constant'", &
+                  choices="constant|exponential|table", &
+                  meaning="How the viscosity in fractures follows pressure. The rock keeps "// &
+                  "`viscosity` and `compressibility`"), &
+      parameter_t("fluid", "viscosity_exponent", unit="1/Pa", need=need_choice, &
+                  absent="no exponential law", range=exponent_range, &
+                  of="viscosity_law=exponential", &
+                  meaning="beta in mu = viscosity exp(beta (p - reference_pressure))"), &
+      parameter_t("fluid", "density_law", kind_choice, default="'linear'", &
+                  choices="linear|exponential|table", &
+                  meaning="That in fractures. linear: a volume V stores V c_p dp of a step's "// &
+                  "dp. Exponential: exp(compressibility (p - reference_pressure))"), &
+      parameter_t("fluid", "reference_pressure", unit="Pa", &
+                  absent="pressure of &initial, if there is a law", derived=.true., &
+                  meaning="Pressure at which the fluid has its `viscosity`, and the density in "// &
+                  "which rates, volumes and balances count it"), &
+      parameter_t("fluid", "table_pressure", kind_reals, "Pa", absent="no table", &
+                  meaning="Rising pressures of a table. Between them the logarithms are "// &
+                  "linear, beyond them values constant, of which run.json warns"), &
+      parameter_t("fluid", "table_viscosity", kind_reals, "Pa s", need_choice, &
+                  absent="no table", range=positive, of="viscosity_law=table", &
+                  meaning="Viscosities at these pressures"), &
+      parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, &
+                  absent="no table", range=positive, of="density_law=table", &
+                  meaning="Densities at these pressures, not falling; only ratios count"), &
       parameter_t("region", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
@@ -284,6 +310,10 @@ module scene_parameters
                   meaning="Component yy of the permeability tensor"), &
       parameter_t("region", "permeability_xy", unit="m2", scenes=in_fluid, absent="0", &
                   meaning="Component xy of the permeability tensor"), &
+      parameter_t("region", "density", unit="kg/m3", scenes=in_fluid, range=positive, &
+                  absent="that of &material", derived=.true., &
+                  meaning="Density of the rock with what fills its pores; the body settles "// &
+                  "under it. Not with a stress in situ that changes with y, nor with windows"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
                   absent="that of &material", derived=.true., &
                   meaning="Fracture toughness K_IC, which counts where a tip is"), &
@@ -590,7 +620,11 @@ module scene_parameters
       parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
                   scenes=in_fluid, &
                 meaning="Assumed length of the fractures out of the plane, for area and moment "// &
-                  "in slip_events.csv; nothing else depends on it")]
+                  "in slip_events.csv; nothing else depends on it"), &
+      parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &
+                  scenes=in_fluid, &
+                  meaning="Slip rate from which slip is seismic: where the largest one of a "// &
+                  "patch passes it, an event of slip_events.csv ends and another one begins")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [body_parameters, process_parameters]

@@ -16,7 +16,7 @@ module scene_parity
                              row_t("body", "rectangle, disc, polygon", &
                                  "the same; where it is no rectangle windows are the whole body"), &
                              row_t("rock by region", "yes", &
-                                   "yes, and permeability, porosity, Biot's coefficient"), &
+                                   "yes, and permeability, porosity, Biot's coefficient, density"), &
                              row_t("gravity, stress in situ", "yes", &
                                    "yes, and hydrostatic pressure"), &
                row_t("sides: displacement, traction in x and y, along and across, springs", "yes", &

@@ -60,6 +60,14 @@ module scene_types
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
       real(rk) :: density = 0.0_rk  !< 0: without weight [kg/m3]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure in fractures [Pa]
+      ! In fractures, as functions of pressure (scene_fluid_law):
+      character(len=name_length) :: viscosity_law = "constant"  !< or "exponential", "table"
+      real(rk) :: viscosity_exponent = 0.0_rk  !< d ln mu/dp [1/Pa]
+      character(len=name_length) :: density_law = "linear"  !< or "exponential", "table"
+      real(rk) :: reference_pressure = -huge(1.0_rk)  !< at which mu and c_p are as given [Pa]
+      real(rk), allocatable :: table_pressure(:)  !< rising [Pa]
+      real(rk), allocatable :: table_viscosity(:)  !< [Pa s]
+      real(rk), allocatable :: table_density(:)  !< [kg/m3]
    end type fluid_t
 
    !> One fracture and its law.
@@ -218,6 +226,7 @@ module scene_types
       !> slip or opening that stimulates faces, and mean slip that makes an event, at least [m]
       real(rk) :: stimulated_jump = 1.0e-6_rk
       real(rk) :: out_of_plane_length = 1.0_rk  !< of slip events [m]
+      real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< from which they are seismic [m/s]
    end type output_t
 
    !> The whole problem.

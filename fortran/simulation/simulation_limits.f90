@@ -11,7 +11,7 @@ module simulation_limits
    public :: limit_angle, limit_aperture, limit_contact, limit_forward_error, limit_jump
    public :: limit_keq, limit_k_error, limit_k_methods, limit_mass, limit_pressure_load
    public :: limit_k_to_grow, limit_layering, limit_loop_flow, limit_pressure_stiffness
-   public :: limit_strain, limit_time_error
+   public :: limit_fluid_in_rock, limit_strain, limit_table, limit_time_error
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -35,7 +35,8 @@ module simulation_limits
                          limit_pressure_load = 7, limit_pressure_stiffness = 8, &
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
                          limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
-                         limit_layering = 15, limit_loop_flow = 16
+                         limit_layering = 15, limit_loop_flow = 16, limit_table = 17, &
+                         limit_fluid_in_rock = 18
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -107,7 +108,16 @@ module simulation_limits
               "What is not known of it, over the largest flow, or one that exchanges the "// &
               "fluid of a cell in the step: nothing but pressure differences below their "// &
               "rounding decides about it", &
-              "such fractures are wide for the equations: shorter steps help, smaller apertures")]
+              "such fractures are wide for the equations: shorter steps help, smaller apertures"), &
+      limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
+              "How far the pressure in a fracture lies outside of table_pressure, over its "// &
+              "range; the fluid is as at the end of the table there", &
+              "give the table of the fluid further pressures"), &
+      limit_t("fluid of the rock beside its law", "-", "with a fluid law", 0.1_rk, never, &
+              "How far viscosity over density at a pressure in the rock is from that at "// &
+              "reference_pressure, relative: the rock takes the latter", &
+              "give a reference_pressure in the middle of the rock's pressures, with the "// &
+              "viscosity and compressibility there")]
    !&>
 
 contains

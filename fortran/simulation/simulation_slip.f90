@@ -3,8 +3,14 @@
 !! In a step, a patch is a row of cells of one fracture whose faces slide. Patches of two steps that
 !! follow each other belong to the same event if they have faces in common; what divides goes on as
 !! one, and events that meet are one from then on. An event is over when nothing of it slides any
-!! more. The simulation is quasi-static: events last as long as their load drives them, and what
-!! radiates from them is not known.
+!! more, or when its largest slip rate passes a threshold: what slips faster than that is seismic,
+!! from its nucleation, the step in which the rate passes it, to its arrest, when it no longer does;
+!! what slips before and afterwards are aseismic events of their own. Rates are means of a step.
+!! Without radiation damping the simulation is quasi-static: events last as long as their load
+!! drives them, and what jumps does so within one step.
+!!
+!! The static stress drop is the mean over the event's patch of the fall of the shear traction, from
+!! the state before its first step to that after its last one.
 !!
 !! Seismic moment M0 = G times the sum of slip times area (Aki 1966), with an assumed length out of
 !! the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5 (Hanks and Kanamori 1979, in SI
@@ -13,18 +19,30 @@ module simulation_slip
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t
    use results_rows, only: slip_event_t
+   use simulation_shear, only: shear_t
    implicit none(type, external)
    private
 
    public :: magnitude, slip_catalogue_t
 
-   !> An event that is not over.
-   type :: live_t
-      type(slip_event_t) :: event  !< its place is still weighed with the potency
-      real(rk) :: potency = 0.0_rk  !< slip times length so far [m2]
-      real(rk) :: last = 0.0_rk  !< of it, in the last step [m2]
+   !> Slip of one step, or of several.
+   type :: amount_t
+      real(rk) :: potency = 0.0_rk  !< slip times length [m2]
       real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [m2]
       real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [m2]
+      real(rk) :: place(2) = 0.0_rk  !< its first moment [m3]
+      real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
+      real(rk) :: rate = 0.0_rk  !< largest of a cell [m/s]
+      real(rk) :: fastest(2) = 0.0_rk  !< where that was first so [m]
+   end type amount_t
+
+   !> An event that is not over.
+   type :: live_t
+      logical :: has_begun = .false.  !< before the present step
+      type(slip_event_t) :: event
+      type(amount_t) :: before  !< the present step
+      type(amount_t) :: now  !< in it
+      type(shear_t) :: start  !< tractions of its fracture before it
    end type live_t
 
    !> A row of sliding cells in the last step.
@@ -39,12 +57,15 @@ module simulation_slip
       real(rk) :: shear = 0.0_rk  !< modulus G [Pa]
       real(rk) :: breadth = 1.0_rk  !< out of the plane [m]
       real(rk) :: least_slip = 0.0_rk  !< mean slip that makes an event [m]
+      real(rk) :: seismic_rate = huge(1.0_rk)  !< slip rate from which an event is seismic [m/s]
       integer(ik) :: n = 0  !< events that are over
       type(slip_event_t), allocatable :: news(:)  !< that are over since these were taken
       type(live_t), allocatable, private :: live(:)  !< in the order of their beginning
       type(patch_t), allocatable, private :: patch(:)
+      type(shear_t), private :: last  !< tractions after the last step
    contains
       procedure :: begin
+      procedure :: remember
       procedure :: follow
       procedure :: end_all
    end type slip_catalogue_t
@@ -52,20 +73,31 @@ module simulation_slip
 contains
 
    !> Nothing slides.
-   subroutine begin(self, shear, breadth, least_slip)
+   subroutine begin(self, shear, breadth, least_slip, seismic_rate)
       class(slip_catalogue_t), intent(out) :: self
       real(rk), intent(in) :: shear  !< modulus [Pa]
       real(rk), intent(in) :: breadth  !< out of the plane [m]
       real(rk), intent(in) :: least_slip  !< mean slip that makes an event [m]
+      real(rk), intent(in) :: seismic_rate  !< slip rate from which it is seismic [m/s]
 
       self%shear = shear
       self%breadth = breadth
       self%least_slip = least_slip
+      self%seismic_rate = seismic_rate
       allocate (self%news(0), self%live(0), self%patch(0))
    end subroutine begin
 
+   !> The state before the first step.
+   pure subroutine remember(self, fracture, traction)
+      class(slip_catalogue_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: traction(:)  !< (cells) f_tau [Pa]
+
+      call self%last%keep(fracture, traction)
+   end subroutine remember
+
    !> A step of length dt that led to a time.
-   pure subroutine follow(self, time, dt, fracture, potency, slides, is_open, is_sudden)
+   pure subroutine follow(self, time, dt, fracture, potency, slides, is_open, is_sudden, traction)
       class(slip_catalogue_t), intent(inout) :: self
       real(rk), intent(in) :: time, dt  !< [s]; dt > 0
       type(fracture_mesh_t), intent(in) :: fracture
@@ -73,11 +105,15 @@ contains
       logical, intent(in) :: slides(:)  !< (cells) its faces do
       logical, intent(in) :: is_open(:)  !< (cells) they do not touch
       logical, intent(in) :: is_sudden  !< growth was unstable in the step
+      real(rk), intent(in) :: traction(:)  !< (cells) f_tau after it [Pa]
       type(patch_t), allocatable :: patches(:)
       integer(ik) :: cell, first, p
 
       allocate (patches(0))
-      self%live%last = 0.0_rk
+      if (.not. allocated(self%last%s)) call self%last%keep(fracture, traction)
+      do p = 1, size(self%live)
+         self%live(p)%now = amount_t()
+      end do
       first = 1
       do while (first <= fracture%n_cells)
          if (.not. slides(first)) then
@@ -88,20 +124,18 @@ contains
          associate (s => [fracture%cell_s(1, first), fracture%cell_s(2, cell)])
             patches = [patches, patch_t(fracture%cell_fracture(first), s)]
          end associate
-         call assign_patch(self, patches, time - dt)
+         call assign_patch(self, patches)
          p = size(patches)
-         call add_slip(self%live(patches(p)%live), time, fracture, first, cell, potency, is_open, &
-                       is_sudden)
+         call add(self%live(patches(p)%live)%now, &
+                  amount_of(fracture, first, cell, dt, potency, is_open, is_sudden))
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
       do p = 1, size(self%live)
-         associate (live => self%live(p))
-            live%event%largest_rate = max(live%event%largest_rate, &
-                                          self%shear*live%last*self%breadth/dt)
-         end associate
+         if (any(self%patch%live == p)) call book_step(self, p, time, dt)
       end do
       call end_quiet(self)
+      call self%last%keep(fracture, traction)
    end subroutine follow
 
    !> The last cell of a patch. Cells are stored along each fracture.
@@ -120,10 +154,9 @@ contains
 
    !> To which event the last one of the patches belongs: the first of those that it has faces in
    !! common with, which takes in the others, or a new one.
-   pure subroutine assign_patch(self, patches, time)
+   pure subroutine assign_patch(self, patches)
       class(slip_catalogue_t), intent(inout) :: self
       type(patch_t), intent(inout) :: patches(:)  !< of this step
-      real(rk), intent(in) :: time  !< when the step began [s]
       logical :: meets(size(self%patch))
       type(live_t) :: new
       integer(ik) :: i, keeps
@@ -132,9 +165,7 @@ contains
          meets = before%fracture == patch%fracture .and. before%s(1) < patch%s(2) &
                  .and. before%s(2) > patch%s(1)
          if (.not. any(meets)) then
-            new%event%time = time
             new%event%fracture = patch%fracture
-            new%event%s = patch%s
             self%live = [self%live, new]
             patch%live = size(self%live)
             return
@@ -145,56 +176,110 @@ contains
             if (.not. meets(i) .or. before(i)%live == keeps) cycle
             call take_in(self, before(i)%live, keeps, patches)
          end do
-         associate (s => self%live(keeps)%event%s)
-            s = [min(s(1), patch%s(1)), max(s(2), patch%s(2))]
-         end associate
       end associate
    end subroutine assign_patch
 
-   !> An event becomes part of another one.
+   !> An event becomes part of another one. What was aseismic in one of them and is seismic in the
+   !! other stays an event of its own, which is over.
    pure subroutine take_in(self, gone, keeps, patches)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik), value :: gone  !< live events
       integer(ik), intent(in) :: keeps
       type(patch_t), intent(inout) :: patches(:)  !< of this step
+      type(live_t) :: slow
 
       associate (a => self%live(keeps), b => self%live(gone))
-         a%event%time = min(a%event%time, b%event%time)
-         a%event%end = max(a%event%end, b%event%end)
-         a%event%s = [min(a%event%s(1), b%event%s(1)), max(a%event%s(2), b%event%s(2))]
-         a%event%xy = a%event%xy + b%event%xy
-         a%potency = a%potency + b%potency
-         a%last = a%last + b%last
-         a%event%largest_rate = max(a%event%largest_rate, b%event%largest_rate)
-         a%open = a%open + b%open
-         a%sudden = a%sudden + b%sudden
-         b%potency = 0.0_rk
+         call add(a%now, b%now)
+         if (a%event%is_seismic .neqv. b%event%is_seismic) then
+            slow = b
+            if (b%event%is_seismic) then
+               slow = a
+               a%event = b%event
+               a%before = b%before
+               a%start = b%start
+            end if
+            call list(self, slow, "speed")
+         else
+            a%event%time = min(a%event%time, b%event%time)
+            a%event%end = max(a%event%end, b%event%end)
+            a%event%largest_rate = max(a%event%largest_rate, b%event%largest_rate)
+            call add(a%before, b%before)
+         end if
+         b%has_begun = .false.
+         b%before = amount_t()
+         b%now = amount_t()
       end associate
       where (self%patch%live == gone) self%patch%live = keeps
       where (patches%live == gone) patches%live = keeps
    end subroutine take_in
 
    !> Slip of some cells that follow each other.
-   pure subroutine add_slip(live, time, fracture, first, last, potency, is_open, is_sudden)
-      type(live_t), intent(inout) :: live
-      real(rk), intent(in) :: time  !< [s]
+   pure function amount_of(fracture, first, last, dt, potency, is_open, is_sudden) result(amount)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: first, last
+      real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: potency(:)  !< (cells) [m2]
       logical, intent(in) :: is_open(:)  !< (cells)
       logical, intent(in) :: is_sudden
+      type(amount_t) :: amount
+      real(rk) :: centre(2), rate
       integer(ik) :: cell
 
-      live%event%end = time
-      live%potency = live%potency + sum(potency(first:last))
-      live%last = live%last + sum(potency(first:last))
-      live%open = live%open + sum(potency(first:last), mask=is_open(first:last))
-      if (is_sudden) live%sudden = live%sudden + sum(potency(first:last))
+      amount%potency = sum(potency(first:last))
+      amount%open = sum(potency(first:last), mask=is_open(first:last))
+      if (is_sudden) amount%sudden = amount%potency
+      amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
       do cell = first, last
-         live%event%xy = live%event%xy + potency(cell) &
-                         *0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+         centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+         amount%place = amount%place + potency(cell)*centre
+         rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
+         if (.not. rate > amount%rate) cycle
+         amount%rate = rate
+         amount%fastest = centre
       end do
-   end subroutine add_slip
+   end function amount_of
+
+   !> Slip adds up.
+   pure subroutine add(amount, more)
+      type(amount_t), intent(inout) :: amount
+      type(amount_t), intent(in) :: more
+
+      amount%potency = amount%potency + more%potency
+      amount%open = amount%open + more%open
+      amount%sudden = amount%sudden + more%sudden
+      amount%place = amount%place + more%place
+      amount%s = [min(amount%s(1), more%s(1)), max(amount%s(2), more%s(2))]
+      if (.not. more%rate > amount%rate) return
+      amount%rate = more%rate
+      amount%fastest = more%fastest
+   end subroutine add
+
+   !> The step of an event: it goes on, or where its rate passes the threshold another one begins.
+   pure subroutine book_step(self, p, time, dt)
+      class(slip_catalogue_t), intent(inout) :: self
+      integer(ik), intent(in) :: p  !< live event
+      real(rk), intent(in) :: time, dt  !< [s]
+      logical :: is_seismic
+
+      associate (live => self%live(p))
+         is_seismic = live%now%rate >= self%seismic_rate
+         if (live%has_begun .and. (live%event%is_seismic .neqv. is_seismic)) then
+            call list(self, live, "speed")
+            live%has_begun = .false.
+         end if
+         if (.not. live%has_begun) then
+            live%event = slip_event_t(time=time - dt, fracture=live%event%fracture, &
+                                      is_seismic=is_seismic, onset_xy=live%now%fastest)
+            live%before = amount_t()
+            live%start = self%last%of_fracture(live%event%fracture)
+            live%has_begun = .true.
+         end if
+         live%event%end = time
+         live%event%largest_rate = max(live%event%largest_rate, &
+                                       self%shear*live%now%potency*self%breadth/dt)
+         call add(live%before, live%now)
+      end associate
+   end subroutine book_step
 
    !> Events of which nothing slides any more are over.
    pure subroutine end_quiet(self)
@@ -204,7 +289,7 @@ contains
 
       do i = 1, size(goes_on)
          goes_on(i) = any(self%patch%live == i)
-         if (.not. goes_on(i)) call list(self, self%live(i), .true.)
+         if (.not. goes_on(i)) call list(self, self%live(i), "stick")
       end do
       do i = 1, size(self%patch)
          self%patch(i)%live = count(goes_on(:self%patch(i)%live))
@@ -219,31 +304,38 @@ contains
 
       if (.not. allocated(self%live)) return
       do i = 1, size(self%live)
-         call list(self, self%live(i), .false.)
+         call list(self, self%live(i), "run")
       end do
       self%live = self%live(:0)
       self%patch = self%patch(:0)
    end subroutine end_all
 
    !> List an event, unless it is too small or part of another one by now.
-   pure subroutine list(self, live, sticks)
+   pure subroutine list(self, live, ended_by)
       class(slip_catalogue_t), intent(inout) :: self
       type(live_t), intent(in) :: live
-      logical, intent(in) :: sticks  !< it is over; else the run is
+      character(len=*), intent(in) :: ended_by
       type(slip_event_t) :: event
+      real(rk) :: length
 
+      if (.not. live%before%potency > 0.0_rk) return
       event = live%event
-      event%mean_slip = live%potency/(event%s(2) - event%s(1))
-      if (.not. (live%potency > 0.0_rk .and. event%mean_slip >= self%least_slip)) return
+      event%s = live%before%s
+      length = event%s(2) - event%s(1)
+      event%mean_slip = live%before%potency/length
+      if (.not. event%mean_slip >= self%least_slip) return
       self%n = self%n + 1
       event%number = self%n
-      event%xy = event%xy/live%potency
-      event%area = (event%s(2) - event%s(1))*self%breadth
-      event%moment = self%shear*live%potency*self%breadth
+      event%xy = live%before%place/live%before%potency
+      event%area = length*self%breadth
+      event%moment = self%shear*live%before%potency*self%breadth
       event%magnitude = magnitude(event%moment)
-      event%open_share = live%open/live%potency
-      event%sudden_share = live%sudden/live%potency
-      event%sticks = sticks
+      event%largest_slip_rate = live%before%rate
+      event%mean_slip_rate = event%mean_slip/(event%end - event%time)
+      event%stress_drop = live%start%fall(self%last, event%s)
+      event%open_share = live%before%open/live%before%potency
+      event%sudden_share = live%before%sudden/live%before%potency
+      event%ended_by = ended_by
       self%news = [self%news, event]
    end subroutine list
 

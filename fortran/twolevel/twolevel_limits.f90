@@ -6,9 +6,9 @@ module twolevel_limits
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
    use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                                limit_jump, limit_keq, limit_layering, limit_loop_flow, &
-                                limit_mass, &
-                                limit_pressure_load, limit_pressure_stiffness, limit_strain
+                                limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
+                                limit_loop_flow, limit_mass, limit_pressure_load, &
+                                limit_pressure_stiffness, limit_strain, limit_table
    use simulation_watch, only: worst_place
    use twolevel_scales, only: pressure_scale
    use twolevel_state, only: two_levels_t
@@ -72,10 +72,33 @@ contains
             end if
          end associate
       end if
+      if (allocated(self%model%settings%fluid_law)) call watch_fluid(self, when)
       call self%watch%see(limit_pressure_stiffness, pressure/self%scene%material%young, when, xy)
       scale = pressure_scale(self%scene)
       if (scale > 0.0_rk) call self%watch%see(limit_pressure_load, pressure/scale, when, xy)
    end subroutine watch_pressure
+
+   !> Where the fluid is not what its law says: beyond a table, and in the rock.
+   subroutine watch_fluid(self, when)
+      class(two_levels_t), intent(inout) :: self
+      character(len=*), intent(in) :: when
+      real(rk) :: beyond(self%mesh%fracture%n_cells), differs(self%mesh%n_cells)
+      integer(ik) :: i
+
+      associate (law => self%model%settings%fluid_law, mesh => self%mesh)
+         differs = abs(law%thickness_at(self%rock_pressure()) - 1.0_rk)
+         i = worst_place(differs)
+         call self%watch%see(limit_fluid_in_rock, differs(i), when, &
+                             sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk)
+      end associate
+      if (.not. allocated(self%scene%fluid%table_pressure)) return
+      if (self%mesh%fracture%n_cells == 0) return
+      associate (range => self%scene%fluid%table_pressure, p => self%fracture_pressure())
+         beyond = max(range(1) - p, p - range(size(range)), 0.0_rk)/(range(size(range)) - range(1))
+         i = worst_place(beyond)
+         call self%watch%see(limit_table, beyond(i), when, middle(self, i))
+      end associate
+   end subroutine watch_fluid
 
    !> Aperture and jump of the fracture cells.
    subroutine watch_fractures(self, when)

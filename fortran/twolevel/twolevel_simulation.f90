@@ -63,7 +63,7 @@ contains
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
       call self%catalogue%begin(shear_of(scene%material), scene%output%out_of_plane_length, &
-                                scene%output%stimulated_jump)
+                                scene%output%stimulated_jump, scene%output%seismic_slip_rate)
       call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
       if (.not. allocated(error)) call note_features(self)
@@ -145,6 +145,7 @@ contains
    subroutine book_change(self)
       class(twolevel_simulation_t), intent(inout) :: self
       type(fracture_mesh_t) :: fracture
+      real(rk), parameter :: rounding = 1.0e-12_rk  ! in slip, relative
       real(rk), allocatable :: potency(:)
 
       if (self%is_initial) then
@@ -156,9 +157,18 @@ contains
       if (fracture%n_cells == 0) return
       potency = slip_potency(self)
       call add_moment(self%model%rock, self%mesh, potency, self%seismic_moment)
-      if (self%is_initial) return
       call end_at_tips(self, fracture)
-      call self%note_slip(self%dt, fracture, potency, cell_states(self), self%is_unstable)
+      associate (traction => 0.5_rk*sum(self%state%traction(2, :, :), dim=1), &
+                 largest => maxval(abs(self%state%jump(2, :, :))))
+         ! Faces at the bound of friction that do not move are moved by rounding.
+         where (potency <= rounding*largest*self%model%condensed%length) potency = 0.0_rk
+         if (self%is_initial) then
+            call self%catalogue%remember(fracture, traction)
+         else
+            call self%note_slip(self%dt, fracture, potency, cell_states(self), &
+                                self%is_unstable, traction)
+         end if
+      end associate
    end subroutine book_change
 
    !> The state before the first step.

@@ -96,6 +96,7 @@ module twolevel_state
       procedure :: well_pressure
       procedure :: rock_pressure
       procedure :: fracture_pressure
+      procedure :: thickness
       procedure :: joint_pressure
       procedure :: well_in_situ
       procedure :: update_values
@@ -401,10 +402,10 @@ contains
       do w = 1, size(between, kind=ik)
          if (.not. between(w)) cycle
          associate (cells => self%model%cells, length => self%model%condensed%length, &
-                    viscosity => self%model%settings%viscosity)
+                    viscosity => self%model%settings%viscosity, thickness => self%thickness())
             where (self%share(:, w) > 0.0_rk)
                pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
-                          /self%state%aperture**3
+                          /self%state%aperture**3*thickness
             end where
          end associate
       end do
@@ -433,6 +434,18 @@ contains
          pressure = pressure + self%model%cells%pressure_in_situ
       end if
    end function fracture_pressure
+
+   !> How much more pressure a flow takes in the fracture cells than at the viscosity of the scene,
+   !! where that follows pressure [-].
+   pure function thickness(self)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: thickness(size(self%state%pressure))
+
+      thickness = 1.0_rk
+      if (allocated(self%model%settings%fluid_law)) then
+         thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure())
+      end if
+   end function thickness
 
    !> The whole pressure in the joints [Pa].
    pure function joint_pressure(self) result(pressure)

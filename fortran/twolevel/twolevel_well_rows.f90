@@ -115,7 +115,7 @@ contains
          ! Not the lengths of the condensed matrix: before the first step there may be none.
          associate (length => levels%mesh%fracture%cell_s(2, :) - levels%mesh%fracture%cell_s(1, :))
             pressure = pressure + flow*6.0_rk*model%settings%viscosity &
-                       *sum(levels%share(:, w)**2*length/state%aperture**3)
+                       *sum(levels%share(:, w)**2*length/state%aperture**3*levels%thickness())
          end associate
       end associate
    end function pressure_at

@@ -17,7 +17,8 @@ program test_coarse_equations
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
-   use scene_types, only: initial_t, scene_t
+   use scene_fluid_law, only: new_fluid_law
+   use scene_types, only: fluid_t, initial_t, scene_t
    implicit none(type, external)
 
    real(rk), parameter :: dt = 10.0_rk  !< [s]
@@ -35,6 +36,7 @@ program test_coarse_equations
    call compare_slopes(.false., 2)
    call compare_slopes(.true., 3)
    call checks%is_true(all(has_occurred), "cells stick, slip and are open")
+   call test_fluid_laws()
    call test_exchange_along_fractures()
    call test_moving_tip()
    call add_laws()
@@ -255,6 +257,46 @@ contains
       call checks%is_close(worst, 0.0_rk, 1.0e-7_rk, "derivatives")
       call checks%is_true(n_compared > 0.9_rk*size(x), "nearly all columns were compared")
    end subroutine compare_slopes
+
+   !> Laws of viscosity and density that change by a factor within the pressures of the cells: all
+   !! derivatives, and with pressures in situ. A table that samples an exponential law is that law.
+   subroutine test_fluid_laws()
+      type(fluid_t) :: fluid
+      type(equations_t) :: by_law, by_table
+      real(rk), allocatable :: x(:)
+      integer(ik), allocatable :: contact(:, :)
+      integer(ik) :: i
+
+      fluid%viscosity = model%settings%viscosity
+      fluid%compressibility = 3.0e-8_rk
+      fluid%viscosity_law = "exponential"
+      fluid%viscosity_exponent = 2.0e-7_rk
+      fluid%density_law = "exponential"
+      fluid%reference_pressure = 7.0e6_rk
+      model%settings%compressibility = 0.0_rk
+      model%settings%fluid_law = new_fluid_law(fluid)
+      call compare_slopes(.false., 1)
+      call compare_slopes(.false., 2)
+      call compare_slopes(.true., 3)
+      model%cells%pressure_in_situ = [(1.0e5_rk*i, i=1, mesh%fracture%n_cells)]
+      call compare_slopes(.false., 2)
+      call some_unknowns(2, x)
+      call equations_at(x, .false., by_law, contact)
+      fluid%table_pressure = [(1.0e6_rk*i, i=-30, 60, 3)]
+      fluid%table_viscosity = fluid%viscosity &
+                              *exp(fluid%viscosity_exponent*(fluid%table_pressure - 7.0e6_rk))
+      fluid%table_density = 1.1e3_rk &
+                            *exp(fluid%compressibility*(fluid%table_pressure - 7.0e6_rk))
+      fluid%viscosity_law = "table"
+      fluid%density_law = "table"
+      model%settings%fluid_law = new_fluid_law(fluid)
+      call equations_at(x, .false., by_table, contact)
+      associate (scale => maxval(abs(by_law%residual)))
+         call checks%is_close(maxval(abs(by_table%residual - by_law%residual)), 0.0_rk, &
+                              1.0e-12_rk*scale, "a table of an exponential law")
+      end associate
+      deallocate (model%settings%fluid_law, model%cells%pressure_in_situ)
+   end subroutine test_fluid_laws
 
    !> What flows along a fracture leaves one balance and enters the next; the other ends are closed.
    subroutine test_exchange_along_fractures()

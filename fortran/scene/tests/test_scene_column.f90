@@ -3,6 +3,7 @@
 program test_scene_column
    use testing_checks, only: checks_t
    use base_errors, only: error_t
+   use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: scene_t
@@ -64,7 +65,48 @@ contains
       call expect(":3: &material: density is 99.0 but must be at least that of the fluid in "// &
                   "its pores, porosity times density of &fluid: 100.0"//doc)
       call check_weightless()
+      call check_layers()
    end subroutine check_faults
+
+   !> A region of another density.
+   subroutine check_layers()
+      character(len=*), parameter :: layer = &
+                                     "&region name='b' x=-1,300,300,-1 y=-2200,-2200,-2050,-2050"
+      character(len=100) :: lines(size(good) + 1)
+
+      lines(:size(good)) = good
+      lines(7:8) = ""
+      lines(size(lines)) = layer//" density=2700 /"
+      call put_lines(path, lines)
+      call read_scene(path, scene, error)
+      call checks%no_error(error, "two layers that settle")
+      if (.not. allocated(error)) then
+         call checks%is_close(scene%regions(1)%material%density, 2700.0_rk, 0.0_rk, "density")
+      end if
+      lines(7) = "&in_situ sxx=-3e7 syy=-5e7 /"
+      call put_lines(path, lines)
+      call read_scene(path, scene, error)
+      call checks%no_error(error, "beside a stress that does not change with y")
+      lines(7) = "&in_situ sxx_per_y=1.7e4 syy_per_y=2.5e4 /"
+      call put_lines(path, lines)
+      call expect(":14: &region: density is 2700.0 but must be that of &material, 2500.0, "// &
+                  "beside a stress in situ that changes with y: one gradient does not carry "// &
+                  "two weights; leave sxx_per_y and syy_per_y out, and the body settles "// &
+                  "under its weight"//doc)
+      lines(5:7) = [character(len=100) :: "/", "", ""]
+      call put_lines(path, lines)
+      call expect(":14: &region: density is 2700.0 but nothing gives it weight; give &gravity, "// &
+                  "or leave the density out"//doc)
+      lines(5:6) = [character(len=100) :: "  density=1000 /", "&gravity y=-10 /"]
+      lines(size(lines)) = layer//" density=99 /"
+      call put_lines(path, lines)
+      call expect(":14: &region: density is 99.0 but must be at least that of the fluid in its "// &
+                  "pores, porosity times density of &fluid: 100.0"//doc)
+      lines(size(lines)) = layer//" density=0 /"
+      call put_lines(path, lines)
+      call expect(":14: &region: density is 0 but must be a finite number greater than 0.0 "// &
+                  "[kg/m3]"//doc)
+   end subroutine check_layers
 
    !> No gravity, no stress in situ, but a density of the fluid; and gravity askew with one.
    subroutine check_weightless()

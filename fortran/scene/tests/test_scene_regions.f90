@@ -140,7 +140,7 @@ contains
    subroutine check_permeability()
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: name is given, but the region "// &
                   "has no rock of its own: it must give at least one of young, poisson, biot, "// &
-                  "porosity, permeability, toughness"//doc)
+                  "porosity, permeability, density, toughness"//doc)
      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
                   "is -1e-14 but must be a finite number greater than 0.0 [m2]"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-14 permeability_xx=1e-14 /", &
@@ -191,7 +191,8 @@ contains
       call refuse(5, first//"young=1e20 /", ":5: &region: young of region 'p' and that of the "// &
                   "rock around it or of another region differ by more than a factor of 1e9 "// &
                   "but must not"//doc)
-      call refuse(5, first//"density=2700.0 /", ":5: &region: unknown name density")
+      call refuse(5, first//"density=2700.0 /", ":5: &region: density is 2700.0 but nothing "// &
+                  "gives it weight; give &gravity, or leave the density out"//doc)
    end subroutine check_rock
 
    subroutine check_round_trip()

@@ -1,4 +1,5 @@
-!> Slip events by hand: patches that go on, divide, meet and come to rest; moment and magnitude.
+!> Slip events by hand: patches that go on, divide, meet and come to rest; moment and magnitude;
+!! stress drop, and what is seismic.
 program test_simulation_slip
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t
@@ -17,6 +18,9 @@ program test_simulation_slip
    call test_division_and_meeting()
    call test_other_mesh()
    call test_end_of_run()
+   call test_seismic()
+   call test_stress_drop()
+   call test_meeting_speeds()
    call test_magnitude()
    call checks%finish()
 
@@ -34,11 +38,14 @@ contains
    end subroutine make_fractures
 
    !> A step in which the given cells slip by 1 mm, those of `apart` without contact.
-   subroutine step(time, cells, apart, is_sudden)
+   subroutine step(time, cells, apart, is_sudden, faster, traction)
       real(rk), intent(in) :: time  !< [s]
       integer, intent(in) :: cells(:)
       integer, intent(in) :: apart(:)
       logical, intent(in), optional :: is_sudden  !< default: no
+      real(rk), intent(in), optional :: faster(:)  !< (n) times 1 mm that the cells slip [-]
+      real(rk), intent(in), optional :: traction(:)  !< (n) f_tau after the step; default: 0 [Pa]
+      real(rk) :: after(n), potency(n)
       logical :: is_open(n), slides(n), sudden
 
       is_open = .false.
@@ -47,13 +54,16 @@ contains
       is_open(apart) = .true.
       sudden = .false.
       if (present(is_sudden)) sudden = is_sudden
-      call catalogue%follow(time, dt, fracture, merge(slip, 0.0_rk, slides), slides, is_open, &
-                            sudden)
+      potency = merge(slip, 0.0_rk, slides)
+      if (present(faster)) potency = faster*potency
+      after = 0.0_rk
+      if (present(traction)) after = traction
+      call catalogue%follow(time, dt, fracture, potency, slides, is_open, sudden, after)
    end subroutine step
 
    !> Two steps on a patch that moves, then rest.
    subroutine test_one()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk)
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [2, 3], [integer ::])
       call step(1.0_rk, [3, 4], [3], is_sudden=.true.)
       call checks%is_true(size(catalogue%news) == 0, "it is not over")
@@ -71,14 +81,14 @@ contains
          call checks%is_close(event%largest_rate, 2.0_rk*slip*shear*breadth/dt, 1.0e-6_rk, "rate")
          call checks%is_close(event%sudden_share, 0.5_rk, 1.0e-15_rk, "share of the second step")
          call checks%is_close(event%open_share, 0.25_rk, 1.0e-15_rk, "share of open faces")
-         call checks%is_true(event%sticks, "it sticks")
+         call checks%is_true(event%ended_by == "stick" .and. .not. event%is_seismic, "it sticks")
       end associate
    end subroutine test_one
 
    !> A patch that divides stays one event; two that meet become the earlier one. The end of one
    !! fracture and the beginning of the next are neighbours in the list only.
    subroutine test_division_and_meeting()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk)
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [5, 6], [integer ::])
       call step(1.0_rk, [2, 5, 6], [integer ::])
       call step(1.5_rk, [2, 3, 4, 5, 6, 8], [integer ::])
@@ -108,7 +118,7 @@ contains
       type(fracture_mesh_t) :: finer
       integer(ik) :: i
 
-      call catalogue%begin(shear, breadth, 1.0e-6_rk)
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [3], [integer ::])
       finer%n_cells = 10
       finer%cell_fracture = spread(1_ik, 1, 10)
@@ -116,7 +126,8 @@ contains
       finer%cell_s = reshape([(0.5_rk*(i - 1), 0.5_rk*i, i=1, 10)], [2, 10])
       finer%point_xy = reshape([(0.5_rk*i, 0.0_rk, i=0, 10)], [2, 11])
       call catalogue%follow(1.0_rk, dt, finer, [(merge(0.5_rk*slip, 0.0_rk, i == 6), i=1, 10)], &
-                            [(i == 6, i=1, 10)], spread(.false., 1, 10), .false.)
+                            [(i == 6, i=1, 10)], spread(.false., 1, 10), .false., &
+                            spread(0.0_rk, 1, 10))
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "one event on two meshes")
       call checks%is_close(catalogue%news(1)%moment, 1.5_rk*slip*shear*breadth, 1.0e-6_rk, &
@@ -126,16 +137,78 @@ contains
 
    !> What still slips when the run ends is listed as such; what slips too little is not.
    subroutine test_end_of_run()
-      call catalogue%begin(shear, breadth, 1.5_rk*slip)
+      call catalogue%begin(shear, breadth, 1.5_rk*slip, 1.0_rk)
       call step(0.5_rk, [1, 7], [integer ::])
       call step(1.0_rk, [7], [integer ::])
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "too little slip is no event")
-      call checks%is_true(.not. catalogue%news(1)%sticks, "the run ends it")
+      call checks%is_true(catalogue%news(1)%ended_by == "run", "the run ends it")
       call checks%is_close(catalogue%news(1)%end, 1.0_rk, 0.0_rk, "at its end")
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "once")
    end subroutine test_end_of_run
+
+   !> Creep, 10 mm/s for two steps, creep again: three events, with the slip of each; the fast one
+   !! nucleates where it is fastest in its first step.
+   subroutine test_seismic()
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 4.5e-3_rk)
+      call step(0.5_rk, [2, 3, 4], [integer ::])
+      call step(1.0_rk, [2, 3, 4], [integer ::], faster=real([1, 1, 3, 5, 1, 1, 1, 1], rk))
+      call step(1.5_rk, [1, 2, 3, 4], [integer ::], faster=real([1, 1, 9, 5, 1, 1, 1, 1], rk))
+      call step(2.0_rk, [1, 2], [integer ::])
+      call step(2.5_rk, [integer ::], [integer ::])
+      associate (events => catalogue%news)
+         call checks%is_true(size(events) == 3, "three events")
+         if (size(events) /= 3) return
+         call checks%is_true(all(events%is_seismic .eqv. [.false., .true., .false.]), "the second")
+         call checks%is_true(all(events%ended_by == ["speed", "speed", "stick"]), "what ends them")
+         call checks%is_close(maxval(abs(events%time - [0.0_rk, 0.5_rk, 1.5_rk])), 0.0_rk, 0.0_rk, &
+                              "when they begin")
+         call checks%is_close(maxval(abs(events%end - [0.5_rk, 1.5_rk, 2.0_rk])), 0.0_rk, 0.0_rk, &
+                              "and end")
+         call checks%is_close(maxval(abs(events%moment/(slip*shear*breadth) &
+                                         - [3.0_rk, 25.0_rk, 2.0_rk])), 0.0_rk, 1.0e-12_rk, &
+                              "the slip of each")
+         call checks%is_close(events(2)%onset_xy(1), 3.5_rk, 1.0e-14_rk, "nucleation")
+         call checks%is_close(events(2)%largest_slip_rate, 1.8e-2_rk, 1.0e-15_rk, "largest rate")
+         call checks%is_close(events(2)%mean_slip_rate, 25.0_rk*slip/4.0_rk, 1.0e-15_rk, &
+                              "mean rate")
+         call checks%is_close(maxval(abs(events(2)%s - [0.0_rk, 4.0_rk])), 0.0_rk, 1.0e-15_rk, &
+                              "its patch")
+         call checks%is_close(maxval(abs(events(3)%s - [0.0_rk, 2.0_rk])), 0.0_rk, 1.0e-15_rk, &
+                              "not that of what comes after it")
+      end associate
+   end subroutine test_seismic
+
+   !> Tractions fall from before the first step to after the last one, of either sign, and on cells
+   !! that are reached later; others of the fracture do not count.
+   subroutine test_stress_drop()
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
+      call catalogue%remember(fracture, 1.0e6_rk*real([1, -5, 5, 5, 7, 9, 9, 9], rk))
+      call step(0.5_rk, [2, 3], [integer ::], traction=1.0e6_rk*real([2, -4, 4, 6, 6, 0, 0, 0], rk))
+      call step(1.0_rk, [3, 4], [integer ::], traction=1.0e6_rk*real([2, 1, 2, 3, 5, 0, 0, 0], rk))
+      call step(1.5_rk, [integer ::], [integer ::])
+      call checks%is_true(size(catalogue%news) == 1, "one event")
+      ! 5 + 1, 5 - 2, 5 - 3 MPa
+      call checks%is_close(catalogue%news(1)%stress_drop, 11.0e6_rk/3.0_rk, 1.0e-6_rk, &
+                           "stress drop")
+   end subroutine test_stress_drop
+
+   !> A creeping patch that meets a fast one is over; the fast one goes on with what follows.
+   subroutine test_meeting_speeds()
+      call catalogue%begin(shear, breadth, 1.0e-6_rk, 4.5e-3_rk)
+      call step(0.5_rk, [1, 4], [integer ::], faster=real([1, 1, 1, 5, 1, 1, 1, 1], rk))
+      call step(1.0_rk, [1, 2, 3, 4], [integer ::], faster=real([1, 1, 1, 5, 1, 1, 1, 1], rk))
+      call step(1.5_rk, [integer ::], [integer ::])
+      associate (events => catalogue%news)
+         call checks%is_true(size(events) == 2, "two events")
+         if (size(events) /= 2) return
+         call checks%is_true(all(events%is_seismic .eqv. [.false., .true.]), "the creep ends first")
+         call checks%is_close(maxval(abs(events%moment/(slip*shear*breadth) &
+                                         - [1.0_rk, 13.0_rk])), 0.0_rk, 1.0e-12_rk, &
+                              "no slip is lost or counted twice")
+      end associate
+   end subroutine test_meeting_speeds
 
    !> M_w = 6 has 10^18.1 N m = 1.2589e18 N m.
    subroutine test_magnitude()
