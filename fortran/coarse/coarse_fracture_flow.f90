@@ -25,13 +25,13 @@ module coarse_fracture_flow
 contains
 
    !> Flux between the rock and cell i on both sides: lambda = (kappa/mu)(p - p_F)/(a/2), kappa =
-   !! a^2/12; at a tip with what the flux there needs (coarse_tips). Its equations are those of p+
-   !! and p-.
+   !! a^2/12, in a row with the skin; at a tip with what the flux there needs (coarse_tips). Its
+   !! equations are those of p+ and p-.
    pure subroutine fill_exchange(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, conductance, resistance, slope, volume
+      real(rk) :: aperture, conductance, resistance, skin, slope, volume
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, end, jumps(2), row, side
 
@@ -42,13 +42,17 @@ contains
       slope = slope/eq%cells%share(i)
       conductance = eq%dt*eq%cells%share(i)*eq%condensed%length(i)*aperture &
                     /(6.0_rk*eq%settings%viscosity)
+      skin = 0.0_rk
+      if (allocated(eq%cells%skin)) then
+         skin = eq%cells%skin(i)/(eq%dt*eq%cells%share(i)*eq%condensed%length(i))
+      end if
       do side = 1, 2
          row = eq%layout%at_face_pressure(i, side)
          at = eq%condensed%layout%at_face_pressure(i, side)
          volume = eq%force(at)
          resistance = 1.0_rk/conductance &
                       + max(eq%cells%leak_resistance(i)/(eq%settings%mobility*eq%dt), &
-                            -most_of_rock/abs(eq%volume_slope(side, i)))
+                            -most_of_rock/abs(eq%volume_slope(side, i))) + skin
          eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
          call eq%slopes%add_force(row, at, resistance)
          do end = 1, 2

@@ -36,6 +36,7 @@ module coarse_in_situ
       procedure :: pressure_at
       procedure :: side_traction
       procedure :: add_contact_tractions
+      procedure :: contact_pressure
    end type in_situ_state_t
 
 contains
@@ -137,5 +138,23 @@ contains
          end do
       end do
    end subroutine add_contact_tractions
+
+   !> What presses the faces of a fracture cell on each other in its middle, beyond the pressure; no
+   !! less than nothing [Pa].
+   pure real(rk) function contact_pressure(self, fracture, cell) result(pressure)
+      class(in_situ_state_t), intent(in) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: cell
+      real(rk) :: stress(3), along(2), y
+
+      associate (ends => fracture%point_xy(:, fracture%cell_points(:, cell)))
+         along = (ends(:, 2) - ends(:, 1))/norm2(ends(:, 2) - ends(:, 1))
+         y = 0.5_rk*sum(ends(2, :))
+      end associate
+      stress = self%stress_at(y)
+      pressure = -(stress(1)*along(2)**2 + stress(2)*along(1)**2 &
+                   - 2.0_rk*stress(3)*along(1)*along(2)) - self%pressure_at(y)
+      pressure = max(0.0_rk, pressure)
+   end function contact_pressure
 
 end module coarse_in_situ

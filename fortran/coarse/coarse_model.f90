@@ -226,7 +226,10 @@ contains
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
-      if (any(cells%law%weakening > 0.0_rk)) allocate (state%slip_path(2, n), source=0.0_rk)
+      if (any(cells%law%ages())) then
+         allocate (state%slip_path(2, n), state%opened(2, n), state%opened_before(2, n), &
+                   source=0.0_rk)
+      end if
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=pressure)
       allocate (state%contact(2, n), source=state_stick)

@@ -175,6 +175,14 @@ contains
       end do
       if (allocated(state%slip_path)) then
          state%slip_path = state%slip_path + abs(state%jump(2, :, :) - state%slip_before)
+         state%opened_before = state%opened
+         do i = 1, condensed%n
+            do end = 1, 2
+               state%opened(end, i) = max(state%opened(end, i), &
+                                          cells%law(i)%apart(eq%traction(:, end, i), &
+                                                             state%jump(:, end, i)))
+            end do
+         end do
       end if
       state%traction = eq%traction
       state%aperture = aperture

@@ -16,6 +16,7 @@ module coarse_state
       logical, allocatable :: has_tip(:)  !< a tip lies in it
       !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
+      real(rk), allocatable :: skin(:)  !< (n) on each face; unallocated: none has any [Pa s/m]
       real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
       !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
@@ -31,8 +32,11 @@ module coarse_state
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
       real(rk), allocatable :: slip_before(:, :)  !< (2, n) [u]_tau at the last accepted time [m]
-      !> (2, n) path that the faces have slipped; unallocated: no friction weakens [m]
+      !> (2, n) path that the faces have slipped; unallocated: no law ages [m]
       real(rk), allocatable :: slip_path(:, :)
+      !> (2, n) how far the faces have been apart at most, and before the last step; allocated as
+      !! slip_path [m]
+      real(rk), allocatable :: opened(:, :), opened_before(:, :)
       !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
       real(rk), allocatable :: traction(:, :, :)
       integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open

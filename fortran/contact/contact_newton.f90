@@ -12,6 +12,11 @@
 !! start, once; a system may know a slower way that always leads to a solution (contact_pairs). If
 !! that is one of many, as for a piece that floats, the system counts as singular.
 !!
+!! Bonds that break (contact_law) soften faster than the body may follow: there is no solution near
+!! by then, and Newton's method finds none. Such a system holds its bonds as they are and is solved,
+!! as plastic faces are; then they are let wear by what these have slipped and opened, for good,
+!! again and again until none wears further, or Newton's method finds the rest of the way.
+!!
 !! What still cycles is iterated with shortened steps. Where states change the residuals keep their
 !! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
 !! continuous function, and a step is halved until it falls.
@@ -54,6 +59,9 @@ module contact_newton
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
+      procedure :: has_bonds
+      procedure :: hold_bonds
+      procedure :: let_bonds_wear
    end type contact_system_t
 
    type :: iteration_settings_t
@@ -158,19 +166,111 @@ contains
       class(contact_system_t), intent(inout) :: self
    end subroutine end_restart
 
+   !> Something is bonded. In most systems nothing is.
+   pure logical function has_bonds(self)
+      class(contact_system_t), intent(in) :: self
+
+      has_bonds = .false.
+   end function has_bonds
+
+   !> Hold the bonds as they have become at x, where the system was last evaluated, no stronger than
+   !! they have been held since the first time; whether that is noticeably weaker.
+   subroutine hold_bonds(self, x, is_first, tolerance, is_worn)
+      class(contact_system_t), intent(inout) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      logical, intent(in) :: is_first
+      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
+      logical, intent(out) :: is_worn
+
+      is_worn = .false.
+   end subroutine hold_bonds
+
+   !> Let the bonds go on from where they were before the step.
+   subroutine let_bonds_wear(self)
+      class(contact_system_t), intent(inout) :: self
+   end subroutine let_bonds_wear
+
    !> Solve the system, from the x and the states that it has at the start.
    subroutine iterate(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(out) :: report
+      real(rk) :: start(size(x))
+      logical :: is_worn
+
+      start = x
+      call iterate_from(system, x, settings, report)
+      if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
+      if (.not. settings%perseveres) return
+      if (system%has_bonds()) then
+         x = start
+         call system%evaluate(x)
+         call system%hold_bonds(x, .true., settings%tolerance, is_worn)
+         call iterate_worn(system, x, settings, report)
+      else
+         call persevere(system, x, settings, report)
+      end if
+   end subroutine iterate
+
+   !> Solve the system with its bonds held, from which they wear, until none does any more.
+   subroutine iterate_worn(system, x, settings, report)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(inout) :: x(:)  !< where the bonds are held first [Pa]
+      type(iteration_settings_t), intent(in) :: settings
+      type(iteration_report_t), intent(inout) :: report
+      ! Next to the stiffness that would hold a bond it wears slowly.
+      integer(ik), parameter :: rounds = 300, iterations_of_trial = 8
+      real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
+      type(iteration_settings_t) :: briefly
+      type(iteration_report_t) :: found
+      real(rk) :: trial(size(x))
+      integer(ik) :: k
+      logical :: is_worn
+
+      briefly = settings
+      briefly%iterations_max = min(settings%iterations_max, iterations_of_trial)
+      do k = 1, rounds
+         call iterate_from(system, x, settings, report)
+         if (report%outcome == outcome_stuck .or. report%outcome == outcome_singular) then
+            call persevere(system, x, settings, report)
+         end if
+         if (report%outcome /= outcome_converged) exit
+         call system%hold_bonds(x, .false., settings%tolerance, is_worn)
+         if (.not. is_worn) exit
+         call system%let_bonds_wear()
+         trial = x
+         found%iterations = report%iterations
+         call iterate_from(system, trial, briefly, found)
+         report%iterations = found%iterations
+         if (found%outcome == outcome_converged) then
+            x = trial
+            report = found
+            return
+         end if
+         report%outcome = outcome_stuck
+         call system%evaluate(x)
+         call system%hold_bonds(x, .false., settings%tolerance, is_worn)
+      end do
+      call system%let_bonds_wear()
+      if (report%outcome /= outcome_converged) return
+      ! A point that has moved and come back has a bond weaker than where it is now says.
+      call system%evaluate(x)
+      if (.not. maxval(abs(system%residual)) <= kept*system%stress_scale) then
+         report%outcome = outcome_stuck
+      end if
+   end subroutine iterate_worn
+
+   !> Try the slower ways to a solution, where the iteration from the last x has failed.
+   subroutine persevere(system, x, settings, report)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(inout) :: x(:)  !< [Pa]
+      type(iteration_settings_t), intent(in) :: settings
+      type(iteration_report_t), intent(inout) :: report
       integer(ik) :: first_outcome
       logical :: has_start
 
-      call iterate_from(system, x, settings, report)
       first_outcome = report%outcome
-      if (first_outcome /= outcome_stuck .and. first_outcome /= outcome_singular) return
-      if (.not. settings%perseveres) return
       call system%restart(x, has_start)
       report%was_restarted = has_start
       if (has_start) call iterate_from(system, x, settings, report)
@@ -180,7 +280,7 @@ contains
       else if (has_start) then
          if (is_loose(system, x)) report%outcome = outcome_singular
       end if
-   end subroutine iterate
+   end subroutine persevere
 
    !> Whether the solution found from another start is one of many: a part that only contact could
    !! hold is free to move.

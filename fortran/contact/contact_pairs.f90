@@ -32,6 +32,7 @@ module contact_pairs
       !> Added to S in the derivatives, after a restart: a part that only contact holds, and that no
       !! load moves, stays where it is [Pa]
       real(rk) :: spring = 0.0_rk
+      real(rk), allocatable :: bond_before(:), bond_held(:)  !< (n) see hold_bonds [-]
    contains
       procedure :: evaluate
       procedure :: find_step
@@ -40,6 +41,9 @@ module contact_pairs
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
+      procedure :: has_bonds
+      procedure :: hold_bonds
+      procedure :: let_bonds_wear
    end type contact_pairs_t
 
 contains
@@ -192,6 +196,7 @@ contains
       end do
       mean = sum(self%length)/self%n
       call pivot_to_solution(on_spring/(self%stiffness*mean), self%load/mean, self%law, &
+                             self%stiffness*self%law%compliance*mean/self%length, &
                              self%slip_given, self%stiffness*self%slip_before, &
                              self%stiffness*self%given, x, has_start)
       self%way = 0
@@ -207,5 +212,50 @@ contains
 
       self%spring = 0.0_rk
    end subroutine end_restart
+
+   !> Something is bonded.
+   pure logical function has_bonds(self)
+      class(contact_pairs_t), intent(in) :: self
+
+      has_bonds = any(self%law%is_bonded())
+   end function has_bonds
+
+   !> Hold the bonds as they have become where last evaluated.
+   subroutine hold_bonds(self, x, is_first, tolerance, is_worn)
+      class(contact_pairs_t), intent(inout) :: self
+      real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
+      logical, intent(in) :: is_first
+      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
+      logical, intent(out) :: is_worn
+      real(rk) :: apart, jump(2), left
+      integer(ik) :: i
+
+      if (is_first) then
+         self%bond_before = self%law%bond
+         self%bond_held = self%bond_before
+      end if
+      call self%let_bonds_wear()
+      is_worn = .false.
+      do i = 1, self%n
+         associate (law => self%law(i), held => self%bond_held(i))
+            jump = x(2*i - 1:2*i)/self%stiffness
+            apart = law%apart(self%traction(:, i), jump)
+            left = min(held, law%bond_left(apart, jump(2) - self%slip_before(i)))
+            is_worn = is_worn .or. (held - left)*max(law%tension, law%cohesion) &
+                      > tolerance*self%stress_scale
+            held = left
+            law%bond = held
+            law%wears = .false.
+         end associate
+      end do
+   end subroutine hold_bonds
+
+   !> Let them go on from where they were before the step.
+   subroutine let_bonds_wear(self)
+      class(contact_pairs_t), intent(inout) :: self
+
+      self%law%bond = self%bond_before
+      self%law%wears = .true.
+   end subroutine let_bonds_wear
 
 end module contact_pairs

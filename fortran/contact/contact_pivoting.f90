@@ -15,6 +15,8 @@
 !! - Rings closed at a joint make the stiffness unsymmetric.
 !! - Dilation after a slip: l gives way to |[u]_tau| = t + 2 v with v + t >= 0 and v >= 0, the
 !!   product 0, and t the total slip, positive in its direction before.
+!! - Joints that close under pressure: [u]_n + P/k_ni is what is not negative, which leaves M
+!!   copositive; as they stiffen, and bonds not being there, the result is a start.
 !! - Faces held closed with friction: its bound is that of the pressed part P+ of P, so that under
 !!   tension the result is a start for the iteration, not its solution.
 module contact_pivoting
@@ -50,10 +52,12 @@ contains
 
    !> Jumps that fulfil the law, up to round-off that may have grown with the number of pivots.
    !! Lengths are scaled out, jumps are multiplied by the law's stiffness: all is stress.
-   subroutine pivot_to_solution(stiffness, load, law, slip_given, slip_before, given, x, is_solved)
+   subroutine pivot_to_solution(stiffness, load, law, compliance, slip_given, slip_before, given, &
+                                x, is_solved)
       real(rk), intent(in) :: stiffness(:, :)  !< (2 n, 2 n) an equation per column [-]
       real(rk), intent(in) :: load(:)  !< (2 n) n, tau pair by pair [Pa]
       type(contact_law_t), intent(in) :: law(:)  !< (n)
+      real(rk), intent(in) :: compliance(:)  !< (n) of the closed faces, at first [-]
       logical, intent(in) :: slip_given(:)  !< (n)
       real(rk), intent(in) :: slip_before(:), given(:)  !< (n) [Pa]
       real(rk), intent(inout) :: x(:)  !< (2 n) jumps [Pa]; replaced if solved
@@ -71,6 +75,11 @@ contains
       call place_unknowns(law, slip_given, slip_before, places, start)
       call fill(flexibility, load/scale, law, slip_given, slip_before/scale, given/scale, x, &
                 places, start)
+      do i = 1, size(law)
+         associate (entry => start%entry(places(i)%normal, places(i)%normal))
+            entry = entry + compliance(i)
+         end associate
+      end do
       do cover = 1, covers
          dictionary = start
          call take_cover(cover, dictionary)

@@ -32,6 +32,8 @@ module fine_contact
       real(rk), allocatable :: jump(:, :, :)
       real(rk), allocatable :: slip_before(:, :)  !< (3, fracture cells) when last accepted [m]
       real(rk), allocatable :: slip_path(:, :)  !< (3, fracture cells) slipped so far [m]
+      real(rk), allocatable :: opened(:, :)  !< (3, fracture cells) apart so far at most [m]
+      real(rk), allocatable :: apart(:, :)  !< (3, fracture cells) in the last solution [m]
       real(rk), allocatable :: traction(:, :, :)  !< (tau n, start end mid, fracture cell) [Pa]
       integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_states
       integer(ik) :: iterations = 0  !< of the last solution
@@ -67,6 +69,7 @@ contains
       associate (n => fine%fracture%n_cells)
          allocate (contact%jump(2, 3, n), contact%traction(2, 3, n), source=0.0_rk)
          allocate (contact%slip_before(3, n), contact%slip_path(3, n), source=0.0_rk)
+         allocate (contact%opened(3, n), contact%apart(3, n), source=0.0_rk)
          allocate (contact%state(3, n), source=state_open)
       end associate
    end function new_contact
@@ -77,6 +80,7 @@ contains
 
       self%slip_path = self%slip_path + abs(self%jump(1, :, :) - self%slip_before)
       self%slip_before = self%jump(1, :, :)
+      self%opened = max(self%opened, self%apart)
    end subroutine accept
 
    !> Nodal lengths and laws; `condensed` is left to the owner of the matrix. Where cells meet, the
@@ -203,13 +207,14 @@ contains
       real(rk), intent(out) :: jump(:)  !< w (2 n) [m]
       character(len=:), allocatable, intent(out) :: reason
       type(iteration_report_t) :: report
-      real(rk) :: path(problem%n), x(2*problem%n)
+      real(rk) :: opened(problem%n), path(problem%n), x(2*problem%n)
 
       call gather(problem, contact%jump(2, :, :), jump(1 :: 2))
       call gather(problem, contact%jump(1, :, :), jump(2 :: 2))
       call gather(problem, contact%slip_before, problem%slip_before)
       call gather(problem, contact%slip_path, path)
-      problem%law = problem%fresh_law%aged(path)
+      call gather(problem, contact%opened, opened)
+      problem%law = problem%fresh_law%aged(path, opened)
       call gather(problem, given_jump(1, :, :), problem%given)
       where (problem%slip_given)
          jump(2 :: 2) = problem%given
@@ -277,6 +282,7 @@ contains
                if (i == 0) cycle
                contact%jump(:, k, cell) = jump([2*i, 2*i - 1])
                contact%traction(:, k, cell) = traction([2, 1], i)
+               contact%apart(k, cell) = problem%law(i)%apart(traction(:, i), jump(2*i - 1:2*i))
                contact%state(k, cell) = state(i)
             end associate
          end do

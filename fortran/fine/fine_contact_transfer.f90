@@ -30,6 +30,7 @@ contains
             new%jump(:, k, cell) = matmul(old%jump(:, :, source), weight)
             new%slip_before(k, cell) = dot_product(old%slip_before(:, source), weight)
             new%slip_path(k, cell) = dot_product(old%slip_path(:, source), weight)
+            new%opened(k, cell) = max(0.0_rk, dot_product(old%opened(:, source), weight))
          end do
       end do
 

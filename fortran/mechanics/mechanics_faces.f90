@@ -34,6 +34,7 @@ contains
             if (scene%fractures(f)%law == "open") cycle
             is_old = was_there(start, f, fine%fracture%cell_s(:, cell))
             law%contact = law_of_fracture(scene%fractures(f))
+            if (.not. is_old) law%contact = law%contact%as_grown()
             law%contact%bilateral = scene%fractures(f)%held_closed .and. is_old
             law%slip_given = scene%fractures(f)%law == "slip" .and. is_old
             conditions%condition(cell) = face_contact

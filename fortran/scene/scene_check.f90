@@ -6,6 +6,7 @@ module scene_check
    use base_number, only: integer_text
    use base_tolerances, only: round_off
    use scene_check_column, only: check_column
+   use scene_check_faces, only: check_faces
    use scene_check_fluid, only: check_fluid, check_given_fluid
    use scene_check_geometry, only: check_domain, check_fractures, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
@@ -65,6 +66,7 @@ contains
       end if
       if (.not. allocated(error)) call check_restraints(sheet, scene, error)
       if (.not. allocated(error)) call check_laws(sheet, scene, error)
+      if (.not. allocated(error)) call check_faces(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)
       if (.not. allocated(error)) call check_wells(sheet, scene, error)
       if (.not. allocated(error)) call check_probes(sheet, scene, error)

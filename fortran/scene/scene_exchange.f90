@@ -311,6 +311,14 @@ contains
       call exchange(record, "friction_residual", fracture%friction_residual, reading)
       call exchange(record, "weakening_slip", fracture%weakening_slip, reading, nothing=0.0_rk)
       call exchange(record, "dilation_slip", fracture%dilation_slip, reading, nothing=unlimited)
+      call exchange(record, "normal_stiffness", fracture%normal_stiffness, reading, nothing=0.0_rk)
+      call exchange(record, "closure", fracture%closure, reading, nothing=0.0_rk)
+      call exchange(record, "cohesion", fracture%cohesion, reading, nothing=0.0_rk)
+      call exchange(record, "tensile_strength", fracture%tensile_strength, reading, nothing=0.0_rk)
+      call exchange(record, "opening_weakening", fracture%opening_weakening, reading, &
+                    nothing=0.0_rk)
+      call exchange(record, "toughness", fracture%toughness, reading, nothing=huge(1.0_rk))
+      call exchange(record, "skin", fracture%skin, reading, nothing=0.0_rk)
       dilation_deg = to_degrees(fracture%dilation)
       call exchange(record, "dilation_deg", dilation_deg, reading)
       fracture%dilation = dilation_deg*radians

@@ -102,7 +102,10 @@ module scene_parameters
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
               "boundary; it must not run along the boundary. With a fluid such an end is "// &
               "sealed, unless the side has a pressure, which then is that of the end; and "// &
-              "fractures may cross, touch or share ends as long as none grows."), &
+              "fractures may cross, touch or share ends as long as none grows. Of a joint that "// &
+              "closes under pressure (normal_stiffness), jumps and stress intensity factors "// &
+              "count from faces that touch without, in a scene with a stress in situ from "// &
+              "that. What grows from a fracture has its friction, but no closure, bond or skin."), &
       group_t("side", repeated=.true., &
              meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
               "its edges, of a disc its rim or an arc of it. Per component either the "// &
@@ -348,6 +351,33 @@ module scene_parameters
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   of="law=friction", &
                   meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
+      parameter_t("fracture", "normal_stiffness", unit="Pa/m", with="closure", range=positive, &
+                  absent="closed faces are rigid", &
+                  meaning="Stiffness k_ni at which faces that touch without pressure begin to "// &
+                  "close under it, s = k_ni d/(1 - d/closure)"), &
+      parameter_t("fracture", "closure", unit="m", with="normal_stiffness", range=positive, &
+                  absent="closed faces are rigid", &
+                  meaning="Largest closure d under contact pressure; aperture is that of faces "// &
+                  "that touch without. Wings do not close"), &
+      parameter_t("fracture", "cohesion", unit="Pa", range=positive, of="law=friction", &
+                  absent="no bond", &
+                  meaning="Shear strength of a bond beside friction. Slip of weakening_slip "// &
+                  "breaks it for good; friction_residual may be friction"), &
+      parameter_t("fracture", "tensile_strength", unit="Pa", range=positive, of="law=friction", &
+                  with="opening_weakening", absent="no bond", &
+                  meaning="Tension that the same bond bears, at most cohesion/friction"), &
+      parameter_t("fracture", "opening_weakening", unit="m", range=positive, of="law=friction", &
+                  with="tensile_strength", absent="no bond", &
+                  meaning="Opening that breaks the bond, with the energy tensile_strength "// &
+                  "opening_weakening/2"), &
+      parameter_t("fracture", "toughness", unit="Pa m^1/2", range=positive, &
+                  absent="that of the rock", &
+                  meaning="K_IC at which its tips and those of its wings grow, whatever rock "// &
+                  "they are in"), &
+      parameter_t("fracture", "skin", unit="Pa s/m", scenes=in_fluid, range=positive, &
+                  absent="no skin", &
+                  meaning="Pressure over flux that a layer on each face takes between fracture "// &
+                  "and rock; faces that grow have none"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
                   meaning="The faces slide but never part, and friction goes on with the "// &

@@ -82,6 +82,13 @@ module scene_types
       real(rk) :: weakening_slip = 0.0_rk  !< D_c; 0: friction does not weaken [m]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
       real(rk) :: dilation_slip = huge(1.0_rk)  !< at which dilation ends [m]
+      real(rk) :: normal_stiffness = 0.0_rk  !< k_ni; 0: closed faces are rigid [Pa/m]
+      real(rk) :: closure = 0.0_rk  !< d_max [m]
+      real(rk) :: cohesion = 0.0_rk  !< of a bond that weakening_slip breaks [Pa]
+      real(rk) :: tensile_strength = 0.0_rk  !< of a bond that opening_weakening breaks [Pa]
+      real(rk) :: opening_weakening = 0.0_rk  !< W_c [m]
+      real(rk) :: toughness = huge(1.0_rk)  !< K_IC of its tips; huge: that of the rock [Pa m^1/2]
+      real(rk) :: skin = 0.0_rk  !< pressure over flux between its fluid and the rock [Pa s/m]
       logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
       real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]

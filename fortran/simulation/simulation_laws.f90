@@ -20,6 +20,16 @@ contains
          law%weakening_slip = fracture%weakening_slip
          law%weakening = (fracture%friction - fracture%friction_residual)/fracture%weakening_slip
       end if
+      if (fracture%normal_stiffness > 0.0_rk) then
+         law%compliance = 1.0_rk/fracture%normal_stiffness
+         law%closure_end = 1.0_rk/fracture%closure
+      end if
+      law%cohesion = fracture%cohesion
+      law%tension = fracture%tensile_strength
+      if (fracture%weakening_slip > 0.0_rk) law%wear_by_slip = 1.0_rk/fracture%weakening_slip
+      if (fracture%opening_weakening > 0.0_rk) then
+         law%wear_by_opening = 1.0_rk/fracture%opening_weakening
+      end if
       if (fracture%dilation_slip < huge(1.0_rk)) law%dilation_end = 1.0_rk/fracture%dilation_slip
    end function law_of_fracture
 

@@ -16,7 +16,7 @@ module simulation_rocks
    private
 
    public :: follow_outlines, interface_distance, keep_off, place_rocks, regions_of_other_rock
-   public :: relative_toughness
+   public :: has_other_toughness, relative_toughness
 
    !> Of a rosette beside an interface, over the usual one.
    real(rk), parameter :: least_rosette = 1.0_rk/32.0_rk
@@ -120,7 +120,16 @@ contains
       radius = min(radius, room)
    end subroutine keep_off
 
-   !> K_IC of the rock that an end of a fracture grows in, over that of the scene's [-].
+   !> Whether tips of the scene may have another toughness than that of its rock.
+   pure logical function has_other_toughness(scene)
+      type(scene_t), intent(in) :: scene
+
+      has_other_toughness = allocated(scene%regions) &
+                            .or. any(scene%fractures%toughness < huge(1.0_rk))
+   end function has_other_toughness
+
+   !> K_IC of an end of a fracture, its own or that of the rock it grows in, over that of the
+   !! scene's rock [-].
    pure real(rk) function relative_toughness(scene, network, fracture, end) result(ratio)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
@@ -131,8 +140,14 @@ contains
       integer(ik) :: at, before
 
       ratio = 1.0_rk
-      if (.not. allocated(scene%regions)) return
       if (.not. scene%material%toughness < huge(1.0_rk)) return
+      if (allocated(scene%fractures)) then
+         if (scene%fractures(fracture)%toughness < huge(1.0_rk)) then
+            ratio = scene%fractures(fracture)%toughness/scene%material%toughness
+            return
+         end if
+      end if
+      if (.not. allocated(scene%regions)) return
       if (all(abs(scene%regions%material%toughness - scene%material%toughness) <= 0.0_rk)) return
       call places%set(scene)
       associate (first => network%first)

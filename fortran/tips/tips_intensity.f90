@@ -117,7 +117,7 @@ contains
             slip(k) = abs(jump(1, k))
          end do
          largest = maxval(abs(jump))
-         if (largest <= round_off*maxval(abs(displacement))) then
+         if (largest <= round_off*max(maxval(abs(displacement)), law%closure_at_rest)) then
             intensity%k1 = 0.0_rk
             intensity%k2 = 0.0_rk
             intensity%k1_inner = 0.0_rk

@@ -84,6 +84,9 @@ contains
          case ("contact")
             found%condition(i) = face_contact
             found%law(i)%contact = law(self%coarse_cell(i))
+            if (.not. self%is_inside(i)) then
+               found%law(i)%contact = found%law(i)%contact%as_grown()
+            end if
          case ("jump")
             if (self%is_inside(i)) found%condition(i) = face_jump
          case default  ! "traction": loaded, as all faces are to begin with
@@ -142,6 +145,8 @@ contains
                   contact%slip_before(k, i) = at_node(self, i, s, state%slip_before(:, j))
                   if (allocated(state%slip_path)) then
                      contact%slip_path(k, i) = at_node(self, i, s, path_before(state, j))
+                     contact%opened(k, i) = max(0.0_rk, &
+                                                at_node(self, i, s, state%opened_before(:, j)))
                   end if
                end associate
             end do

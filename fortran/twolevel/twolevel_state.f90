@@ -130,6 +130,7 @@ contains
       if (allocated(error)) return
       call feed_wells(self, error)
       if (allocated(error)) return
+      call rest_joints(self)
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
       call rest_wells(self)
       call self%find_tips(self%mesh%fracture)
@@ -277,8 +278,30 @@ contains
                cells%residual_aperture(i) = given%aperture
             end associate
          end do
+         if (any(self%scene%fractures%skin > 0.0_rk)) then
+            cells%skin = self%scene%fractures(fracture%cell_fracture)%skin
+         end if
       end associate
    end subroutine first_cells
+
+   !> Joints fit each other under the stress in situ: what it closes them by is no jump.
+   pure subroutine rest_joints(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk) :: closed, pressure, slope
+      integer(ik) :: i
+
+      if (.not. allocated(self%model%in_situ)) return
+      if (.not. self%model%in_situ%is_held) return
+      associate (cells => self%model%cells)
+         do i = 1, self%mesh%fracture%n_cells
+            if (.not. cells%law(i)%compliance > 0.0_rk) cycle
+            pressure = self%model%in_situ%contact_pressure(self%mesh%fracture, i)
+            call cells%law(i)%closure(pressure, closed, slope)
+            cells%law(i)%closure_at_rest = closed
+            cells%residual_aperture(i) = cells%residual_aperture(i) - closed
+         end do
+      end associate
+   end subroutine rest_joints
 
    !> Undrained response to the load with fractures in equilibrium with the rock (model.md section
    !! 9).

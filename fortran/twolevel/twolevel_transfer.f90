@@ -34,9 +34,12 @@ contains
       allocate (after%law(mesh%fracture%n_cells), after%residual_aperture(mesh%fracture%n_cells))
       allocate (after%injection(mesh%fracture%n_cells), after%roughness(mesh%fracture%n_cells), &
                 source=0.0_rk)
+      if (allocated(before%skin)) allocate (after%skin(mesh%fracture%n_cells), source=0.0_rk)
       do i = 1, mesh%fracture%n_cells
          if (overlaps%is_new(i)) then
-            after%law(i) = before%law(nearest_old(mesh_before%fracture, mesh%fracture, i))
+            associate (from => before%law(nearest_old(mesh_before%fracture, mesh%fracture, i)))
+               after%law(i) = from%as_grown()
+            end associate
             after%residual_aperture(i) = new_aperture
             if (.not. is_prefilled) after%roughness(i) = new_aperture
             cycle
@@ -44,9 +47,11 @@ contains
          old = overlaps%main(i)
          after%law(i) = before%law(old)
          after%injection(i) = before%injection(old)
+         if (allocated(before%skin)) after%skin(i) = before%skin(old)
          after%residual_aperture(i) = before%residual_aperture(old)
          after%roughness(i) = before%roughness(old)
          if (overlaps%is_whole(i, mesh_before%fracture, mesh%fracture)) cycle
+         if (allocated(before%skin)) after%skin(i) = overlaps%mean(i, before%skin)
          after%residual_aperture(i) = overlaps%mean(i, before%residual_aperture)
          after%roughness(i) = overlaps%mean(i, before%roughness)
       end do
@@ -94,7 +99,10 @@ contains
 
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
       allocate (after%slip_before(2, n), source=0.0_rk)
-      if (allocated(before%slip_path)) allocate (after%slip_path(2, n), source=0.0_rk)
+      if (allocated(before%slip_path)) then
+         allocate (after%slip_path(2, n), after%opened(2, n), after%opened_before(2, n), &
+                   source=0.0_rk)
+      end if
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
       allocate (after%void(n), source=0.0_rk)
@@ -112,7 +120,11 @@ contains
          old = overlaps%main(i)
          after%jump(:, :, i) = before%jump(:, :, old)
          after%slip_before(:, i) = before%slip_before(:, old)
-         if (allocated(before%slip_path)) after%slip_path(:, i) = before%slip_path(:, old)
+         if (allocated(before%slip_path)) then
+            after%slip_path(:, i) = before%slip_path(:, old)
+            after%opened(:, i) = before%opened(:, old)
+            after%opened_before(:, i) = before%opened_before(:, old)
+         end if
          after%traction(:, :, i) = before%traction(:, :, old)
          after%contact(:, i) = before%contact(:, old)
          after%pressure(i) = before%pressure(old)
@@ -171,6 +183,8 @@ contains
             after%slip_before(end, cell) = dot_product(before%slip_before(:, old), weight)
             if (allocated(before%slip_path)) then
                after%slip_path(end, cell) = dot_product(before%slip_path(:, old), weight)
+               after%opened(end, cell) = dot_product(before%opened(:, old), weight)
+               after%opened_before(end, cell) = dot_product(before%opened_before(:, old), weight)
             end if
             after%contact(end, cell) = before%contact(maxloc(weight, dim=1), old)
             exit

@@ -11,7 +11,7 @@ module twolevel_windows
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use simulation_rocks, only: relative_toughness
+   use simulation_rocks, only: has_other_toughness, relative_toughness
    use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
    use twolevel_window_tip, only: window_tip_t
@@ -105,7 +105,7 @@ contains
       integer(ik) :: i, w
 
       call see_tips(self, tips)
-      if (allocated(scene%regions)) then
+      if (has_other_toughness(scene)) then
          self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
                              i=1, size(tips))]
       end if

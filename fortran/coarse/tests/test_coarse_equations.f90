@@ -39,6 +39,9 @@ program test_coarse_equations
    call test_fluid_laws()
    call test_exchange_along_fractures()
    call test_moving_tip()
+   call add_laws()
+   call compare_slopes(.false., 1)
+   call compare_slopes(.true., 3)
    call checks%finish()
 
 contains
@@ -190,6 +193,32 @@ contains
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at
+
+   !> A skin on every other cell, joints that close, bonds that have been worn a little, and cells that
+   !! are both.
+   subroutine add_laws()
+      integer(ik) :: i
+
+      associate (n => mesh%fracture%n_cells)
+         model%cells%skin = [(1.0e10_rk*modulo(i, 2_ik), i=1, n)]
+         do i = 1, n
+            associate (law => model%cells%law(i))
+               if (modulo(i, 3_ik) /= 0) then
+                  law%compliance = 1.0e-12_rk*i
+                  law%closure_end = 1.0e5_rk
+               end if
+               if (modulo(i, 3_ik) /= 1) then
+                  law%tension = 2.0e6_rk
+                  law%cohesion = 3.0e6_rk
+                  law%wear_by_slip = 1.0e3_rk
+                  law%wear_by_opening = 2.0e3_rk
+               end if
+            end associate
+         end do
+         allocate (state%slip_path(2, n), source=1.0e-5_rk)
+         allocate (state%opened(2, n), source=2.0e-6_rk)
+      end associate
+   end subroutine add_laws
 
    !> Each column of the Jacobian, relative to the largest entry of its row. Where a difference
    !! would reach across a change of state it says nothing.

@@ -144,17 +144,17 @@ contains
 
       call weakening%friction_at(4.0e-6_rk, at_once, slope)
       call checks%is_close(at_once, 0.44_rk, 1.0e-15_rk, "after 4 um")
-      law = weakening%aged(1.0e-6_rk)
+      law = weakening%aged(1.0e-6_rk, 0.0_rk)
       call law%friction_at(-3.0e-6_rk, friction, slope)
       call checks%is_close(friction, at_once, 1.0e-15_rk, "after 1 um and 3 um back")
       call checks%is_close(slope, -4.0e4_rk, 1.0e-9_rk, "goes on falling")
-      law = weakening%aged(2.0e-5_rk)
+      law = weakening%aged(2.0e-5_rk, 0.0_rk)
       call law%friction_at(1.0e-6_rk, friction, slope)
       call checks%is_close(friction, 0.2_rk, 1.0e-15_rk, "what is left")
       call checks%is_close(slope, 0.0_rk, 0.0_rk, "falls no more")
       work = 0.0_rk
       do k = 1, n
-         law = weakening%aged((k - 1)*5.0e-7_rk)
+         law = weakening%aged((k - 1)*5.0e-7_rk, 0.0_rk)
          call law%friction_at(2.5e-7_rk, friction, slope)
          work = work + (friction - 0.2_rk)*5.0e-7_rk
       end do
