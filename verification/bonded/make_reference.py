@@ -4,8 +4,9 @@ Faces of a shear crack of half-length a in an infinite plane that have slipped b
 
     E'/(4 pi) fp-int D(t)/(t - x)^2 dt + tau,    tau the shear without the crack,
 
-which the strength balances, C (1 - D/D_c) + mu S. It is linear; with D = sqrt(1 - X^2) sum a_n U_n(X) the integral
-is -(pi/a) sum (n + 1) a_n U_n(X) (Kaya and Erdogan 1987). Nothing of the solver is used.
+which the strength balances, C (1 - D/D_c) + mu S. It is linear; with
+D = sqrt(1 - X^2) sum a_n U_n(X) the integral is -(pi/a) sum (n + 1) a_n U_n(X) (Kaya and Erdogan
+1987). Nothing of the solver is used.
 """
 
 from __future__ import annotations

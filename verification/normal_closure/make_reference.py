@@ -2,14 +2,16 @@
 
 The faces of a crack of half-length a in an infinite plane, apart by w (negative: closed), carry
 
-    p(x) = E'/(4 pi) fp-int w(t)/(t - x)^2 dt + P(x),    P the traction of the load without the crack,
+    p(x) = E'/(4 pi) fp-int w(t)/(t - x)^2 dt + P(x)
 
-which the joint's contact pressure balances, s(w) = k (-w)/(1 + w/d). With w = sqrt(1 - X^2) sum a_n U_n(X) the
-integral is -(pi/a) sum (n + 1) a_n U_n(X) (Kaya and Erdogan 1987), and
+with P the traction of the load without the crack, which the joint's contact pressure balances,
+s(w) = k (-w)/(1 + w/d). With w = sqrt(1 - X^2) sum a_n U_n(X) the integral is
+-(pi/a) sum (n + 1) a_n U_n(X) (Kaya and Erdogan 1987), and
 
     K_I = E'/4 sqrt(pi/a) sum (n + 1) a_n.
 
-Collocated at the zeros of the next U; half as many change K_I by 1e-4. Nothing of the solver is used.
+Collocated at the zeros of the next U; half as many change K_I by 1e-4. Nothing of the solver is
+used.
 """
 
 from __future__ import annotations
@@ -28,8 +30,8 @@ TERMS = 320
 def joint_under(load: float, at_rest: float = 0.0, terms: int = TERMS) -> tuple[float, float]:
     """K_I [Pa sqrt(m)] and volume [m2] of the joint.
 
-    `load` is the compression across it less its fluid pressure, `at_rest` that under which rock and joint fit
-    each other [Pa]; both count from there.
+    `load` is the compression across it less its fluid pressure, `at_rest` that under which rock
+    and joint fit each other [Pa]; both count from there.
     """
     modulus = YOUNG / (1.0 - POISSON**2)
     angle = np.pi * np.arange(1, terms + 1) / (terms + 1)

@@ -194,8 +194,8 @@ contains
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at
 
-   !> A skin on every other cell, joints that close, bonds that have been worn a little, and cells that
-   !! are both.
+   !> A skin on every other cell, joints that close, bonds that have been worn a little, and cells
+   !! that are both.
    subroutine add_laws()
       integer(ik) :: i
 

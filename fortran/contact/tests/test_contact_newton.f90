@@ -172,8 +172,8 @@ contains
       call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, name//": the law is fulfilled")
    end subroutine many
 
-   !> Joints from a thousandth to a thousand times as stiff as the body, which close by far less than
-   !! their load would to all but nothing of it; with friction and dilation.
+   !> Joints from a thousandth to a thousand times as stiff as the body, which close by far less
+   !! than their load would to all but nothing of it; with friction and dilation.
    subroutine many_joints(name, kind, n_bodies)
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: kind, n_bodies
