@@ -14,7 +14,8 @@ module twolevel_results
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
    use twolevel_places, only: end_cell
-   use twolevel_state, only: cell_heights, two_levels_t
+   use twolevel_fed, only: cell_heights
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 

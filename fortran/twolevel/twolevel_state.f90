@@ -1,44 +1,41 @@
 !> Both levels of a scene with a fluid at one time: network, coarse mesh, model and state, windows
 !! around the tips, and the bookkeeping of fluid.
 module twolevel_state
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use coarse_fields, only: curved_displacement, nodal_values
    use coarse_geometry, only: cell_area
-   use coarse_model, only: coarse_model_t, new_state, rest_fluid
-   use coarse_rock_wells, only: well_index
+   use coarse_model, only: new_state, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_wells, only: control_rate
    use growth_company, only: company_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
    use growth_prepared, only: prepared_t
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
-   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    use simulation_body, only: shape_body
    use simulation_laws, only: law_of_fracture
-   use simulation_types, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_certainty, only: certainty_t
+   use twolevel_fed, only: fed_level_t
    use simulation_rocks, only: follow_outlines
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
-   use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
-                             rate, share_wells, transfer_shares
+   use twolevel_wells, only: share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
-   public :: cell_heights, coarse_spec, two_levels_t
+   public :: coarse_spec, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -51,12 +48,8 @@ module twolevel_state
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
    !> Both levels; `network` is that of the fine one, which is ahead of the coarse one.
-   type, abstract, extends(simulation_t) :: two_levels_t
+   type, abstract, extends(fed_level_t) :: two_levels_t
       type(network_t) :: coarse_network
-      type(mesher_t) :: mesher  !< of the coarse mesh
-      type(mesh_t) :: mesh  !< the coarse one
-      type(coarse_model_t) :: model
-      type(state_t) :: state
       type(state_t) :: before  !< the step that led there, on the same mesh
       type(trend_t) :: trend  !< rates of the last accepted step
       type(windows_t) :: windows
@@ -67,13 +60,6 @@ module twolevel_state
       type(coarse_values_t) :: coarse_values
       logical :: values_are_current = .false.
       logical :: undrained = .false.  !< the state is the undrained response to the load
-      real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
-      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
-      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
-      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
-      integer(ik) :: held_well = 0  !< a controlled well that a try holds as it was; 0: none
-      integer(ik) :: held_control = 0  !< of coarse_wells: how
-      integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
       integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
       type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
       type(prepared_t), allocatable :: prepared(:)  !< (tips) pieces that the coarse mesh has
@@ -93,12 +79,6 @@ module twolevel_state
       procedure :: step_error
       procedure :: errs
       procedure :: book_step
-      procedure :: well_pressure
-      procedure :: rock_pressure
-      procedure :: fracture_pressure
-      procedure :: thickness
-      procedure :: joint_pressure
-      procedure :: well_in_situ
       procedure :: update_values
       procedure :: evaluate
       procedure :: grow_coarse
@@ -128,11 +108,11 @@ contains
       call share_wells(self%scene%injections, self%mesh%fracture, self%share)
       call self%model%set_mesh(self%mesh, self%scene, timers, error)
       if (allocated(error)) return
-      call feed_wells(self, error)
+      call self%feed_wells(error)
       if (allocated(error)) return
       call rest_joints(self)
       call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
-      call rest_wells(self)
+      call self%rest_wells()
       call self%find_tips(self%mesh%fracture)
       if (scene%growth%intensities) then
          ! The body beside windows has elements as large as the coarse cells: at the tips, where it
@@ -147,75 +127,6 @@ contains
       call self%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
-
-   !> What the wells feed on the present mesh.
-   subroutine feed_wells(self, error)
-      class(two_levels_t), intent(inout) :: self
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: cell(1), w
-
-      associate (wells => self%scene%injections)
-         call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
-                          self%joint_share)
-         call control_wells(wells, self%share, self%joint_share, self%model%wells)
-         if (allocated(self%model%in_situ)) then
-            self%model%wells%pressure_in_situ = &
-               [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
-         end if
-         self%rock_cell = spread(0_ik, 1, size(wells))
-         if (.not. any(wells%fracture == 0)) return
-         if (allocated(self%model%source)) deallocate (self%model%source)
-         allocate (self%model%source(3, self%mesh%n_cells), source=0.0_rk)
-         do w = 1, size(wells, kind=ik)
-            if (wells(w)%fracture > 0) cycle
-            call locate(self%mesher, reshape([wells(w)%x, wells(w)%y], [2, 1]), cell, error)
-            if (allocated(error)) return
-            self%rock_cell(w) = cell(1)
-         end do
-         if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, error)
-      end associate
-   end subroutine feed_wells
-
-   !> Those in the rock whose rate depends on pressures.
-   pure subroutine place_rock_wells(self, error)
-      class(two_levels_t), intent(inout) :: self
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: k
-
-      associate (wells => self%model%wells, rock => self%model%rock_wells)
-         rock%n = wells%n_all - wells%n
-         rock%cell = self%rock_cell(wells%number(wells%n + 1:))
-         if (.not. allocated(rock%way)) rock%way = spread(control_rate, 1, int(rock%n))
-         rock%conductance = spread(0.0_rk, 1, int(rock%n))
-         rock%index = [(well_index(self%scene%injections(wells%number(wells%n + k))%radius, &
-                                   cell_area(self%mesh, rock%cell(k)), &
-                                   self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
-         if (.not. all(rock%index > 0.0_rk)) then
-           call raise_error(error, "", "a well in the rock, whose rate follows from pressures, "// &
-                             "lies in a cell that is not wider than it: give it a smaller "// &
-                             "radius, or larger cells")
-            return
-         end if
-         ! What is lost in the well is another resistance on the way.
-         rock%index = 1.0_rk/(1.0_rk/rock%index + wells%friction(wells%n + 1:))
-      end associate
-   end subroutine place_rock_wells
-
-   !> Nothing flows in wells, whose heads have the pressure of what they feed.
-   subroutine rest_wells(self)
-      class(two_levels_t), intent(inout) :: self
-
-      associate (wells => self%model%wells, state => self%state)
-         self%at_limit = spread(.false., 1, int(wells%n_all))
-         self%given = spread(0.0_rk, 1, int(wells%n_all))
-         if (wells%n_all == 0) return
-         state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
-         state%well_rate = state%well_flow
-         state%well_head = [matmul(state%pressure, wells%share) &
-                            + matmul(state%joint_pressure, wells%joint_share), &
-                            state%unknowns(3, self%rock_cell(wells%number(wells%n + 1:)))]
-      end associate
-   end subroutine rest_wells
 
    !> Rates are known from now on: none at rest, else those of the next step.
    subroutine follow_trend(self, at_rest)
@@ -315,7 +226,7 @@ contains
       self%undrained = .true.
      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%longest(), self%state, &
                                   timers, report, error)
-      call rest_wells(self)
+      call self%rest_wells()
    end subroutine equilibrate
 
    !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
@@ -331,35 +242,12 @@ contains
          call self%model%change_sides(self%mesh, self%scene, timers, error)
          if (allocated(error)) return
       end if
-      associate (rates => rate(self%scene%injections, self%state%time, dt))
-         self%model%cells%injection = matmul(self%share, rates)
-         if (self%model%joints%n > 0) then
-            self%model%joints%injection = matmul(self%joint_share, rates)
-         end if
-         if (allocated(self%model%source)) call feed_rock(self, rates)
-      end associate
-      call ask_wells(self%scene%injections, self%state%time, dt, self%model%wells)
-      if (self%held_well > 0) self%model%wells%control(self%held_well) = self%held_control
+      call self%ask(dt)
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
       if (allocated(error) .or. .not. report%converged) return
       self%values_are_current = .false.
       self%undrained = .false.
    end subroutine try_step
-
-   !> Wells in the rock.
-   pure subroutine feed_rock(self, rates)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: rates(:)  !< (wells) [m2/s]
-      integer(ik) :: w
-
-      self%model%source = 0.0_rk
-      do w = 1, size(rates, kind=ik)
-         if (self%rock_cell(w) == 0) cycle
-         associate (fluid => self%model%source(3, self%rock_cell(w)))
-            fluid = fluid + rates(w)
-         end associate
-      end do
-   end subroutine feed_rock
 
    !> Error in time of the state that a step of length dt has led to, relative [-].
    function step_error(self, dt) result(error)
@@ -388,100 +276,6 @@ contains
          errs = tolerance > 0.0_rk .and. error > tolerance
       end associate
    end function errs
-
-   !> Mean pressure at the wells; 0 without any [Pa]. That of a cell is at its middle; a well
-   !! between two cells is half a cell away, which the fluid that it gives to the cell has to flow.
-   pure real(rk) function well_pressure(self)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%pressure))
-      logical :: between(size(self%share, 2))
-      integer(ik) :: w
-
-      pressure = self%fracture_pressure()
-      between = between_cells(self%scene%injections, self%share)
-      do w = 1, size(between, kind=ik)
-         if (.not. between(w)) cycle
-         associate (cells => self%model%cells, length => self%model%condensed%length, &
-                    viscosity => self%model%settings%viscosity, thickness => self%thickness())
-            where (self%share(:, w) > 0.0_rk)
-               pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
-                          /self%state%aperture**3*thickness
-            end where
-         end associate
-      end do
-      well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
-                                    self%joint_pressure())
-   end function well_pressure
-
-   !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
-   pure function rock_pressure(self) result(pressure)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: pressure(self%mesh%n_cells)
-
-      pressure = self%state%unknowns(3, :self%mesh%n_cells)
-      if (allocated(self%model%in_situ)) then
-         pressure = pressure + self%model%in_situ%pressure_at(cell_heights(self%mesh))
-      end if
-   end function rock_pressure
-
-   !> The whole pressure in the fracture cells [Pa].
-   pure function fracture_pressure(self) result(pressure)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%pressure))
-
-      pressure = self%state%pressure
-      if (allocated(self%model%cells%pressure_in_situ)) then
-         pressure = pressure + self%model%cells%pressure_in_situ
-      end if
-   end function fracture_pressure
-
-   !> How much more pressure a flow takes in the fracture cells than at the viscosity of the scene,
-   !! where that follows pressure [-].
-   pure function thickness(self)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: thickness(size(self%state%pressure))
-
-      thickness = 1.0_rk
-      if (allocated(self%model%settings%fluid_law)) then
-         thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure())
-      end if
-   end function thickness
-
-   !> The whole pressure in the joints [Pa].
-   pure function joint_pressure(self) result(pressure)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%joint_pressure))
-
-      pressure = self%state%joint_pressure
-      if (allocated(self%model%joints%pressure_in_situ)) then
-         pressure = pressure + self%model%joints%pressure_in_situ
-      end if
-   end function joint_pressure
-
-   !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
-   pure real(rk) function well_in_situ(self, well) result(pressure)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: well  !< of the scene
-
-      pressure = 0.0_rk
-      if (.not. allocated(self%model%in_situ)) return
-      associate (given => self%scene%injections(well))
-         if (given%at_point .or. given%fracture == 0) then
-            pressure = self%model%in_situ%pressure_at(given%y)
-         else
-            pressure = dot_product(self%share(:, well), self%model%cells%pressure_in_situ)
-         end if
-      end associate
-   end function well_in_situ
-
-   !> Where the middles of the cells are above y = 0 [m].
-   pure function cell_heights(mesh) result(y)
-      type(mesh_t), intent(in) :: mesh
-      real(rk) :: y(mesh%n_cells)
-      integer(ik) :: c
-
-      y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
-   end function cell_heights
 
    !> The fluid of an accepted step.
    subroutine book_step(self, dt)
@@ -584,7 +378,7 @@ contains
       call timers%stop(phase_transfer)
       call self%model%set_mesh(self%mesh, self%scene, timers, error)
       if (allocated(error)) return
-      call feed_wells(self, error)
+      call self%feed_wells(error)
       if (allocated(error)) return
       call rest_fluid(self%model, self%state)
    end subroutine remesh_coarse

@@ -218,8 +218,8 @@ contains
 
    !> Bonds of about the strength of the load, from lengths over which the body can hold them to
    !! sudden ones. On a crack all are solved; on bodies where opening and slip are coupled as
-   !! strongly as may be some points move to and fro while others break, and a few are given up. None
-   !! is solved wrongly.
+   !! strongly as may be some points move to and fro while others break, and a few are given up.
+   !! None is solved wrongly.
    subroutine many_bonds(name, kind, n_bodies)
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: kind, n_bodies

@@ -1,0 +1,242 @@
+!> The coarse level and what its wells give to fractures and rock; the whole pressures, of which the
+!! level has what is beyond the state in situ.
+module twolevel_fed
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use coarse_geometry, only: cell_area
+   use coarse_model, only: coarse_model_t
+   use coarse_rock_wells, only: well_index
+   use coarse_state, only: state_t
+   use coarse_wells, only: control_rate
+   use mesh_builder, only: locate, mesher_t
+   use mesh_types, only: mesh_t
+   use simulation_types, only: simulation_t
+   use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
+                             rate
+   implicit none(type, external)
+   private
+
+   public :: cell_heights, fed_level_t
+
+   !> The coarse mesh, model and state, and the wells on them.
+   type, abstract, extends(simulation_t) :: fed_level_t
+      type(mesher_t) :: mesher  !< of the coarse mesh
+      type(mesh_t) :: mesh  !< the coarse one
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
+      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
+      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
+      integer(ik) :: held_well = 0  !< a controlled well that a try holds as it was; 0: none
+      integer(ik) :: held_control = 0  !< of coarse_wells: how
+      integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
+   contains
+      procedure :: feed_wells
+      procedure :: rest_wells
+      procedure :: ask
+      procedure :: well_pressure
+      procedure :: well_in_situ
+      procedure :: rock_pressure
+      procedure :: fracture_pressure
+      procedure :: joint_pressure
+      procedure :: thickness
+   end type fed_level_t
+
+contains
+
+   !> What the wells feed on the present mesh.
+   subroutine feed_wells(self, error)
+      class(fed_level_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: cell(1), w
+
+      associate (wells => self%scene%injections)
+         call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
+                          self%joint_share)
+         call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         if (allocated(self%model%in_situ)) then
+            self%model%wells%pressure_in_situ = &
+               [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
+         end if
+         self%rock_cell = spread(0_ik, 1, size(wells))
+         if (.not. any(wells%fracture == 0)) return
+         if (allocated(self%model%source)) deallocate (self%model%source)
+         allocate (self%model%source(3, self%mesh%n_cells), source=0.0_rk)
+         do w = 1, size(wells, kind=ik)
+            if (wells(w)%fracture > 0) cycle
+            call locate(self%mesher, reshape([wells(w)%x, wells(w)%y], [2, 1]), cell, error)
+            if (allocated(error)) return
+            self%rock_cell(w) = cell(1)
+         end do
+         if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, error)
+      end associate
+   end subroutine feed_wells
+
+   !> Those in the rock whose rate depends on pressures.
+   pure subroutine place_rock_wells(self, error)
+      class(fed_level_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: k
+
+      associate (wells => self%model%wells, rock => self%model%rock_wells)
+         rock%n = wells%n_all - wells%n
+         rock%cell = self%rock_cell(wells%number(wells%n + 1:))
+         if (.not. allocated(rock%way)) rock%way = spread(control_rate, 1, int(rock%n))
+         rock%conductance = spread(0.0_rk, 1, int(rock%n))
+         rock%index = [(well_index(self%scene%injections(wells%number(wells%n + k))%radius, &
+                                   cell_area(self%mesh, rock%cell(k)), &
+                                   self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
+         if (.not. all(rock%index > 0.0_rk)) then
+           call raise_error(error, "", "a well in the rock, whose rate follows from pressures, "// &
+                             "lies in a cell that is not wider than it: give it a smaller "// &
+                             "radius, or larger cells")
+            return
+         end if
+         ! What is lost in the well is another resistance on the way.
+         rock%index = 1.0_rk/(1.0_rk/rock%index + wells%friction(wells%n + 1:))
+      end associate
+   end subroutine place_rock_wells
+
+   !> Nothing flows in wells, whose heads have the pressure of what they feed.
+   subroutine rest_wells(self)
+      class(fed_level_t), intent(inout) :: self
+
+      associate (wells => self%model%wells, state => self%state)
+         self%at_limit = spread(.false., 1, int(wells%n_all))
+         self%given = spread(0.0_rk, 1, int(wells%n_all))
+         if (wells%n_all == 0) return
+         state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
+         state%well_rate = state%well_flow
+         state%well_head = [matmul(state%pressure, wells%share) &
+                            + matmul(state%joint_pressure, wells%joint_share), &
+                            state%unknowns(3, self%rock_cell(wells%number(wells%n + 1:)))]
+      end associate
+   end subroutine rest_wells
+
+   !> Ask the wells for what the scene says of a step of length dt.
+   pure subroutine ask(self, dt)
+      class(fed_level_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+
+      associate (rates => rate(self%scene%injections, self%state%time, dt))
+         self%model%cells%injection = matmul(self%share, rates)
+         if (self%model%joints%n > 0) then
+            self%model%joints%injection = matmul(self%joint_share, rates)
+         end if
+         if (allocated(self%model%source)) call feed_rock(self, rates)
+      end associate
+      call ask_wells(self%scene%injections, self%state%time, dt, self%model%wells)
+      if (self%held_well > 0) self%model%wells%control(self%held_well) = self%held_control
+   end subroutine ask
+
+   !> Wells in the rock.
+   pure subroutine feed_rock(self, rates)
+      class(fed_level_t), intent(inout) :: self
+      real(rk), intent(in) :: rates(:)  !< (wells) [m2/s]
+      integer(ik) :: w
+
+      self%model%source = 0.0_rk
+      do w = 1, size(rates, kind=ik)
+         if (self%rock_cell(w) == 0) cycle
+         associate (fluid => self%model%source(3, self%rock_cell(w)))
+            fluid = fluid + rates(w)
+         end associate
+      end do
+   end subroutine feed_rock
+
+   !> Mean pressure at the wells; 0 without any [Pa]. That of a cell is at its middle; a well
+   !! between two cells is half a cell away, which the fluid that it gives to the cell has to flow.
+   pure real(rk) function well_pressure(self)
+      class(fed_level_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%pressure))
+      logical :: between(size(self%share, 2))
+      integer(ik) :: w
+
+      pressure = self%fracture_pressure()
+      between = between_cells(self%scene%injections, self%share)
+      do w = 1, size(between, kind=ik)
+         if (.not. between(w)) cycle
+         associate (cells => self%model%cells, length => self%model%condensed%length, &
+                    viscosity => self%model%settings%viscosity, thickness => self%thickness())
+            where (self%share(:, w) > 0.0_rk)
+               pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
+                          /self%state%aperture**3*thickness
+            end where
+         end associate
+      end do
+      well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
+                                    self%joint_pressure())
+   end function well_pressure
+
+   !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
+   pure real(rk) function well_in_situ(self, well) result(pressure)
+      class(fed_level_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< of the scene
+
+      pressure = 0.0_rk
+      if (.not. allocated(self%model%in_situ)) return
+      associate (given => self%scene%injections(well))
+         if (given%at_point .or. given%fracture == 0) then
+            pressure = self%model%in_situ%pressure_at(given%y)
+         else
+            pressure = dot_product(self%share(:, well), self%model%cells%pressure_in_situ)
+         end if
+      end associate
+   end function well_in_situ
+
+   !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
+   pure function rock_pressure(self) result(pressure)
+      class(fed_level_t), intent(in) :: self
+      real(rk) :: pressure(self%mesh%n_cells)
+
+      pressure = self%state%unknowns(3, :self%mesh%n_cells)
+      if (allocated(self%model%in_situ)) then
+         pressure = pressure + self%model%in_situ%pressure_at(cell_heights(self%mesh))
+      end if
+   end function rock_pressure
+
+   !> The whole pressure in the fracture cells [Pa].
+   pure function fracture_pressure(self) result(pressure)
+      class(fed_level_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%pressure))
+
+      pressure = self%state%pressure
+      if (allocated(self%model%cells%pressure_in_situ)) then
+         pressure = pressure + self%model%cells%pressure_in_situ
+      end if
+   end function fracture_pressure
+
+   !> The whole pressure in the joints [Pa].
+   pure function joint_pressure(self) result(pressure)
+      class(fed_level_t), intent(in) :: self
+      real(rk) :: pressure(size(self%state%joint_pressure))
+
+      pressure = self%state%joint_pressure
+      if (allocated(self%model%joints%pressure_in_situ)) then
+         pressure = pressure + self%model%joints%pressure_in_situ
+      end if
+   end function joint_pressure
+
+   !> How much more pressure a flow takes in the fracture cells than at the viscosity of the scene,
+   !! where that follows pressure [-].
+   pure function thickness(self)
+      class(fed_level_t), intent(in) :: self
+      real(rk) :: thickness(size(self%state%pressure))
+
+      thickness = 1.0_rk
+      if (allocated(self%model%settings%fluid_law)) then
+         thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure())
+      end if
+   end function thickness
+
+   !> Where the middles of the cells are above y = 0 [m].
+   pure function cell_heights(mesh) result(y)
+      type(mesh_t), intent(in) :: mesh
+      real(rk) :: y(mesh%n_cells)
+      integer(ik) :: c
+
+      y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
+   end function cell_heights
+
+end module twolevel_fed
