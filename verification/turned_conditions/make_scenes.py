@@ -1,7 +1,8 @@
 """Write one scene six ways that must not matter: mirrored, turned, in other units, ...
 
 `python make_scenes.py` writes the files *.nml of this case. The scene has what fields ask for: a
-well with storage, losses and a limit, one in the rock, friction that weakens, sides in the course
+well with storage, losses and a limit, one in the rock, friction that weakens, a bond, a joint that
+closes, a skin, a fluid whose viscosity and density follow pressure, sides in the course
 of time, a spring, an inflow, a region of other rock.
 """
 
@@ -65,9 +66,11 @@ def scene(
     groups = [
         f"&fracture\n  name = 'main', {points((1.4, 1.1), (2.6, 1.9))}\n  friction = 0.6, "
         f"friction_residual = 0.4, weakening_slip = {4e-4 * length:.17g}\n"
-        f"  dilation_deg = 1.0, aperture = {1e-4 * length:.17g}\n/",
+        f"  dilation_deg = 1.0, aperture = {1e-4 * length:.17g}, "
+        f"cohesion = {3e5 * stress:.17g}\n/",
         f"&fracture\n  name = 'other', {points((2.0, 1.9), (2.4, 1.3))}\n  friction = 0.5, "
-        f"aperture = {2e-4 * length:.17g}\n/",
+        f"aperture = {2e-4 * length:.17g}\n  normal_stiffness = {1e11 * stress / length:.17g}, "
+        f"closure = {1e-4 * length:.17g}, skin = {1e9 * stress / length:.17g}\n/",
         f"&region name = 'soft', young = {8e9 * stress:.17g}, permeability = {3e-16 * flow:.17g}, "
         f"{points((2.9, 0.5), (3.5, 0.5), (3.5, 2.5), (2.9, 2.5))} /",
         f"&side name = '{sides['left']}', {across}_displacement = 0.0, "
@@ -94,7 +97,9 @@ def scene(
         f"y_max = {high[1]:.17g} /",
         f"&material\n  young = {2e10 * stress:.17g}, poisson = 0.25, biot = 0.8, porosity = 0.02\n"
         f"  permeability = {1e-16 * flow:.17g}\n/",
-        f"&fluid compressibility = {4e-10 / stress:.17g}, viscosity = {1e-3 * stress:.17g} /",
+        f"&fluid compressibility = {4e-10 / stress:.17g}, viscosity = {1e-3 * stress:.17g}\n"
+        f"  viscosity_law = 'exponential', viscosity_exponent = {-3e-8 / stress:.17g}\n"
+        f"  density_law = 'exponential', reference_pressure = {2e6 * stress:.17g}\n/",
         f"&initial pressure = {2e6 * stress:.17g} /",
         "&time end = 80.0 /",
         f"&coarse size_fracture = {0.05 * length:.17g}, size_boundary = {0.3 * length:.17g} /",
@@ -120,7 +125,7 @@ def main() -> None:
         "as_it_is": scene("As it is", same, STRAIGHT),
         "mirrored": scene("Mirrored", lambda x, y: (4.0 - x, y), mirrored),
         "turned": scene("Turned by 90 degrees", lambda x, y: (3.0 - y, x), turned, turned=True),
-        "units": scene("Other units", same, STRAIGHT, length=1024.0, stress=1.0 / 1024.0),
+        "units": scene("Other units", same, STRAIGHT, length=1024.0, stress=16.0),
         "order": scene("In the other order", same, STRAIGHT, is_reversed=True),
         "idle": scene("Idle times", same, STRAIGHT, idle=True),
     }
