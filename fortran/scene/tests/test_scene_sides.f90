@@ -2,7 +2,7 @@
 program test_scene_sides
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_sides, only: in_time, mean_in_time
    use scene_test_files, only: delete_file, put_bytes, put_lines
