@@ -37,7 +37,7 @@ module mesh_c_inputs
       real(rk) :: focus_slope = 0.0_rk  !< growth of sizes per distance from the nearest of them [-]
       real(rk) :: focus_size = 0.0_rk  !< largest size along fractures that this leads to [m]
       logical :: is_rough = .false.  !< faster triangles, which gmsh does not smooth
-      real(rk) :: ring_slope = 0.0_rk  !< growth of sizes beyond three radii of rosettes [-]; 0: usual
+      real(rk) :: ring_slope = 0.0_rk  !< growth of sizes around rosettes [-]; 0: usual
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
