@@ -47,8 +47,8 @@ module twolevel_window
 
    !> Along fractures elements grow by so much with the distance from the tips that the window is
    !! for, up to the size of coarse fracture cells, between which nothing is known of the fluid's
-   !! pressure; and in squares by so much around their rosettes, beyond three radii, which the
-   !! integrals need. What that makes wrong shows beside the whole body (twolevel_trust).
+   !! pressure; and where the whole body shows what that makes wrong (twolevel_trust), by so much
+   !! around their rosettes, beyond three radii, which the integrals need.
    real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
 
    !> What a window takes from the coarse level.
@@ -65,6 +65,9 @@ module twolevel_window
    type :: window_t
       integer(ik), allocatable :: serves(:)  !< the tips that it is for
       logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
+      !> Its intensities are held against those of the whole body, which shows what its elements
+      !! make wrong.
+      logical :: is_beside_body = .false.
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
       real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
@@ -129,7 +132,7 @@ contains
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
       spec%joint_size = joint_share*spec%size_fracture
-      if (.not. self%is_body) spec%ring_slope = around
+      if (self%is_beside_body .and. .not. self%is_body) spec%ring_slope = around
       spec%focus_slope = along
       spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
       allocate (spec%foci(2, size(self%serves)))
