@@ -16,6 +16,7 @@ from matplotlib.image import imread
 from matplotlib.patheffects import withStroke
 
 from wingcrack_post import style
+from wingcrack_post.fonts import small_fonts
 from wingcrack_post.png import write_png
 from wingcrack_post.twin import draw_twins
 
@@ -116,3 +117,32 @@ def test_png_tells_its_resolution(tmp_path: Path) -> None:
     write_png(np.full((2, 2, 4), 255, dtype=np.uint8), tmp_path / "a.png", 300)
     with pillow.open(tmp_path / "a.png") as picture:
         assert picture.info["dpi"] == pytest.approx((300, 300), rel=1e-3)
+
+
+@style.styled
+def _words(text: str, family: str | None = None) -> Figure:
+    figure = style.new_figure(2.0, 1.0)
+    axes = figure.subplots()
+    axes.axis("off")
+    axes.text(0.1, 0.5, text, fontfamily=family)
+    return figure
+
+
+@pytest.mark.parametrize("text", ["fi AV åéµ²", "трещина Ж", "∂₂→√"])
+def test_small_fonts_leave_pictures_as_they_are(tmp_path: Path, text: str) -> None:
+    """Letters of the small copies, and letters that only the whole font has."""
+    assert small_fonts()
+    pictures = []
+    for family in (None, "DejaVu Sans whole"):
+        style.save(_words(text, family), tmp_path / "a", ("png", "pdf"))
+        pictures.append(imread(tmp_path / "a.png"))
+    assert (pictures[0] < 0.5).any()
+    assert np.array_equal(pictures[0], pictures[1])
+
+
+def test_fonts_that_cannot_be_copied_are_taken_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setattr("matplotlib.get_cachedir", lambda: str(tmp_path / "file"))
+    assert not small_fonts.__wrapped__()

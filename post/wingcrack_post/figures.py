@@ -77,6 +77,8 @@ class _Figures:
             yield "", make(run)
 
 
+_MANY = 16  # files of figures of a kind, after which what is left of them is tidied up
+
 _FIGURES = (
     _Figures("story", "story", "story:story"),
     _Figures("network", "network", "network:network_figure"),
@@ -141,7 +143,8 @@ def _drawn(
             name = f"{figures.name}_{label}" if label else figures.name
             files += save(figure, folder / re.sub(r"[^\w.-]+", "_", name), formats)
             del figure
-            gc.collect()  # a figure refers to itself, and holds its pixels
+            if len(files) % _MANY == 0:
+                gc.collect()  # a figure refers to itself
     except AbsentError as reason:
         return Outcome(figures.name, tuple(files), str(reason))
     except EnvironmentLacksError as reason:

@@ -13,7 +13,9 @@ from pathlib import Path
 
 import matplotlib
 from fontTools import subset
+from matplotlib.figure import Figure
 from matplotlib.font_manager import fontManager
+from matplotlib.text import Text
 
 _FAMILY, _WHOLE = "DejaVu Sans", "DejaVu Sans whole"
 
@@ -27,20 +29,31 @@ _LETTERS = (
     range(0x2070, 0x209D),
     range(0x2190, 0x2194),
     range(0x2200, 0x2270),
+    range(0x27E6, 0x27EC),
 )
+_KNOWN = frozenset(chr(letter) for letters in _LETTERS for letter in letters)
 _FEATURES = ["kern", "liga", "ccmp", "mark", "mkmk"]
 _FILES = ("DejaVuSans.ttf", "DejaVuSans-Oblique.ttf")
 
 
+def fall_back(figure: Figure) -> None:
+    """Let texts with other letters, as names of a scene may have, look in the whole font too."""
+    if not small_fonts():
+        return
+    for text in figure.findobj(Text):
+        assert isinstance(text, Text)
+        if not _KNOWN.issuperset(text.get_text().replace("\n", "")):
+            text.set_fontfamily([_FAMILY, _WHOLE])
+
+
 @cache
-def small_fonts() -> tuple[str, ...]:
+def small_fonts() -> bool:
     """Let matplotlib find the small copies, made once in its cache, in the place of the originals.
 
     Returns
     -------
-    tuple of str
-        Families to look for letters in, before others. None where the cache cannot be written:
-        then all stays as it is, and takes longer.
+    bool
+        Whether it does. Where the cache cannot be written all stays as it is, and takes longer.
     """
     folder = Path(matplotlib.get_cachedir()) / f"wingcrack-fonts-{matplotlib.__version__}"
     copies = []
@@ -50,11 +63,11 @@ def small_fonts() -> tuple[str, ...]:
             try:
                 copies.append((entry, _copy(file, folder / file.name)))
             except OSError:
-                return ()
+                return False
     for entry, small in copies:
         fontManager.ttflist.insert(0, replace(entry, fname=str(small)))
         fontManager.ttflist.append(replace(entry, name=_WHOLE))
-    return (_FAMILY, _WHOLE)
+    return bool(copies)
 
 
 def _copy(whole: Path, small: Path) -> Path:
@@ -65,13 +78,13 @@ def _copy(whole: Path, small: Path) -> Path:
     options = subset.Options(glyph_names=True, recommended_glyphs=True)
     options.drop_tables += ["FFTM"]
     options.layout_features = _FEATURES
-    font = subset.load_font(str(whole), options)
     subsetter = subset.Subsetter(options)
     subsetter.populate(unicodes=[letter for letters in _LETTERS for letter in letters])
-    subsetter.subset(font)
     aside = small.with_name(f".{small.name}.{os.getpid()}")
     try:
-        font.save(str(aside))
+        with subset.load_font(str(whole), options) as font:
+            subsetter.subset(font)
+            font.save(str(aside))
         aside.replace(small)
     finally:
         aside.unlink(missing_ok=True)

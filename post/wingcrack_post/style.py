@@ -16,7 +16,7 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from wingcrack_post.fonts import small_fonts
+from wingcrack_post.fonts import fall_back, small_fonts
 from wingcrack_post.twin import draw_twins
 
 P = ParamSpec("P")
@@ -85,7 +85,8 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def within(*args: P.args, **kwargs: P.kwargs) -> R:
-        with matplotlib.rc_context(RC | {"font.family": [*small_fonts(), "sans-serif"]}):
+        small_fonts()
+        with matplotlib.rc_context(RC):
             return function(*args, **kwargs)
 
     return within
@@ -164,6 +165,7 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     aside = {form: stem.with_name(f".{stem.name}.{os.getpid()}.{form}") for form in FORMATS}
+    fall_back(figure)
     written = []
     try:
         draw_twins(figure, aside["png"], aside["pdf"], RC["savefig.dpi"])

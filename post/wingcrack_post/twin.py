@@ -62,8 +62,9 @@ def _lay_out(figure: Figure, renderer: RendererBase) -> None:
     engine = figure.get_layout_engine()
     if engine is None:
         return
-    _Canvas(figure, renderer)
+    canvas = _Canvas(figure, renderer)
     engine.execute(figure)
+    canvas.renderer = None  # else the figure would keep its pixels
     with matplotlib.rc_context({"figure.constrained_layout.use": False}):
         figure.set_layout_engine(None)
 
@@ -73,11 +74,11 @@ class _Canvas(FigureCanvasBase):
 
     def __init__(self, figure: Figure, renderer: RendererBase) -> None:
         super().__init__(figure)
-        self._renderer = renderer
+        self.renderer: RendererBase | None = renderer
 
-    def get_renderer(self) -> RendererBase:
+    def get_renderer(self) -> RendererBase | None:
         """What matplotlib asks for to measure."""
-        return self._renderer
+        return self.renderer
 
 
 class TwinRenderer(RendererBase):
