@@ -85,7 +85,7 @@ contains
          allocate (self%id%perm_in(n))
          self%id%perm_in = place
       end if
-      if (kind == mumps_unsymmetric) self%id%icntl(8) = 0  ! callers scale: MUMPS takes an eighth
+      if (kind /= mumps_definite) self%id%icntl(8) = 0  ! callers scale: MUMPS takes an eighth
       self%id%icntl(14) = 40
       self%id%icntl(24) = 1
       self%id%n = n
