@@ -112,10 +112,13 @@ contains
    end subroutine analyse
 
    !> Factorize for new values, in the order of the triplets.
-   subroutine factorize(self, values, error)
+   subroutine factorize(self, values, error, schur)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(in) :: values(:)
       type(error_t), allocatable, intent(out) :: error
+      !> (n_schur, n_schur) the Schur complement, full and symmetric. Where this is not given it is
+      !! kept until `get_schur`.
+      real(rk), intent(inout), contiguous, target, optional :: schur(:, :)
       integer :: attempt
 
       if (.not. self%active .or. size(values) /= size(self%id%a)) then
@@ -128,8 +131,13 @@ contains
                           "the matrix has an entry that is not a finite number")
          return
       end if
-      if (self%n_schur > 0 .and. .not. associated(self%id%schur)) then
-         allocate (self%id%schur(int(self%n_schur, int64)**2))
+      if (self%n_schur > 0) then
+         if (present(schur)) then
+            if (associated(self%id%schur)) deallocate (self%id%schur)
+            self%id%schur(1:size(schur, kind=int64)) => schur
+         else if (.not. associated(self%id%schur)) then
+            allocate (self%id%schur(int(self%n_schur, int64)**2))
+         end if
       end if
       do attempt = 1, 3
          self%id%a = values
@@ -138,8 +146,10 @@ contains
          if (self%id%infog(1) /= -9) exit
          self%id%icntl(14) = 2*self%id%icntl(14)  ! more delayed pivots than foreseen
       end do
+      if (present(schur)) nullify (self%id%schur)
       call check_status(self, "factorization", error)
       if (allocated(error)) return
+      if (present(schur)) call complete_lower(schur)
       if (self%id%infog(28) > 0) then
          call raise_error(error, "mumps_t%factorize", "the matrix is singular")
       end if
@@ -179,16 +189,14 @@ contains
    subroutine get_schur(self, schur)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(out) :: schur(:, :)  !< (n_schur, n_schur)
-      integer(int64) :: i, j
+      integer(int64) :: j, n
 
-      ! MUMPS gives the lower triangle by rows, that is, the upper one by columns.
-      do j = 1, self%n_schur
-         do i = 1, j
-            schur(i, j) = self%id%schur((j - 1)*self%n_schur + i)
-            schur(j, i) = schur(i, j)
-         end do
+      n = self%n_schur
+      do j = 1, n
+         schur(:j, j) = self%id%schur((j - 1)*n + 1:(j - 1)*n + j)
       end do
       deallocate (self%id%schur)
+      call complete_lower(schur)
    end subroutine get_schur
 
    !> Forward elimination: the right-hand side of the condensed system. What else follows from it
@@ -249,6 +257,19 @@ contains
 
       call self%release()
    end subroutine finalize
+
+   !> MUMPS gives the lower triangle of a Schur complement by rows, that is, the upper one by
+   !! columns.
+   pure subroutine complete_lower(schur)
+      real(rk), intent(inout) :: schur(:, :)
+      integer(ik) :: i, j
+
+      do j = 2, size(schur, 2, kind=ik)
+         do i = 1, j - 1
+            schur(j, i) = schur(i, j)
+         end do
+      end do
+   end subroutine complete_lower
 
    subroutine check_status(self, phase, error)
       class(mumps_t), intent(in) :: self

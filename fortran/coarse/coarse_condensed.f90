@@ -87,16 +87,22 @@ contains
          place = expand_order(place, 3_ik, n_blocks)
          call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur, place=place)
          if (allocated(error)) return
+         deallocate (row, col, place)  ! of the size of the matrix: not to be there with the factors
          if (.not. self%is_full) call find_coupling(matrix, self%coupling)
          self%analysed = .true.
       end if
       call find_scale(matrix, dt, self%scale)
       call triplet_values(matrix, n_blocks, self%scale, dt, values)
-      call self%solver%factorize(values, error)
-      if (allocated(error)) return
       if (self%is_full) then
-         if (self%n > 0) call find_stiffness(self)
+         if (allocated(self%stiffness)) deallocate (self%stiffness)
+         allocate (self%stiffness(self%layout%count(), self%layout%count()))
+         call self%solver%factorize(values, error, self%stiffness)
+         if (.not. allocated(error)) call find_stiffness(self)
       else
+         call self%solver%factorize(values, error)
+      end if
+      if (allocated(error)) return
+      if (.not. self%is_full) then
          call find_coupling_values(matrix, self%normal, dt, self%coupling)
          self%spring = spread(0.0_rk, 1, self%layout%count())
          self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
@@ -252,16 +258,13 @@ contains
       end associate
    end subroutine solve_rock
 
-   !> S, in the fractures' own directions.
+   !> S, in its units and in the fractures' own directions.
    subroutine find_stiffness(self)
       class(condensed_t), intent(inout) :: self
       integer(ik) :: at, cell, end, i
       real(rk), allocatable :: first(:)
 
-      if (allocated(self%stiffness)) deallocate (self%stiffness)
-      allocate (self%stiffness(self%layout%count(), self%layout%count()))
       associate (s => self%scale(self%at_fractures:), stiffness => self%stiffness)
-         call self%solver%get_schur(stiffness)
          do i = 1, size(s)
             stiffness(:, i) = stiffness(:, i)/(s*s(i))
             call turn_to_normals(self, stiffness(:, i))
