@@ -9,7 +9,7 @@ module algebra_ordering
    implicit none(type, external)
    private
 
-   public :: dissect, expand_order, neighbours_of, order_grouped
+   public :: dissect, expand_order, neighbours_of
 
    integer, parameter :: n_options = 40  !< METIS_NOPTIONS
    ! Places of options among those, from 0 (moptions_et of metis.h).
@@ -20,20 +20,20 @@ module algebra_ordering
    interface
       integer(c_int32_t) function metis_set_default_options(options) &
          bind(c, name="METIS_SetDefaultOptions")
-         import :: c_int32_t
+         import :: c_int32_t, n_options
          implicit none(type, external)
-         integer(c_int32_t), intent(out) :: options(*)
+         integer(c_int32_t), intent(out) :: options(n_options)
       end function metis_set_default_options
 
       integer(c_int32_t) function metis_node_nd(n, first, item, weight, options, order, place) &
          bind(c, name="METIS_NodeND")
-         import :: c_int32_t, c_ptr
+         import :: c_int32_t, c_ptr, n_options
          implicit none(type, external)
          integer(c_int32_t), intent(in) :: n
-         integer(c_int32_t), intent(in) :: first(*), item(*)
+         integer(c_int32_t), intent(in) :: first(n + 1), item(first(n + 1))
          type(c_ptr), value :: weight
-         integer(c_int32_t), intent(in) :: options(*)
-         integer(c_int32_t), intent(out) :: order(*), place(*)
+         integer(c_int32_t), intent(in) :: options(n_options)
+         integer(c_int32_t), intent(out) :: order(n), place(n)
       end function metis_node_nd
    end interface
 
@@ -107,86 +107,6 @@ contains
          end do
       end do
    end function neighbours_of
-
-   !> Order the unknowns of a matrix by the graph of groups of them, which stay together.
-   subroutine order_grouped(group, row, col, place, error)
-      integer(ik), intent(in) :: group(:)  !< (n) of each unknown, from 1 to the number of groups
-      integer(ik), intent(in) :: row(:), col(:)  !< (n_entries) where the matrix has any
-      integer(ik), allocatable, intent(out) :: place(:)  !< (n) of each unknown in the order
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: place_of_group(:), next(:)
-      integer(ik) :: i, n
-
-      n = maxval(group)
-      call dissect(graph_of_groups(n, group, row, col), place_of_group, error)
-      if (allocated(error)) return
-      allocate (next(n + 1), source=0_ik)
-      do i = 1, size(group)
-         associate (after => next(place_of_group(group(i)) + 1))
-            after = after + 1
-         end associate
-      end do
-      do i = 1, n
-         next(i + 1) = next(i) + next(i + 1)
-      end do
-      allocate (place(size(group)))
-      do i = 1, size(group)
-         associate (before => next(place_of_group(group(i))))
-            before = before + 1
-            place(i) = before
-         end associate
-      end do
-   end subroutine order_grouped
-
-   !> Which groups have entries in common, in one triangle of the matrix or the other.
-   pure function graph_of_groups(n, group, row, col) result(neighbours)
-      integer(ik), intent(in) :: n  !< groups
-      integer(ik), intent(in) :: group(:)
-      integer(ik), intent(in) :: row(:), col(:)
-      type(lists_t) :: neighbours
-      integer(ik), allocatable :: last_of(:), next(:), found(:)
-      integer(ik) :: i, j, k, m
-
-      allocate (neighbours%first(n + 1), source=0_ik)
-      associate (first => neighbours%first)
-         do k = 1, size(row)
-            i = group(row(k))
-            j = group(col(k))
-            if (i == j) cycle
-            first(i + 1) = first(i + 1) + 1
-            first(j + 1) = first(j + 1) + 1
-         end do
-         first(1) = 1
-         do i = 1, n
-            first(i + 1) = first(i) + first(i + 1)
-         end do
-         next = first(:n)
-         allocate (found(first(n + 1) - 1))
-         do k = 1, size(row)
-            i = group(row(k))
-            j = group(col(k))
-            if (i == j) cycle
-            found(next(i)) = j
-            found(next(j)) = i
-            next([i, j]) = next([i, j]) + 1
-         end do
-         ! Each neighbour once.
-         allocate (last_of(n), source=0_ik)
-         m = 0
-         do i = 1, n
-            k = first(i)
-            first(i) = m + 1
-            do k = k, next(i) - 1
-               if (last_of(found(k)) == i) cycle
-               last_of(found(k)) = i
-               m = m + 1
-               found(m) = found(k)
-            end do
-         end do
-         first(n + 1) = m + 1
-      end associate
-      neighbours%item = found(:m)
-   end function graph_of_groups
 
    !> From places of blocks to those of their unknowns, which stand one block after another; blocks
    !! that have no place come last as they stand.

@@ -119,7 +119,7 @@ contains
 
    end subroutine find_full_step
 
-   !> What can be linked: faces, the first of all, then exactly the pressures of fluid and the jumps.
+   !> What can be linked: faces, the first of all, then exactly pressures of fluid, then jumps.
    subroutine find_links(stiffness, slopes, first, local, kinds, with_faces, links, n_faces)
       real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
       type(slopes_t), intent(in) :: slopes
@@ -180,8 +180,8 @@ contains
          has_forces = any(abs(slopes%weight(:, row)) > 0.0_rk)
       end function has_forces
 
-      !> Link an unknown by the local part of an equation, if it has the largest entry there, and the
-      !! others have not left.
+      !> Link an unknown by the local part of an equation, if it has the largest entry there, and
+      !! the others have not left.
       subroutine link_by(equation, unknown)
          integer(ik), intent(in) :: equation, unknown
          integer(ik), allocatable :: partner(:)

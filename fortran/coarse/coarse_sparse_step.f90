@@ -19,8 +19,7 @@
 !! and where old factors serve, it is that of a matrix some states away.
 module coarse_sparse_step
    use algebra_lapack, only: dlacn2
-   use algebra_mumps, only: mumps_t, mumps_unsymmetric
-   use algebra_ordering, only: order_grouped
+   use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
@@ -264,7 +263,8 @@ contains
             self%row = [self%row(:n), row]
             self%col = [self%col(:n), col]
             self%values = [self%values(:n), values]
-            call analyse(self, condensed%coupling%n_bulk, error)
+            call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
+                                     mumps_unsymmetric, error, ordering=mumps_pord)
             if (allocated(error)) then
                deallocate (self%row, self%col, self%values)
                return
@@ -286,22 +286,6 @@ contains
       self%estimated_for = self%of
       self%estimated_at = self%factorizations
    end subroutine renew
-
-   !> Find the pattern of the factors. The unknowns of a cell stay together.
-   subroutine analyse(self, n_bulk, error)
-      class(sparse_step_t), intent(inout) :: self
-      integer(ik), intent(in) :: n_bulk  !< unknowns of the cells
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: place(:)
-      integer(ik) :: i, n
-
-      n = size(self%col_scale, kind=ik)
-      associate (group => [((i + 2)/3, i=1, n_bulk), (n_bulk/3 + i, i=1, n - n_bulk)])
-         call order_grouped(group, self%row, self%col, place, error)
-      end associate
-      if (allocated(error)) return
-      call self%solver%analyse(n, self%row, self%col, mumps_unsymmetric, error, place=place)
-   end subroutine analyse
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
    !! transpose: the norms of both that matrix and its inverse, estimated; of the inverse without

@@ -27,10 +27,10 @@ contains
    end subroutine solve_full
 
    !> Factorize; equations are scaled to a largest coefficient of one. The condition is that of the
-   !! scaled matrix in the 1-norm of its transpose: what a relative error of an equation makes of the
-   !! unknowns. Some of these may be left out of it, as flows are: those that go round in a loop of
-   !! open fractures are driven by less than the rounding of pressures, know little of themselves,
-   !! and change nothing else.
+   !! scaled matrix in the 1-norm of its transpose: what a relative error of an equation makes of
+   !! the unknowns. Some of these may be left out of it, as flows are: those that go round in a loop
+   !! of open fractures are driven by less than the rounding of pressures, know little of
+   !! themselves, and change nothing else.
    subroutine factorize_full(jacobian, with_condition, scale, pivots, quality, left_out)
       !> (n, n) an equation per column [-]; its factors afterwards
       real(rk), intent(inout), contiguous :: jacobian(:, :)

@@ -1,12 +1,12 @@
 !> Orders of unknowns: permutations, the same every time; of a grid, with the fill that nested
-!! dissection is known for; groups that stay together; and MUMPS, which takes them.
+!! dissection is known for; and MUMPS, which takes them.
 program test_algebra_ordering
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
    use algebra_mumps, only: mumps_indefinite, mumps_t
-   use algebra_ordering, only: dissect, expand_order, neighbours_of, order_grouped
+   use algebra_ordering, only: dissect, expand_order, neighbours_of
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -14,7 +14,6 @@ program test_algebra_ordering
    call finds_neighbours()
    call dissects_grid()
    call orders_little()
-   call keeps_groups()
    call expands()
    call serves_mumps()
    call checks%finish()
@@ -63,7 +62,7 @@ contains
       is_permutation = all(is_taken)
    end function is_permutation
 
-   !> Both neighbours of a node of a chain, from the one that its row holds; rows at the end left out.
+   !> Both neighbours of a node of a chain, from the one that its row holds; the last row left out.
    subroutine finds_neighbours()
       type(lists_t) :: columns, neighbours
 
@@ -138,26 +137,6 @@ contains
          call checks%is_true(size(place) == n .and. is_permutation(place), "a place for each")
       end do
    end subroutine orders_little
-
-   !> Pairs of nodes of a grid.
-   subroutine keeps_groups()
-      integer(ik), parameter :: n = 12
-      type(lists_t) :: columns
-      type(error_t), allocatable :: error
-      integer(ik), allocatable :: place(:), row(:)
-      integer(ik) :: group(n*n), i, k
-
-      columns = grid(n)
-      row = [((i, k=1, columns%length(i)), i=1, n*n)]
-      do i = 1, size(group), 2
-         group(i:i + 1) = 1 + i/2
-      end do
-      call order_grouped(group, row, columns%item, place, error)
-      call checks%no_error(error, "order groups")
-      call checks%is_true(is_permutation(place), "every place is taken once by groups")
-      call checks%is_true(all(place(2::2) == place(1::2) + 1), "groups stay together")
-      call checks%is_true(any(place /= [(i, i=1, n*n)]), "and are ordered")
-   end subroutine keeps_groups
 
    !> Two blocks of three exchanged, and one that has no place.
    subroutine expands()

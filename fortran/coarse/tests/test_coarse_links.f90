@@ -12,9 +12,8 @@ program test_coarse_links
 
 contains
 
-   !> Two equations in two unknowns are left of five, whose solution is (1, 2, 3, 4, 5): the first is
-   !! linked to the second and third, the second to the third and fifth, the fourth to nothing, by
-   !! its own equation and that of the third.
+   !> Two equations in two unknowns are left of five, whose solution is (1, 2, 3, 4, 5): the first
+   !! is linked to the second and third, the second to the third and fifth, the fourth to nothing.
    subroutine leaves_and_comes_back()
       real(rk), parameter :: solution(5) = [1.0_rk, 2.0_rk, 3.0_rk, 4.0_rk, 5.0_rk]
       integer(ik), parameter :: none(0) = [integer(ik) ::]
