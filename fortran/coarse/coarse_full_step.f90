@@ -31,6 +31,7 @@ module coarse_full_step
    !> So much of a face's pressure may come from its own volume if it is to be linked [-].
    real(rk), parameter :: little = 1.0e-4_rk
 
+   integer(ik), parameter :: many = 1000  !< unknowns: elimination of fewer costs milliseconds
    integer(ik), parameter :: rounds_max = 6  !< of improvement
    real(rk), parameter :: well = 16.0_rk*epsilon(1.0_rk)  !< fulfilled: residual over unknowns [-]
 
@@ -38,7 +39,7 @@ contains
 
    !> Solve for the step. The condition is that of the equations which are left.
    subroutine find_full_step(stiffness, slopes, kinds, x_of_q, q_per_x, is_flow, residual, &
-                             stress_scale, with_condition, step, quality)
+                             stress_scale, with_condition, step, quality, links_faces)
       real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
       type(slopes_t), intent(in) :: slopes
       type(kinds_t), intent(in) :: kinds
@@ -50,12 +51,19 @@ contains
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(out) :: quality
+      !> Faces may be linked; default: where there are many unknowns, and it saves much
+      logical, intent(in), optional :: links_faces
       integer(ik), allocatable :: local(:), first(:)
       logical :: is_good
 
       call slopes%by_row(first, local)
-      call try_step(with_faces=.true.)
-      if (.not. is_good .and. .not. quality%is_singular) call try_step(with_faces=.false.)
+      is_good = slopes%n >= many
+      if (present(links_faces)) is_good = links_faces
+      if (is_good) then
+         call try_step(with_faces=.true.)
+         if (is_good .or. quality%is_singular) return
+      end if
+      call try_step(with_faces=.false.)
 
    contains
 

@@ -59,7 +59,7 @@ contains
       kinds%end_of_flow = [4_ik]
       residual = [1.0_rk, -2.0_rk, 1.0_rk, 1.0_rk, 0.5_rk]
       call find_full_step(stiffness, slopes, kinds, x_of_q, q_per_x, is_flow, residual, 1.0_rk, &
-                          .true., step, quality)
+                          .true., step, quality, links_faces=.true.)
       call checks%is_true(.not. quality%is_singular, name//": there is a step")
       call full_slopes(stiffness, slopes, x_of_q, q_per_x, jacobian)
       ! Rounding: some terms of 1e-16 of the largest.
