@@ -55,7 +55,7 @@ function(room_compile_options name)
       -Wimplicit-interface
       -fimplicit-none
       $<$<CONFIG:Release>:-O3
-      -march=native
+      ${WINGCRACK_PROCESSOR}
       -Wno-uninitialized
       -Wno-maybe-uninitialized>
       $<$<CONFIG:Debug>:-fcheck=all

@@ -1,4 +1,4 @@
-"""The performance measurements: that they say what a run says of itself."""
+"""The performance measurements: that they say what a run says of itself, and find a loss."""
 
 from __future__ import annotations
 
@@ -7,58 +7,81 @@ import shutil
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, call
+from system_scene import SOLVER, call
 
 pytestmark = pytest.mark.usefixtures("program")
 
+needs_valgrind = pytest.mark.skipif(
+    shutil.which("valgrind") is None, reason="valgrind is not installed"
+)
+
 
 def test_a_measurement_as_table_and_json(tmp_path: Path) -> None:
-    done = call(tmp_path, "bench", "b1", "c1", "--repeat", "1", "--out", "here")
+    done = call(tmp_path, "bench", "b1", "c1", "--repeat", "2", "--out", "here")
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
-    assert lines[0].split() == ["b1", "c1"]
-    table = {line[:26].strip(): line[26:].split() for line in lines[1:]}
+    assert lines[1].split()[0] == "b1"
+    assert lines[2].split()[0] == "c1"
+    assert any(line.startswith("  c1: ") for line in lines)
     record = json.loads((tmp_path / "here" / "bench.json").read_text())
-    assert set(record) == {"revision", "machine", "measurements"}
+    assert set(record) == {"revision", "machine", "made_with", "measurements", "growth"}
     mechanics, fluid = record["measurements"]
     assert (mechanics["name"], fluid["name"]) == ("b1", "c1")
     for measured in (mechanics, fluid):
-        phases = measured["phases_s"]
-        assert sum(phases.values()) == pytest.approx(measured["cpu_s"], rel=1e-9)
-        assert min(phases.values()) >= 0.0
+        typical = measured["typical"]
+        assert len(measured["cpu_s"]) == 2
+        assert min(measured["cpu_s"]) <= measured["median_s"] <= max(measured["cpu_s"])
+        assert sum(typical["phases_s"].values()) == pytest.approx(typical["cpu_s"], rel=1e-9)
+        assert min(typical["phases_s"].values()) >= 0.0
         assert measured["instructions"] is None
-        assert measured["memory_mb"] > 1
-    assert mechanics["states"] == 1
-    assert fluid["states"] == 21
-    assert mechanics["phases_s"]["discretize"] == 0.0  # finite volumes are left out
-    assert mechanics["unknowns"] < fluid["unknowns"]
-    assert table["accepted states"] == ["1", "21"]
-    assert table["unknowns"] == [str(mechanics["unknowns"]), str(fluid["unknowns"])]
-    assert table["CPU per propagation [s]"] == ["-", "-"]
+        assert typical["memory_mb"] > 1
+    assert mechanics["typical"]["states"] == 1
+    assert fluid["typical"]["states"] == 21
+    assert mechanics["typical"]["phases_s"]["discretize"] == 0.0  # finite volumes are left out
+    assert mechanics["typical"]["sizes"]["unknowns"] < fluid["typical"]["sizes"]["unknowns"]
+    assert fluid["cpu_per_growth_s"] is None
 
 
-def test_the_listed_scenes_are_there() -> None:
-    table = (TOP / "tools" / "benchmarks.txt").read_text().splitlines()
-    entries = [line.split("|") for line in table if line and not line.startswith("#")]
-    assert [entry[0].strip() for entry in entries] == ["c1", "n1", "c2", "b1", "b4", "b6"]
-    for _, scene, title in entries:
-        assert (TOP / scene.strip()).exists()
-        assert title.strip()
-
-
-@pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed")
-def test_instructions_are_counted_or_the_reason_is_told(tmp_path: Path) -> None:
-    done = call(tmp_path, "bench", "b1", "--repeat", "1", "--instructions")
+@needs_valgrind
+def test_a_loss_of_instructions_is_found(tmp_path: Path) -> None:
+    baseline = tmp_path / "baseline.json"
+    options = ("b1", "--repeat", "1", "--baseline", str(baseline), "--out", str(tmp_path / "out"))
+    done = call(tmp_path, "bench", *options, "--store")
+    if done.returncode == 1 and "not all could be counted" in done.stderr:
+        pytest.skip(done.stdout.splitlines()[-1])
     assert done.returncode == 0, done.stderr
-    (measured,) = json.loads((tmp_path / "out" / "bench" / "bench.json").read_text())[
-        "measurements"
-    ]
-    if measured["instructions"] is None:
-        assert f"b1: no instructions: {measured['why_not_counted']}" in done.stdout
-        assert measured["why_not_counted"]
-    else:
-        assert measured["instructions"] > 1e6
-        assert "instructions [1e6]" in done.stdout
+    stored = json.loads(baseline.read_text())
+    assert stored["instructions"]["b1"] > 1e8
+    # the same program: the same count, within what the length of a path's name makes
+    stored["instructions"]["b1"] = int(stored["instructions"]["b1"] / 1.05)
+    baseline.write_text(json.dumps(stored))
+    done = call(tmp_path, "bench", *options, "--instructions")
+    assert done.returncode == 0, done.stderr
+    assert "instructions are judged for b1" in done.stdout
+    # a program that had taken a fifth less
+    stored["instructions"]["b1"] = int(stored["instructions"]["b1"] / 1.2)
+    baseline.write_text(json.dumps(stored))
+    done = call(tmp_path, "bench", *options, "--instructions")
+    assert done.returncode == 1
+    assert "a loss: b1 takes 1.2" in done.stderr.splitlines()[-1]
+
+
+def test_a_loss_against_another_program_is_found(tmp_path: Path) -> None:
+    """Here the other program is this one, started with a wrapper that costs nothing or much."""
+    for name, extra, status in (("same", "", 0), ("slow", "--solver", 1)):
+        wrapper = tmp_path / name
+        work = "for ((k = 0; k < 200000; ++k)); do :; done\n" if extra else ""
+        wrapper.write_text(f'#!/bin/bash\n{work}exec "{SOLVER}" "$@"\n')
+        wrapper.chmod(0o755)
+        pair = ["--solver", str(wrapper), "--against", str(SOLVER)]
+        done = call(tmp_path, "bench", "b1", "--repeat", "5", *pair)
+        assert done.returncode == status, done.stdout + done.stderr
+        (measured,) = json.loads((tmp_path / "out" / "bench" / "bench.json").read_text())[
+            "measurements"
+        ]
+        assert len(measured["other_s"]) == 5
+        assert (measured["cpu_ratio"] > 1.25) == (status == 1)
+    assert "times the CPU time of the other program" in done.stderr.splitlines()[-1]
 
 
 def test_a_wrong_number_of_runs_is_refused(tmp_path: Path) -> None:
@@ -66,3 +89,13 @@ def test_a_wrong_number_of_runs_is_refused(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "'0' is no whole number from 1" in done.stderr.splitlines()[-1]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_fails_is_told(tmp_path: Path) -> None:
+    broken = tmp_path / "broken"
+    broken.write_text("#!/bin/sh\necho 'wingcrack: it broke' >&2\nexit 1\n")
+    broken.chmod(0o755)
+    done = call(tmp_path, "bench", "b1", "--solver", str(broken))
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1] == "wingcrack bench: b1: it broke"
+    assert not (tmp_path / "out").exists()

@@ -10,7 +10,7 @@ readonly solver=$root/build/release/fortran/app/wingcrack-solver
 build_failure=$exit_environment
 
 # build_is_current PRESET TARGET: nothing that the build reads is newer than its record, and the
-# tree has not moved since (library paths) nor the processor changed (-march=native).
+# tree has not moved since (library paths) nor the processor changed (whose instructions are used).
 build_is_current() {
     local record_file=$root/build/$1/built-$2 record='' place strictness also=()
     if [[ $2 != "$solver_target" ]]; then

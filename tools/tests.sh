@@ -10,6 +10,8 @@ run_all_tests() {
     step 'CTest, debug build' ctest --preset debug -j "$(nproc)"
     step 'CTest, release build' ctest --preset release -j "$(nproc)"
     step 'pytest' run_pytest --numprocesses "$(nproc)" --dist loadfile
+    # counts, which do not depend on what else the machine does
+    step 'bench, the short form' run_quick_bench
     end_steps
 }
 
@@ -48,6 +50,10 @@ run_named_pytests() {
 }
 
 run_pytest() { "$venv_python" -P -m pytest "$@"; }
+
+run_quick_bench() {
+    "$venv_python" -I "$root/tools/start.py" wingcrack_bench --quick --out "$root/build/bench"
+}
 
 # joined SEPARATOR WORD...
 joined() {

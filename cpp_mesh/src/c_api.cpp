@@ -132,6 +132,12 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
     spec.guides = guides_from(*given);
     spec.joint_size = given->joint_size;
+    if (given->n_foci > 0)
+        spec.foci = {points_from(given->n_foci, given->foci), given->size_fracture,
+                     given->focus_slope, given->focus_size};
+    spec.is_rough = given->is_rough != 0;
+    if (given->ring_slope > 0.0)
+        spec.ring_slope = given->ring_slope;
     return spec;
 }
 

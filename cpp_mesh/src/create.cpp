@@ -60,6 +60,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
             sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
                                specification.size_fracture});
         mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
+        mesh.size.set_foci(specification.foci);
     }
     if (mesh.size.follows_other_mesh() || is_for_elements(specification))
         mesh.size.make_scale_free();
@@ -67,10 +68,12 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     std::vector<RosettePlan> plans;
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
-    mesh.size.set_discs(rosette_discs(graph, plans, specification.rosette_sectors));
+    mesh.size.set_discs(
+        rosette_discs(graph, plans, specification.rosette_sectors, specification.ring_slope));
     if (specification.joint_size > 0.0)
         for (const Joint& joint : joints_of(graph))
-            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
+            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints,
+                                   growth_around_joints});
     // Cells between fractures that meet, or almost do, must not be much longer than what is left
     // for them.
     if (mesh.size.is_scale_free() ||
@@ -93,6 +96,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         xy.push_back(point.xy);
     }
     Region region;
+    region.is_rough = specification.is_rough;
     region.loops.push_back(mesh_boundary(domain, graph, mesh.size, xy));
     limit_sizes_at_short_edges(domain, region.loops[0], xy, mesh.size);
     Skeleton skeleton =

@@ -12,7 +12,7 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr int algorithm_frontal_delaunay = 6;
+constexpr int algorithm_delaunay = 5, algorithm_frontal_delaunay = 6;
 
 // Coordinates for gmsh: the region's box becomes about the unit square, so that gmsh's own absolute
 // tolerances mean the same for a laboratory sample and for a reservoir.
@@ -228,7 +228,6 @@ GmshSession::GmshSession() {
     gmsh::option::setNumber("General.NumThreads", 1);
     for (const char* dimension : {"1D", "2D", "3D"})
         gmsh::option::setNumber(std::string("Mesh.MaxNumThreads") + dimension, 1);
-    gmsh::option::setNumber("Mesh.Algorithm", algorithm_frontal_delaunay);
     gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
     gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
     gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
@@ -245,6 +244,9 @@ std::vector<Triangle> GmshSession::triangulate(const Region& region, const SizeF
                                                std::vector<Vec2>& xy, double coverage) {
     try {
         const Model model;
+        gmsh::option::setNumber("Mesh.Algorithm",
+                                region.is_rough ? algorithm_delaunay : algorithm_frontal_delaunay);
+        gmsh::option::setNumber("Mesh.Smoothing", region.is_rough ? 0 : 1);
         return RegionMesher(region, size, xy, coverage).run();
     } catch (const MeshError&) {
         throw;

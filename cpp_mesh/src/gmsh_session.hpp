@@ -19,6 +19,7 @@ struct Region {
     std::vector<std::vector<int>> loops;
     std::vector<std::array<int, 2>> embedded;
     std::vector<int> points;
+    bool is_rough = false; // triangles that the caller smooths, in half the time
 };
 
 class GmshSession {

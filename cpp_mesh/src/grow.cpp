@@ -35,7 +35,7 @@ void set_sizes(const std::vector<Segment>& grown, PatchTask& task) {
             size.add(SizeSource{segment.end[0], segment.end[1], spec.size_fracture});
     if (spec.rosette_sectors > 0)
         task.plans = plan_rosettes(task.graph, spec.domain, spec.rosette_radii);
-    size.set_discs(rosette_discs(task.graph, task.plans, spec.rosette_sectors));
+    size.set_discs(rosette_discs(task.graph, task.plans, spec.rosette_sectors, spec.ring_slope));
     limit_sizes_in_narrow_places(task.graph, spec.domain, size);
 }
 

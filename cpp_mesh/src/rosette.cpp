@@ -11,7 +11,8 @@ constexpr double pi = 3.14159265358979323846;
 // Turns at the last kink by up to this leave room for the ring right next to the kink.
 constexpr double largest_turn = 75.0 * pi / 180.0;
 
-// Growth of cell sizes per distance outside a ring, whose triangles are smaller than those around.
+// Growth of cell sizes per distance outside a ring, whose triangles are smaller than those around:
+// integrals around tips need some rings of cells.
 constexpr double growth_around = 0.3;
 
 // Least length of a piece of the segment behind the ring, in radii.
@@ -90,11 +91,11 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
 }
 
 std::vector<SizeDisc> rosette_discs(const Graph& graph, const std::vector<RosettePlan>& plans,
-                                    int sectors) {
+                                    int sectors, double far_slope) {
     std::vector<SizeDisc> discs;
     for (const RosettePlan& plan : plans)
         discs.push_back({graph.points[plan.point].xy, plan.radius,
-                         2.0 * plan.radius * std::sin(pi / sectors), growth_around});
+                         2.0 * plan.radius * std::sin(pi / sectors), growth_around, far_slope});
     return discs;
 }
 

@@ -32,9 +32,10 @@ struct RosetteRadii {
 std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
                                        const RosetteRadii& radii);
 
-// The rings' sizes for the size field.
+// The rings' sizes for the size field; their triangles are smaller than those around, which beyond
+// three radii grow by `far_slope` per distance.
 std::vector<SizeDisc> rosette_discs(const Graph& graph, const std::vector<RosettePlan>& plans,
-                                    int sectors);
+                                    int sectors, double far_slope);
 
 // Ring nodes, counter-clockwise, appended to xy; the first is given and lies on the crack.
 std::vector<int> add_ring(Vec2 tip, Vec2 direction, double radius, int sectors, int crack_node,

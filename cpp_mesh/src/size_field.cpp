@@ -11,6 +11,9 @@ namespace {
 // size too.
 constexpr double reach = 0.5;
 
+// How far outside a disc cells grow by its slope, in radii, before they grow by its far slope.
+constexpr double near_part = 2.0;
+
 // Numbers this near to a tie are on one side of it whatever their rounding errors.
 constexpr double tie_margin = 1e-9;
 
@@ -62,13 +65,28 @@ SizeField SizeField::less(const SizeField& other) const {
     return rest;
 }
 
+double SizeFoci::operator()(Vec2 p) const {
+    if (places.empty())
+        return 0.0;
+    double nearest = std::numeric_limits<double>::max();
+    for (const Vec2& place : places)
+        nearest = std::min(nearest, distance(p, place));
+    return std::min(size + slope * nearest, largest);
+}
+
+double SizeDisc::operator()(Vec2 p) const {
+    const double outside = std::max(0.0, distance(p, centre) - radius);
+    const double near = std::min(outside, near_part * radius);
+    return size + slope * near + far_slope * (outside - near);
+}
+
 double SizeField::operator()(Vec2 p) const {
     double size = wanted_ != nullptr ? (*wanted_)(p) : largest_;
     for (const SizeSource& source : sources_)
         size = std::min(size, source.size + slope_ * distance_to_segment(p, source.a, source.b));
+    size = std::max(size, foci_(p));
     for (const SizeDisc& disc : discs_)
-        size = std::min(
-            size, disc.size + disc.slope * std::max(0.0, distance(p, disc.centre) - disc.radius));
+        size = std::min(size, disc(p));
     return size;
 }
 

@@ -17,12 +17,25 @@ struct SizeSource {
     double size = 0.0;
 };
 
-// Cells have `size` within `radius` of the centre and grow away from it by `slope` per distance.
+// Cells have `size` within `radius` of the centre and grow away from it by `slope` per distance,
+// beyond three radii by `far_slope`.
 struct SizeDisc {
     Vec2 centre;
     double radius = 0.0;
     double size = 0.0;
     double slope = 0.3;
+    double far_slope = 0.3;
+
+    double operator()(Vec2 p) const;
+};
+
+// Cells that sources make as small as `size` may grow by `slope` per distance from the nearest
+// place, up to `largest`. Without places they may not.
+struct SizeFoci {
+    std::vector<Vec2> places;
+    double size = 0.0, slope = 0.0, largest = 0.0;
+
+    double operator()(Vec2 p) const;
 };
 
 class SizeField {
@@ -38,6 +51,7 @@ public:
     bool follows_other_mesh() const { return wanted_ != nullptr; }
     void add(const SizeSource& source) { sources_.push_back(source); }
     void add(const SizeDisc& disc) { discs_.push_back(disc); }
+    void set_foci(SizeFoci foci) { foci_ = std::move(foci); }
     // Decisions must not depend on rounding errors: the same body in another unit of length is to
     // get the same mesh.
     void make_scale_free() { is_scale_free_ = true; }
@@ -50,6 +64,7 @@ public:
 private:
     std::vector<SizeSource> sources_;
     std::vector<SizeDisc> discs_;
+    SizeFoci foci_;
     std::shared_ptr<const NodalSizes> wanted_;
     double slope_ = 0.0;
     double largest_ = 0.0;

@@ -186,6 +186,61 @@ void small_at_joints(Checks& checks) {
     }
 }
 
+// Cells along a fracture grow with the distance from a focus at its tip, up to the largest size.
+void larger_far_from_foci(Checks& checks) {
+    const TestNetwork network({{{0.5, 0.5}, {2.0, 0.5}}});
+    const double focus[] = {0.5, 0.5}, size = 0.01, slope = 0.2, largest = 0.05;
+    cm_spec spec = window(0.0, 1.0, 0.0, 1.0, size, size);
+    ApiMesh even;
+    checks.is_true(even.create(spec, network), even.error);
+    checks.is_true(even.counts.n_fracture_cells >= 49, "without foci all cells are as at the tip");
+    spec.n_foci = 1;
+    spec.foci = focus;
+    spec.focus_slope = slope;
+    spec.focus_size = largest;
+    for (const int is_rough : {0, 1}) {
+        spec.is_rough = is_rough;
+        ApiMesh mesh;
+        checks.is_true(mesh.create(spec, network), mesh.error);
+        double longest = 0.0;
+        for (int i = 0; i < mesh.counts.n_fracture_cells; ++i) {
+            const Point a = mesh.point(mesh.fcell_points[2 * i]);
+            const Point b = mesh.point(mesh.fcell_points[2 * i + 1]);
+            const double length = std::abs(b[0] - a[0]);
+            const double farthest = std::max(a[0], b[0]) - focus[0];
+            checks.is_true(length < 1.15 * std::min(size + slope * farthest, largest),
+                           "focus: no cell larger than it may be");
+            longest = std::max(longest, length);
+        }
+        checks.is_true(longest > 0.9 * largest, "focus: the largest cells far from it");
+        checks.is_close(mesh.total_area(), 1.0, 1e-12, "focus: area");
+        checks.is_true(mesh.smallest_angle() > 15.0,
+                       "focus: shape, " + std::to_string(mesh.smallest_angle()));
+    }
+}
+
+// Cells around a small ring grow as asked for beyond three radii, and not nearer to it.
+void growth_around_rings(Checks& checks) {
+    const Point tip = {0.5, 0.5};
+    const double radius = 0.005;
+    int n_near[2], n_all[2];
+    for (const bool is_fast : {false, true}) {
+        cm_spec spec = window(0.0, 1.0, 0.0, 1.0, 0.1, radius);
+        spec.ring_slope = is_fast ? 0.6 : 0.0;
+        ApiMesh mesh;
+        checks.is_true(mesh.create(spec, TestNetwork({{tip, {2.0, 0.5}}})), mesh.error);
+        n_all[is_fast] = mesh.counts.n_cells;
+        n_near[is_fast] = 0;
+        for (int c = 0; c < mesh.counts.n_cells; ++c)
+            for (int k = 0; k < 3; ++k) {
+                const Point p = mesh.node(mesh.cell_nodes[3 * c + k]);
+                n_near[is_fast] += std::hypot(p[0] - tip[0], p[1] - tip[1]) < 2.0 * radius;
+            }
+    }
+    checks.is_true(n_all[1] < 0.75 * n_all[0], "ring: fewer cells where they may grow faster");
+    checks.is_true(n_near[1] > 0.8 * n_near[0], "ring: as many cells next to it");
+}
+
 } // namespace
 
 int main() {
@@ -196,5 +251,7 @@ int main() {
     short_wings(checks);
     reduced_rosettes(checks);
     small_at_joints(checks);
+    larger_far_from_foci(checks);
+    growth_around_rings(checks);
     return checks.finish();
 }

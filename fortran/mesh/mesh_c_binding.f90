@@ -36,6 +36,12 @@ module mesh_c_binding
       type(c_ptr) :: guide_count = c_null_ptr
       type(c_ptr) :: guide_xy = c_null_ptr
       real(c_double) :: joint_size = 0.0_c_double
+      integer(c_int32_t) :: n_foci = 0
+      type(c_ptr) :: foci = c_null_ptr
+      real(c_double) :: focus_slope = 0.0_c_double
+      real(c_double) :: focus_size = 0.0_c_double
+      integer(c_int32_t) :: is_rough = 0
+      real(c_double) :: ring_slope = 0.0_c_double
    end type cm_spec_t
 
    !> Sizes of the arrays below.

@@ -32,6 +32,12 @@ module mesh_c_inputs
       !> (2, n) lines that cells follow where there is room, one after the other [m]
       real(rk), allocatable :: guides(:, :)
       real(rk) :: joint_size = 0.0_rk  !< cells where fractures meet [m]; 0: size_fracture
+      !> (2, n) places away from which cells grow along fractures, too [m]; they do not if absent
+      real(rk), allocatable :: foci(:, :)
+      real(rk) :: focus_slope = 0.0_rk  !< growth of sizes per distance from the nearest of them [-]
+      real(rk) :: focus_size = 0.0_rk  !< largest size along fractures that this leads to [m]
+      logical :: is_rough = .false.  !< faster triangles, which gmsh does not smooth
+      real(rk) :: ring_slope = 0.0_rk  !< growth of sizes around rosettes [-]; 0: usual
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -60,6 +66,14 @@ contains
       c_spec%rosette_sectors = spec%rosette_sectors
       c_spec%rosette_radius = spec%rosette_radius
       c_spec%joint_size = spec%joint_size
+      c_spec%ring_slope = spec%ring_slope
+      c_spec%is_rough = merge(1_ik, 0_ik, spec%is_rough)
+      if (allocated(spec%foci)) then
+         c_spec%n_foci = ubound(spec%foci, 2)
+         if (c_spec%n_foci > 0) c_spec%foci = c_loc(spec%foci)
+         c_spec%focus_slope = spec%focus_slope
+         c_spec%focus_size = spec%focus_size
+      end if
       if (allocated(spec%corners)) then
          if (.not. allocated(spec%edge_side)) then
             call raise_error(error, "mesh_builder", "the edges of the polygon have no sides")

@@ -81,6 +81,7 @@ module twolevel_state
       procedure :: book_step
       procedure :: update_values
       procedure :: evaluate
+      procedure :: has_reference
       procedure :: grow_coarse
       procedure :: remesh_coarse
    end type two_levels_t
@@ -326,10 +327,19 @@ contains
       call follow_sides(self%scene, self%state%time, self%state%time)
       call timers%start(phase_tips)
       call self%update_values()
+      self%windows%window%is_beside_body = self%has_reference()
       call self%windows%evaluate(self%scene, self%network, self%tip, asked, self%mesher, &
                                  self%mesh, self%coarse_values, self%state, self%undrained, error)
       call timers%stop(phase_tips)
    end subroutine evaluate
+
+   !> The windows are held against the whole body as one window.
+   pure logical function has_reference(self)
+      class(two_levels_t), intent(in) :: self
+
+      has_reference = .not. self%scene%discretization%window_is_body .and. &
+                      self%mesh%fracture%n_cells <= self%reference_most
+   end function has_reference
 
    !> Let the coarse level follow what the tips have grown, if that has reached its threshold.
    subroutine grow_coarse(self, grew, timers, error)

@@ -65,7 +65,7 @@ contains
                seen%of_elements = max(seen%found%k1_error, seen%found%k2_error)
             end associate
          end do
-      else if (self%mesh%fracture%n_cells <= self%reference_most) then
+      else if (self%has_reference()) then
          call compare_with_body(self, error)
       else
          call compare_edges(self, error)

@@ -30,6 +30,7 @@ module twolevel_window
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
+   use twolevel_window_path, only: restore_arc_lengths, straighten_far
    use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
@@ -41,8 +42,14 @@ module twolevel_window
    !! there, which pollutes K of tips nearby with an error of first order.
    real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
 
-   !> growth of element size with distance from the fractures
-   real(rk), parameter :: grading = 0.2_rk
+   !> Growth of element size with distance from the fractures, on average
+   real(rk), parameter :: grading = 0.4_rk
+
+   !> Along fractures elements grow by so much with the distance from the tips that the window is
+   !! for, up to the size of coarse fracture cells, between which nothing is known of the fluid's
+   !! pressure; and where the whole body shows what that makes wrong (twolevel_trust), by so much
+   !! around their rosettes, beyond three radii, which the integrals need.
+   real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
 
    !> What a window takes from the coarse level.
    type :: coarse_values_t
@@ -58,6 +65,9 @@ module twolevel_window
    type :: window_t
       integer(ik), allocatable :: serves(:)  !< the tips that it is for
       logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
+      !> Its intensities are held against those of the whole body, which shows what its elements
+      !! make wrong.
+      logical :: is_beside_body = .false.
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
       real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
@@ -102,7 +112,9 @@ contains
       type(window_tip_t), intent(inout) :: tips(:)  !< of the network
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
+      type(network_t) :: far_straight
       real(rk), allocatable :: piece(:, :)
+      integer(ik), allocatable :: kept(:)
       integer(ik) :: i
 
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
@@ -115,10 +127,18 @@ contains
       spec%size_fracture = self%element_size
       spec%size_boundary = spec%size_fracture + grading*norm2(self%upper - self%lower)/2.0_rk
       spec%is_window = .true.
+      spec%is_rough = .true.
       if (self%is_body) call shape_body(scene, spec)
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = spec%size_fracture
       spec%joint_size = joint_share*spec%size_fracture
+      if (self%is_beside_body .and. .not. self%is_body) spec%ring_slope = around
+      spec%focus_slope = along
+      spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
+      allocate (spec%foci(2, size(self%serves)))
+      do i = 1, size(self%serves, kind=ik)
+         spec%foci(:, i) = tip_place(network, tips(self%serves(i)))
+      end do
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
       do i = 1, size(self%serves, kind=ik)
@@ -137,8 +157,10 @@ contains
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
-      call build_mesh(spec, network, self%mesher, self%mesh, error)
+      call straighten_far(network, spec, self%is_body, far_straight, kept)
+      call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
+      call restore_arc_lengths(network, far_straight, kept, self%mesh%fracture)
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)

@@ -11,6 +11,7 @@ import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -285,7 +286,7 @@ def _write_fields(root: Path, cells_per_side: int, fluid: bool) -> None:
             fractures.cell_data[name] = values
         for name, grid in (("matrix", mesh), ("fractures", fractures)):
             file = f"{name}_{step:04d}.vtu"
-            grid.save(root / file)
+            save_raw(grid, root / file)
             entries[name].append(f'<DataSet timestep="{time}" part="0" file="{file}"/>')
     for name, lines_of_file in entries.items():
         (root / f"{name}.pvd").write_text(
@@ -294,6 +295,20 @@ def _write_fields(root: Path, cells_per_side: int, fluid: bool) -> None:
             + "\n</Collection>\n</VTKFile>\n",
             encoding="utf-8",
         )
+
+
+def save_raw(grid: Any, path: Path) -> None:
+    """Let VTK write a grid in the layout that a run has: raw appended arrays, sizes as UInt64."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(grid)
+    writer.SetDataModeToAppended()
+    writer.SetEncodeAppendedData(False)
+    writer.SetCompressorTypeToNone()
+    writer.SetHeaderTypeToUInt64()
+    writer.Write()
 
 
 def write_run(root: Path, *, cells_per_side: int = 12, fluid: bool = True) -> Path:

@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection, TriMesh
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from synthetic_run import HOUR, STATES, fracture_cells, times
+from synthetic_run import HOUR, STATES, fracture_cells, save_raw, times
 from wingcrack_post import AbsentError, read_run, style
 from wingcrack_post.fields import FractureField
 from wingcrack_post.frames import Window, zoom_window
@@ -106,7 +106,7 @@ def test_uniform_pressure_has_a_scale(own_run: Path) -> None:
     path = own_run / "matrix_0000.vtu"
     mesh = pyvista.read(path)
     mesh.cell_data["pressure"] = np.full(mesh.n_cells, 6.8e6)
-    mesh.save(path)
+    save_raw(mesh, path)
     low, high = _field(_maps(pressure_maps(read_run(own_run), [0.0]))[0]).get_clim()
     assert low is not None
     assert high is not None

@@ -156,7 +156,7 @@ def test_files_and_what_is_missing(
     stimulated: Path, wet_run: Path, dry_run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["plot", str(stimulated), "--only", "story", "--quiet"]) == 0
-    names = sorted(path.name for path in (stimulated / "figures").iterdir())
+    names = sorted(path.name for path in (stimulated / "figures").glob("[!.]*"))
     assert names == ["story.pdf", "story.png"]
     (stimulated / "slip_events.csv").write_text(HEAD, encoding="utf-8")
     figure = story(read_run(stimulated))

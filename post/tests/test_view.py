@@ -1,64 +1,86 @@
-"""The pyvista view: a picture with the colours of the states, or one sentence without OpenGL."""
+"""The view: the body moved by its displacements, with the colours of the states."""
 
 from __future__ import annotations
 
 import shutil
-import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
-from matplotlib.image import imread
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgba, to_rgba_array
+from matplotlib.figure import Figure
 
-from synthetic_run import STEPS, times
-from wingcrack_post import (
-    AbsentError,
-    EnvironmentLacksError,
-    RunError,
-    read_run,
-    render,
-    style,
-    view,
-)
+from synthetic_run import BODY, STEPS, save_raw, times
+from wingcrack_post import AbsentError, Run, RunError, read_run, style
+from wingcrack_post import view as module
+from wingcrack_post.frames import Frame, read_frame
 from wingcrack_post.stress import MEAN_COLOURS
-from wingcrack_post.view import draw_view
+from wingcrack_post.view import WARP_SHARE, displacement_at, view
 
 
-def _drawn(run: Path, target: Path) -> Path:
-    try:
-        return draw_view(read_run(run), target)
-    except EnvironmentLacksError as reason:
-        pytest.skip(str(reason))
+def _body(figure: Figure, panel: int = 0) -> PolyCollection:
+    return next(c for c in figure.axes[panel].collections if isinstance(c, PolyCollection))
 
 
-def test_picture_shows_the_states_of_the_last_time(wet_run: Path, tmp_path: Path) -> None:
-    picture = imread(_drawn(wet_run, tmp_path / "view.png"))
-    assert picture.shape[:2] == (1700, 3000)  # the whole body, and near the fracture
-    for state in ("slip", "open"):
-        same = np.all(np.abs(picture[:, :, :3] - to_rgb(style.STATE_COLOURS[state])) < 0.01, axis=2)
-        assert same.sum() > 1000, state
-    assert list(tmp_path.iterdir()) == [tmp_path / "view.png"]
+def test_the_whole_body_and_what_is_near_the_fracture(wet_run: Path) -> None:
+    figure = view(read_run(wet_run))
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    assert len(panels) == 2
+    assert _body(figure).get_array() is not None
+    for panel in panels:
+        lines = [c for c in panel.collections if isinstance(c, LineCollection)]
+        colours = {tuple(to_rgba_array(line.get_colors())[0]) for line in lines}
+        for state in ("slip", "open"):
+            assert to_rgba(style.STATE_COLOURS[state]) in colours, state
 
 
-def test_mechanics_only_shows_stress(dry_run: Path, tmp_path: Path) -> None:
-    assert _drawn(dry_run, tmp_path / "view.png").stat().st_size > 10_000
+def test_displacements_are_drawn_as_a_share_of_the_body(wet_run: Path) -> None:
+    """The body of the synthetic run is compressed by its strain: -4e-4 x in x, -1e-4 y in y."""
+    corners = np.concatenate([path.vertices for path in _body(view(read_run(wet_run))).get_paths()])
+    assert np.ptp(corners[:, 0]) == pytest.approx(BODY * (1.0 - WARP_SHARE), rel=0.01)
+    assert np.ptp(corners[:, 1]) == pytest.approx(BODY * (1.0 - WARP_SHARE / 4.0), rel=0.01)
+
+
+def test_a_fracture_moves_with_the_mean_of_its_faces() -> None:
+    nodes = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [3.0, 0.0]])
+    displacement = np.array([[9.0, 9.0], [0.0, 1.0], [2.0, 3.0], [9.0, 9.0]])
+    moved = displacement_at(np.array([[1.1, 0.0], [2.9, 0.1]]), nodes, displacement)
+    assert moved.tolist() == [[1.0, 2.0], [9.0, 9.0]]
+
+
+def test_nodal_displacements_are_taken_where_they_are_written(own_run: Path) -> None:
+    read = read_run(own_run)
+    frame = read_frame(read, 0)
+    plain = module._nodal_displacement(frame.matrix, "file")
+    given = np.zeros((len(plain), 3), dtype=np.float64)
+    given[:, 0] = np.arange(len(plain))
+    written = replace(frame.matrix, nodal={"nodal_displacement": given})
+    assert np.array_equal(module._nodal_displacement(written, "file"), given[:, :2])
+    assert not np.array_equal(plain, given[:, :2])
+
+
+def test_mechanics_only_shows_stress(dry_run: Path) -> None:
+    figure = view(read_run(dry_run))
+    assert _body(figure).get_cmap() == MEAN_COLOURS
+    labels = [axes.get_xlabel() for axes in figure.axes]
+    assert "mean in-plane stress [MPa]" in labels
 
 
 def test_the_last_view_is_that_of_no_short_step(
-    wet_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    wet_run: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[int] = []
 
-    def child(_directory: Path, aside: Path, place: int) -> subprocess.CompletedProcess[str]:
+    def read(run: Run, place: int) -> Frame:
         asked.append(place)
-        aside.write_bytes(b"")
-        return subprocess.CompletedProcess([], 0, "", "")
+        return read_frame(run, place)
 
-    monkeypatch.setattr(view, "_call_child", child)
-    monkeypatch.setattr(view, "last_settled", lambda *_: 7)
-    draw_view(read_run(wet_run), tmp_path / "view.png")
-    draw_view(read_run(wet_run), tmp_path / "view.png", float(times()[3]))
+    monkeypatch.setattr(module, "read_frame", read)
+    monkeypatch.setattr(module, "last_settled", lambda *_: 7)
+    view(read_run(wet_run))
+    view(read_run(wet_run), [0.0, float(times()[3])])
     assert asked == [7, 3]
 
 
@@ -68,36 +90,18 @@ def test_singular_cells_do_not_colour_the_view(dry_run: Path, tmp_path: Path) ->
     path = run / f"matrix_{STEPS - 1:04d}.vtu"
     mesh = pyvista.read(path)
     mesh.cell_data["stress"][40] = -733.0e6
-    mesh.save(path)
-    scenery = render._scenery(read_run(run), STEPS - 1)
-    assert scenery.limits == (-15.0, 15.0)
-    assert scenery.colours == MEAN_COLOURS
+    save_raw(mesh, path)
+    assert _body(view(read_run(run))).get_clim() == (-15.0, 15.0)
 
 
-def test_no_opengl_is_one_sentence(
-    wet_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    libraries = tmp_path / "broken"
-    libraries.mkdir()
-    # files that no loader accepts stand before the true libraries
-    for name in ("libEGL.so.1", "libEGL.so", "libOSMesa.so.8", "libOSMesa.so", "libGL.so.1"):
-        (libraries / name).touch()
-    monkeypatch.setenv("LD_LIBRARY_PATH", str(libraries))
-    monkeypatch.delenv("DISPLAY", raising=False)
-    target = tmp_path / "view.png"
-    with pytest.raises(EnvironmentLacksError, match="no OpenGL was found for the view; the"):
-        draw_view(read_run(wet_run), target)
-    assert not target.exists()
-
-
-def test_damaged_field_is_named(own_run: Path, tmp_path: Path) -> None:
+def test_damaged_field_is_named(own_run: Path) -> None:
     read = read_run(own_run)
     read.matrix[-1].path.unlink()
     with pytest.raises(RunError, match=r"matrix_0012\.vtu: the file is missing"):
-        draw_view(read, tmp_path / "view.png")
+        view(read)
 
 
-def test_run_without_fields(own_run: Path, tmp_path: Path) -> None:
+def test_run_without_fields(own_run: Path) -> None:
     (own_run / "matrix.pvd").unlink()
     with pytest.raises(AbsentError, match=r"no matrix\.pvd"):
-        draw_view(read_run(own_run), tmp_path / "view.png")
+        view(read_run(own_run))

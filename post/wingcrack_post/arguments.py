@@ -21,7 +21,9 @@ groups of figures (--only), written to DIR/figures:
   fractures  opening, slip, aperture, pressure and tractions along each fracture
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
   probes     pressure, displacement and stress at the probe points
-  view       the deformed body, drawn by pyvista (PNG only)
+  view       the deformed body, its displacements drawn larger than they are
+
+A figure whose files are there and would come out the same is not drawn again.
 
 example:
   ./wingcrack plot out/wing_crack --times 0.5h,20h,40h --only maps,fractures

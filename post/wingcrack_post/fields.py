@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import logging
 import re
-import warnings
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from wingcrack_post.errors import EnvironmentLacksError, RunError
+from wingcrack_post.errors import RunError
 from wingcrack_post.table import FloatArray
-
-IntArray = npt.NDArray[np.int64]
+from wingcrack_post.vtu import Grid, IntArray, read_vtu
 
 _ROW = re.compile(rb'Name="history_row"[^>]*>(\d+)<')
 _HEAD = 1000  # bytes of a VTU file that hold its row
@@ -45,11 +40,14 @@ class MatrixField:
         Nodes of each cell, from 0.
     cell : dict of str to array
         Cell data by name, first axis of length m.
+    nodal : dict of str to array
+        Point data by name, first axis of length n.
     """
 
     points: FloatArray
     triangles: IntArray
     cell: dict[str, FloatArray]
+    nodal: dict[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -105,71 +103,30 @@ def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
 
 def read_matrix(path: Path) -> MatrixField:
     """Read a file of the matrix series: triangles, of six-node ones the corners."""
-    return matrix_field(read_grid(path), path)
-
-
-def matrix_field(mesh: Any, path: Path) -> MatrixField:
-    """Take the rock out of a pyvista mesh; `path` is for error messages."""
-    if mesh.n_cells > 0 and mesh.celltypes[0] == _QUADRATIC_TRIANGLE:
-        triangles = _cells(mesh, path, _QUADRATIC_TRIANGLE, 6, "six-node triangles")[:, :3]
+    grid = read_vtu(path)
+    if grid.kinds.size > 0 and grid.kinds[0] == _QUADRATIC_TRIANGLE:
+        triangles = _cells(grid, path, _QUADRATIC_TRIANGLE, 6, "six-node triangles")[:, :3]
     else:
-        triangles = _cells(mesh, path, _TRIANGLE, 3, "triangles")
-    cell = {name: np.asarray(array, dtype=float) for name, array in mesh.cell_data.items()}
-    return MatrixField(np.asarray(mesh.points, dtype=float)[:, :2], triangles, cell)
+        triangles = _cells(grid, path, _TRIANGLE, 3, "triangles")
+    return MatrixField(grid.points[:, :2], triangles, grid.cell, grid.point)
 
 
 def read_fractures(path: Path) -> FractureField:
     """Read a file of the fracture series, which holds lines only."""
-    return fracture_field(read_grid(path), path)
-
-
-def fracture_field(mesh: Any, path: Path) -> FractureField:
-    """Take the fractures out of a pyvista mesh; `path` is for error messages."""
-    points = np.asarray(mesh.points, dtype=float)[:, :2]
-    if mesh.n_cells == 0:
+    grid = read_vtu(path)
+    if grid.kinds.size == 0:
         return FractureField(np.empty((0, 2, 2)), np.empty(0, dtype=np.int64))
-    lines = _cells(mesh, path, _LINE, 2, "lines")
-    return FractureField(points[lines], cell_values(mesh, path, "state").astype(np.int64))
+    lines = _cells(grid, path, _LINE, 2, "lines")
+    if "state" not in grid.cell:
+        raise RunError(f"{path}: the cell data 'state' is missing.")
+    return FractureField(grid.points[:, :2][lines], grid.cell["state"].astype(np.int64))
 
 
-def cell_values(mesh: Any, path: Path, name: str) -> FloatArray:
-    """Take cell data from a pyvista mesh; `path` is for error messages."""
-    if name not in mesh.cell_data:
-        raise RunError(f"{path}: the cell data '{name}' is missing.")
-    return np.asarray(mesh.cell_data[name], dtype=float)
-
-
-def load_pyvista() -> Any:
-    """Import pyvista late: it takes longer than all the rest together."""
-    try:
-        import pyvista
-    except ImportError as reason:
-        raise EnvironmentLacksError(f"pyvista cannot be used here ({reason})") from None
-    return pyvista
-
-
-def read_grid(path: Path) -> Any:
-    """Read a VTU file with pyvista."""
-    if not path.is_file():
-        raise RunError(f"{path}: the file is missing, though its PVD collection names it.")
-    pyvista = load_pyvista()
-    level = logging.root.manager.disable
-    logging.disable(logging.ERROR)  # else a damaged file brings pages of VTK's own errors
-    try:
-        with pyvista.vtk_verbosity("off"), warnings.catch_warnings():
-            # VTK gives an empty mesh for a damaged file, pyvista warns about it
-            warnings.filterwarnings("error", message="The VTK reader", category=UserWarning)
-            return pyvista.read(path)
-    except Exception as reason:  # VTK raises many kinds; all mean an unreadable file
-        first_line = str(reason).splitlines()[0] if str(reason) else type(reason).__name__
-        raise RunError(f"{path}: the file is damaged ({first_line.rstrip('.:')}).") from None
-    finally:
-        logging.disable(level)
-
-
-def _cells(mesh: Any, path: Path, kind: int, nodes: int, name: str) -> IntArray:
-    if mesh.n_cells == 0:
+def _cells(grid: Grid, path: Path, kind: int, nodes: int, name: str) -> IntArray:
+    if grid.kinds.size == 0:
         raise RunError(f"{path}: the file has no cells.")
-    if not np.all(np.asarray(mesh.celltypes) == kind):
+    if not np.all(grid.kinds == kind):
         raise RunError(f"{path}: cells other than {name} were found.")
-    return np.asarray(mesh.cell_connectivity, dtype=np.int64).reshape(-1, nodes)
+    if grid.connectivity.size != nodes * grid.kinds.size:
+        raise RunError(f"{path}: the file is damaged (its cells have not {nodes} nodes each).")
+    return grid.connectivity.reshape(-1, nodes)

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
+import gc
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
-
-from wingcrack_post import style
+from wingcrack_post.arguments import FORMATS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError
-from wingcrack_post.history import balance, development, intensities
-from wingcrack_post.load import load_figure
-from wingcrack_post.maps import pressure_maps
-from wingcrack_post.network import network_figure
-from wingcrack_post.probes import probe_histories
-from wingcrack_post.profiles import fracture_profiles
-from wingcrack_post.read import Run
-from wingcrack_post.story import story
-from wingcrack_post.stress import stress_maps
-from wingcrack_post.view import draw_view
-from wingcrack_post.wells import well_histories
+from wingcrack_post.read import Run, read_run
+from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -33,66 +28,108 @@ class Outcome:
     name : str
         Name of the figure, the stem of its files (for profiles: of the first part of them).
     files : tuple of Path
-        What was written; empty if it was left out.
+        What was written, or was there and is still true; empty if it was left out.
     reason : str
         Why it was left out, else empty.
     lacking : bool
         Whether it was left out as this machine lacks something.
+    unchanged : bool
+        Whether nothing had to be drawn.
     """
 
     name: str
     files: tuple[Path, ...]
     reason: str = ""
     lacking: bool = False
+    unchanged: bool = False
 
 
 @dataclass(frozen=True)
 class _Figures:
+    """A figure, or several of a kind.
+
+    Attributes
+    ----------
+    group, name : str
+    maker : str
+        Module and function, loaded when there is something to draw: the libraries take long.
+    of_fields : bool
+        Whether it needs the VTU files, and takes the wanted times.
+    several : bool
+        Whether the function gives pairs of a label and a figure, and takes the wanted times.
+    """
+
     group: str
     name: str
-    draw: Callable[[Run, Sequence[float]], Iterator[tuple[str, Figure]]]
+    maker: str
+    of_fields: bool = False
+    several: bool = False
+
+    def draw(self, run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
+        """Give each figure with its label."""
+        module, _, function = self.maker.partition(":")
+        make: Callable[..., Any] = getattr(import_module(f"wingcrack_post.{module}"), function)
+        if self.several:
+            yield from make(run, times_s)
+        elif self.of_fields:
+            yield "", make(run, times_s)
+        else:
+            yield "", make(run)
 
 
-def _one(
-    function: Callable[..., Figure], *, timed: bool = False
-) -> Callable[..., Iterator[tuple[str, Figure]]]:
-    def draw(run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
-        yield "", function(run, times_s) if timed else function(run)
-
-    return draw
-
+_MANY = 16  # files of figures of a kind, after which what is left of them is tidied up
 
 _FIGURES = (
-    _Figures("story", "story", _one(story)),
-    _Figures("network", "network", _one(network_figure)),
-    _Figures("maps", "pressure_maps", _one(pressure_maps, timed=True)),
-    _Figures("maps", "stress_maps", _one(stress_maps, timed=True)),
-    _Figures("fractures", "fracture", fracture_profiles),
-    _Figures("tips", "intensities", _one(intensities)),
-    _Figures("tips", "load", _one(load_figure)),
-    _Figures("tips", "development", _one(development)),
-    _Figures("tips", "balance", _one(balance)),
-    _Figures("wells", "wells", _one(well_histories)),
-    _Figures("probes", "probes", _one(probe_histories)),
+    _Figures("story", "story", "story:story"),
+    _Figures("network", "network", "network:network_figure"),
+    _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True),
+    _Figures("maps", "stress_maps", "stress:stress_maps", of_fields=True),
+    _Figures("fractures", "fracture", "profiles:fracture_profiles", several=True),
+    _Figures("tips", "intensities", "history:intensities"),
+    _Figures("tips", "load", "load:load_figure"),
+    _Figures("tips", "development", "history:development"),
+    _Figures("tips", "balance", "history:balance"),
+    _Figures("wells", "wells", "wells:well_histories"),
+    _Figures("probes", "probes", "probes:probe_histories"),
+    _Figures("view", "view", "view:view", of_fields=True),
 )
 
 
 def draw_figures(
-    run: Run,
+    directory: Path,
     only: Sequence[str],
-    formats: Sequence[str] = style.FORMATS,
+    formats: Sequence[str] = FORMATS,
     times_s: Sequence[float] = (),
 ) -> Iterator[Outcome]:
     """Draw the figures of the named groups into ``figures`` in the run's directory.
 
-    Yields an outcome per figure as soon as it is known. Damaged files raise `RunError`.
+    Those whose files are there and would come out the same are not drawn again. Yields an outcome
+    per figure as soon as it is known. Damaged files raise `RunError`.
     """
-    folder = run.directory / "figures"
+    # fingerprints come before what they are of is read: what changes in between is drawn again
+    tables = tables_of(directory) if directory.is_dir() else ""
+    run = read_run(directory)
+    record = Drawn(directory / "figures")
+    way = [program(), tables, str(directory.resolve()), repr(tuple(formats)), repr(tuple(times_s))]
+    fields: str | None = None
     for figures in _FIGURES:
-        if figures.group in only:
-            yield _drawn(run, figures, folder, formats, times_s)
-    if "view" in only:
-        yield _viewed(run, folder / "view.png", formats, times_s)
+        if figures.group not in only:
+            continue
+        if figures.of_fields and fields is None:
+            fields = fields_of(s.path for s in (*run.matrix, *run.fracture_fields))
+        used = [*way, fields or ""] if figures.of_fields else way
+        known = "" if figures.of_fields and not fields else fingerprint_of(used)
+        found = record.find(figures.name, known)
+        if found is not None:
+            yield Outcome(figures.name, tuple(found[0]), found[1], unchanged=True)
+            continue
+        record.forget(figures.name)
+        # what needs no fields does not get them, so that it cannot come to depend on them
+        given = run if figures.of_fields else replace(run, matrix=(), fracture_fields=())
+        outcome = _drawn(given, figures, directory / "figures", formats, times_s)
+        if not outcome.lacking:
+            record.note(figures.name, known, outcome.files, outcome.reason)
+        yield outcome
 
 
 def _drawn(
@@ -101,21 +138,15 @@ def _drawn(
     files: list[Path] = []
     try:
         for label, figure in figures.draw(run, times_s):
+            from wingcrack_post.style import save
+
             name = f"{figures.name}_{label}" if label else figures.name
-            files += style.save(figure, folder / re.sub(r"[^\w.-]+", "_", name), formats)
+            files += save(figure, folder / re.sub(r"[^\w.-]+", "_", name), formats)
+            del figure
+            if len(files) % _MANY == 0:
+                gc.collect()  # a figure refers to itself
     except AbsentError as reason:
         return Outcome(figures.name, tuple(files), str(reason))
     except EnvironmentLacksError as reason:
         return Outcome(figures.name, tuple(files), str(reason), lacking=True)
     return Outcome(figures.name, tuple(files))
-
-
-def _viewed(run: Run, target: Path, formats: Sequence[str], times_s: Sequence[float]) -> Outcome:
-    if "png" not in formats:
-        return Outcome("view", (), "the view is drawn as PNG only")
-    try:
-        return Outcome("view", (draw_view(run, target, times_s[-1] if times_s else None),))
-    except AbsentError as reason:
-        return Outcome("view", (), str(reason))
-    except EnvironmentLacksError as reason:
-        return Outcome("view", (), str(reason), lacking=True)

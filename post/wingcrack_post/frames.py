@@ -69,18 +69,35 @@ def read_frames(
     AbsentError
         If the run wrote no VTU files.
     """
-    if not run.matrix:
-        raise AbsentError("the run has no matrix.pvd (VTU output off, or no step written yet)")
+    written, rows = written_states(run)
     first = read_matrix(run.matrix[0].path)
     check(first)
-    written = [snapshot.time_s for snapshot in run.matrix]
     frames = []
-    rows = [snapshot.row for snapshot in run.matrix]
     for place in select_states(run, written, count, wanted, rows=rows, since_growth=since_growth):
-        matrix = first if place == 0 else read_matrix(run.matrix[place].path)
-        check(matrix)
-        frames.append(Frame(written[place], rows[place], matrix, _fractures(run, place)))
+        frame = read_frame(run, place, first if place == 0 else None)
+        check(frame.matrix)
+        frames.append(frame)
     return frames
+
+
+def written_states(run: Run) -> tuple[list[float], list[int | None]]:
+    """Moments of the written VTU files and their rows of history.csv, from 0, where known.
+
+    Raises
+    ------
+    AbsentError
+        If the run wrote none.
+    """
+    if not run.matrix:
+        raise AbsentError("the run has no matrix.pvd (VTU output off, or no step written yet)")
+    return [snapshot.time_s for snapshot in run.matrix], [snapshot.row for snapshot in run.matrix]
+
+
+def read_frame(run: Run, place: int, matrix: MatrixField | None = None) -> Frame:
+    """Read a written state by its place in the series; its rock may have been read before."""
+    snapshot = run.matrix[place]
+    rock = read_matrix(snapshot.path) if matrix is None else matrix
+    return Frame(snapshot.time_s, snapshot.row, rock, _fractures(run, place))
 
 
 def _fractures(run: Run, place: int) -> FractureField | None:
@@ -116,6 +133,16 @@ def zoom_window(body: Window, fractures: Sequence[FractureField | None]) -> Wind
     x = float(np.clip((lower[0] + upper[0]) / 2, body.x_min + half_x, body.x_max - half_x))
     y = float(np.clip((lower[1] + upper[1]) / 2, body.y_min + half_y, body.y_max - half_y))
     return Window(x - half_x, x + half_x, y - half_y, y + half_y)
+
+
+def value_scale(fields: Sequence[FloatArray]) -> Normalize:
+    """One scale for all values; around a uniform field, too."""
+    values = np.concatenate(fields)
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if high - low <= 1e-6 * max(abs(low), abs(high), 1e-12):
+        margin = max(0.01 * abs(low), 1e-6)
+        low, high = low - margin, high + margin
+    return Normalize(low, high)
 
 
 def usual_limit(matrix: MatrixField, values: FloatArray, view: Window) -> float:

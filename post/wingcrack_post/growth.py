@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from wingcrack_post.errors import RunError
-from wingcrack_post.fields import IntArray
 from wingcrack_post.table import FloatArray
+from wingcrack_post.vtu import IntArray
 
 _SAME = 1.0e-9  # relative difference of arc lengths that are equal
 

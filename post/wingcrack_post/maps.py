@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
@@ -16,13 +14,13 @@ from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.fields import MatrixField
 from wingcrack_post.frames import (
-    Frame,
     Window,
     draw_field,
     draw_fractures,
     extent,
     read_frames,
     set_window,
+    value_scale,
     zoom_window,
 )
 from wingcrack_post.load import moment_label
@@ -55,7 +53,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check)
     body = extent([frame.matrix for frame in frames])
     zoom = zoom_window(body, [frame.fractures for frame in frames])
-    norm = _pressure_scale(frames)
+    norm = value_scale([MEGAPASCAL.of(frame.matrix.cell["pressure"]) for frame in frames])
     unit = run_length_unit(run)
     columns = min(PANELS_PER_ROW, len(frames))
     bands = -(-len(frames) // columns)
@@ -106,15 +104,6 @@ def _title(run: Run, moment: float) -> str:
     """When the state holds, and what the well does then."""
     mark = well_mark(run, moment)
     return f"{moment_label(run, moment)}, {mark}" if mark else moment_label(run, moment)
-
-
-def _pressure_scale(frames: Sequence[Frame]) -> Normalize:
-    values = np.concatenate([MEGAPASCAL.of(frame.matrix.cell["pressure"]) for frame in frames])
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    if high - low <= 1e-6 * max(abs(low), abs(high), 1e-12):  # a uniform field: a scale around it
-        margin = max(0.01 * abs(low), 1e-6)
-        low, high = low - margin, high + margin
-    return Normalize(low, high)
 
 
 def _panels(columns: int, bands: int, views: Sequence[Window]) -> tuple[Figure, list[list[Axes]]]:

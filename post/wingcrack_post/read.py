@@ -11,6 +11,7 @@ from wingcrack_post.errors import AbsentError, RunError
 from wingcrack_post.fields import Snapshot, read_series
 from wingcrack_post.scene import Scene, read_scene
 from wingcrack_post.table import Table, read_table
+from wingcrack_post.unchanged import MEASURED
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def read_run(directory: str | Path) -> Run:
         wells=_optional_table(root / "wells.csv"),
         events=_optional_table(root / "events.csv"),
         slip_events=_optional_table(root / "slip_events.csv"),
-        record=_optional_json(root / "run.json"),
+        record=_without_measures(_optional_json(root / "run.json")),
         network=_optional_json(root / "network.json"),
         scene=read_scene(root / "scene.nml"),
         matrix=read_series(root / "matrix.pvd"),
@@ -136,3 +137,10 @@ def _optional_json(path: Path) -> dict[str, Any] | None:
     if not isinstance(content, dict):
         raise RunError(f"{path}: a JSON object was expected.")
     return content
+
+
+def _without_measures(record: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Leave out of run.json what says nothing of the scene: a second run gives the same figures."""
+    if record is None:
+        return None
+    return {name: value for name, value in record.items() if name not in MEASURED}

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patches import Patch, Polygon
 
 from wingcrack_post.table import FloatArray
 from wingcrack_post.units import Unit
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
 
 _CURVE_PIECES = 200
 _EDGE = "#777777"
@@ -108,6 +110,8 @@ def draw_regions(
 
     Gives the entries of a legend. Regions that conduct worse are hatched too, for grey print.
     """
+    from matplotlib.patches import Patch, Polygon  # late: a scene is read without them
+
     handles = []
     for region in regions:
         look = _look(region, rock_m2)

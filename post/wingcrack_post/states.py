@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from wingcrack_post.errors import RunError
-from wingcrack_post.fields import IntArray
 from wingcrack_post.read import Run
 from wingcrack_post.table import FloatArray
+from wingcrack_post.vtu import IntArray
 
 _GROWTH = ("growth", "unstable_growth")  # kinds of events
 _LONGER = 1.0 + 1.0e-9

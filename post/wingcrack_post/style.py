@@ -16,6 +16,9 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack_post.fonts import fall_back, small_fonts
+from wingcrack_post.twin import draw_twins
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -82,6 +85,7 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def within(*args: P.args, **kwargs: P.kwargs) -> R:
+        small_fonts()
         with matplotlib.rc_context(RC):
             return function(*args, **kwargs)
 
@@ -160,22 +164,16 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     gives the same bytes.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
-    engine = figure.get_layout_engine()
-    if engine is not None:
-        engine.execute(figure)  # once for all formats: with an engine left, each is drawn twice
-    with matplotlib.rc_context({"figure.constrained_layout.use": False}):
-        figure.set_layout_engine(None)
-        return [_written(figure, stem, form) for form in formats]
-
-
-def _written(figure: Figure, stem: Path, form: str) -> Path:
-    """Write a figure that is laid out in one format."""
-    target = stem.with_name(f"{stem.name}.{form}")
-    aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
-    metadata = {"CreationDate": None} if form == "pdf" else {"Software": None}
+    aside = {form: stem.with_name(f".{stem.name}.{os.getpid()}.{form}") for form in FORMATS}
+    fall_back(figure)
+    written = []
     try:
-        figure.savefig(aside, format=form, metadata=metadata)
-        aside.replace(target)
+        draw_twins(figure, aside["png"], aside["pdf"], RC["savefig.dpi"])
+        for form in formats:
+            target = stem.with_name(f"{stem.name}.{form}")
+            aside[form].replace(target)
+            written.append(target)
     finally:
-        aside.unlink(missing_ok=True)
-    return target
+        for file in aside.values():
+            file.unlink(missing_ok=True)
+    return written

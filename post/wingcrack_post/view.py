@@ -1,86 +1,197 @@
-"""The pyvista view of a run, drawn by a child process.
-
-VTK ends the whole process where it finds no OpenGL. With the picture made in a child, a machine
-without OpenGL lacks the view and not the other figures.
-"""
+"""The deformed body with its fractures, its displacements drawn larger than they are."""
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import replace
 
-from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
-from wingcrack_post.fields import nearest
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from wingcrack_post import style
+from wingcrack_post.errors import RunError
+from wingcrack_post.fields import FractureField, MatrixField, nearest
+from wingcrack_post.frames import (
+    Frame,
+    Window,
+    draw_fractures,
+    extent,
+    read_frame,
+    usual_limit,
+    value_scale,
+    written_states,
+    zoom_window,
+)
+from wingcrack_post.load import moment_label
 from wingcrack_post.read import Run
 from wingcrack_post.states import last_settled
+from wingcrack_post.stress import MEAN_COLOURS, mean_stress
+from wingcrack_post.table import FloatArray
+from wingcrack_post.units import MEGAPASCAL, METRE, stress_unit
 
-SECONDS_ALLOWED = 300
-BAD_INPUT, LACKING = 2, 3  # exit status of the child, as the command line's own
-_UNEXPECTED = 1  # what Python gives for an exception that nobody catches
+WARP_SHARE = 0.03  # the largest displacement is drawn as this share of the body's width
+_MARGIN = 0.04  # of the body's size around it
 
 
-def draw_view(run: Run, target: Path, time_s: float | None = None) -> Path:
-    """Draw the body at the written time nearest to `time_s` into `target`.
+@style.styled
+def view(run: Run, wanted: Sequence[float] = ()) -> Figure:
+    """Draw the deformed body, and beside it (where fractures are small) what is near them.
 
-    Without a time it is the last written one that is in no short step after growth.
+    Parameters
+    ----------
+    run : Run
+    wanted : sequence of float
+        Moments, in the unit of the tables; the written state nearest to the last of them is drawn.
+        Default: the last one that is in no short step after growth.
 
     Raises
     ------
     AbsentError
         If the run wrote no VTU files.
-    EnvironmentLacksError
-        If there is no OpenGL here.
     RunError
         If a VTU file is damaged.
     """
-    if not run.matrix:
-        raise AbsentError("the run has no matrix.pvd (VTU output off, or no step written yet)")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    aside = target.with_name(f".{target.stem}.{os.getpid()}.png")
-    if time_s is None:
-        written = [snapshot.time_s for snapshot in run.matrix]
-        place = last_settled(run, written, [snapshot.row for snapshot in run.matrix])
+    written, rows = written_states(run)
+    if wanted:
+        place = run.matrix.index(nearest(run.matrix, wanted[-1]))
     else:
-        place = run.matrix.index(nearest(run.matrix, time_s))
-    try:
-        done = _call_child(run.directory, aside, place)
-        said = (done.stderr.strip().splitlines() or ["it gave no reason"])[-1]
-        if done.returncode == BAD_INPUT:
-            raise RunError(said)
-        if done.returncode in (LACKING, _UNEXPECTED):
-            raise EnvironmentLacksError(f"the view could not be drawn ({said})")
-        if done.returncode != 0 or not aside.is_file():
-            raise EnvironmentLacksError(
-                "no OpenGL was found for the view; the package libegl1 (or libosmesa6) gives it"
-            )
-        aside.replace(target)
-    except subprocess.TimeoutExpired:
-        raise EnvironmentLacksError(
-            f"the view was given up after {SECONDS_ALLOWED} s of rendering"
-        ) from None
-    finally:
-        aside.unlink(missing_ok=True)
-    return target
-
-
-def _call_child(directory: Path, aside: Path, place: int) -> subprocess.CompletedProcess[str]:
-    package_root = str(Path(__file__).resolve().parents[1])
-    paths = [package_root, *filter(None, [os.environ.get("PYTHONPATH")])]
-    environment = {
-        # EGL needs no display; left to itself VTK first tries X, and warns
-        "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow",
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join(paths),
-    }
-    # -P: no module comes from the folder where the user happens to be
-    command = [sys.executable, "-P", "-m", "wingcrack_post.render"]
-    return subprocess.run(
-        [*command, str(directory), str(aside), str(place)],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=SECONDS_ALLOWED,
-        check=False,
+        place = last_settled(run, written, rows)
+    frame = read_frame(run, place)
+    quantity, values, norm, colours = _quantity(frame.matrix, run.matrix[place].path.name)
+    displacement = _nodal_displacement(frame.matrix, run.matrix[place].path.name)
+    factor = _factor(frame.matrix, displacement)
+    body = replace(frame.matrix, points=frame.matrix.points + factor * displacement)
+    fractures = _moved(frame, displacement, factor)
+    whole = extent([body])
+    zoom = zoom_window(whole, [fractures])
+    views = [whole] if zoom is None else [whole, zoom]
+    figure, panels = _panels(views)
+    for axes, shown in zip(panels, views, strict=True):
+        _draw_body(axes, body, values, norm, colours, close=shown is zoom)
+        draw_fractures(axes, fractures, 2.4 if shown is not whole else 1.8, METRE)
+    _frame(panels[0], whole, _MARGIN)
+    if zoom is not None:
+        _frame(panels[1], zoom, 0.0)
+    moment = moment_label(run, frame.moment, frame.row)
+    title = f"{run.name}, {moment}, displacements × {factor:.3g}"  # noqa: RUF001
+    figure.suptitle(title, x=0.02, ha="left", fontsize=style.RC["axes.titlesize"])
+    bar = figure.colorbar(
+        ScalarMappable(norm, colours),
+        ax=panels,
+        location="bottom",
+        shrink=0.6,
+        aspect=30,
+        pad=0.02,
+        extend="neither" if "pressure" in frame.matrix.cell else "both",
     )
+    bar.set_label(quantity)
+    if fractures is not None:
+        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+    return figure
+
+
+def _quantity(matrix: MatrixField, file: str) -> tuple[str, FloatArray, Normalize, Colormap | str]:
+    """What colours the body: its name with the unit, values, their scale, colours."""
+    if "pressure" in matrix.cell:
+        values = MEGAPASCAL.of(matrix.cell["pressure"])
+        return "pore pressure [MPa]", values, value_scale([values]), style.FIELD_COLOURS
+    if "stress" not in matrix.cell:
+        raise RunError(f"{file}: the cell data 'stress' is missing.")
+    stress = mean_stress(matrix)
+    limit = usual_limit(matrix, stress, extent([matrix])) or 1.0
+    unit = stress_unit(limit)
+    top = float(unit.of(limit))
+    name = f"mean in-plane stress [{unit.name}]"
+    return name, unit.of(stress), Normalize(-top, top), MEAN_COLOURS
+
+
+def _nodal_displacement(matrix: MatrixField, file: str) -> FloatArray:
+    """Displacement of each node [m]: as written, or the mean of the cells around it."""
+    if "nodal_displacement" in matrix.nodal:
+        return matrix.nodal["nodal_displacement"][:, :2]
+    if "displacement" not in matrix.cell:
+        raise RunError(f"{file}: the cell data 'displacement' is missing.")
+    nodes = matrix.triangles.ravel()
+    count = np.bincount(nodes, minlength=len(matrix.points))
+    of_corners = np.repeat(matrix.cell["displacement"][:, :2], 3, axis=0)
+    sums = [np.bincount(nodes, of_corners[:, k], len(matrix.points)) for k in (0, 1)]
+    return np.column_stack(sums) / np.maximum(count, 1)[:, None]
+
+
+def _factor(matrix: MatrixField, displacement: FloatArray) -> float:
+    """How much larger than in truth displacements are drawn."""
+    largest = float(np.linalg.norm(displacement, axis=1).max())
+    width = float(np.ptp(matrix.points[:, 0]))
+    return WARP_SHARE * width / largest if largest > 0.0 else 0.0
+
+
+def _moved(frame: Frame, displacement: FloatArray, factor: float) -> FractureField | None:
+    """Fractures moved with the body; None without any."""
+    found = frame.fractures
+    if found is None or not len(found.segments):
+        return None
+    corners = np.unique(frame.matrix.triangles)
+    ends, back = np.unique(found.segments.reshape(-1, 2), axis=0, return_inverse=True)
+    moved = displacement_at(ends, frame.matrix.points[corners], displacement[corners])
+    shift = factor * moved[back.ravel()].reshape(found.segments.shape)
+    return FractureField(found.segments + shift, found.state)
+
+
+def displacement_at(places: FloatArray, nodes: FloatArray, displacement: FloatArray) -> FloatArray:
+    """Displacement of the body at fracture points: mean of the nodes there, which are split."""
+    same = 1.0e-9 * float(np.ptp(nodes, axis=0).max())
+    means = []
+    for place in places:
+        distance = np.hypot(*(nodes - place).T)
+        means.append(displacement[distance <= distance.min() + same].mean(axis=0))
+    return np.array(means)
+
+
+def _panels(views: Sequence[Window]) -> tuple[Figure, list[Axes]]:
+    width = style.DOUBLE_COLUMN if len(views) > 1 else style.SINGLE_COLUMN + 1.5
+    panel = (width - 0.3) / len(views)
+    height = min(max(panel * window.ratio for window in views), 5.5)
+    figure = style.new_figure(width, height + 1.1)
+    return figure, list(figure.subplots(1, len(views), squeeze=False)[0])
+
+
+def _draw_body(
+    axes: Axes,
+    body: MatrixField,
+    values: FloatArray,
+    norm: Normalize,
+    colours: Colormap | str,
+    *,
+    close: bool,
+) -> None:
+    """One value per triangle; from close by, with the edges of the cells as a hint."""
+    x, y = body.points.T
+    cells = Triangulation(x, y, body.triangles)
+    axes.tripcolor(
+        cells,
+        facecolors=values,
+        norm=norm,
+        cmap=colours,
+        rasterized=True,
+        edgecolors="none",
+        antialiased=False,
+    )
+    if close:
+        axes.triplot(cells, color="white", linewidth=0.3, alpha=0.15, rasterized=True)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+
+
+def _frame(axes: Axes, window: Window, margin: float) -> None:
+    """Show a window; the axes stay unmarked, as places are not where they are in truth."""
+    wide, high = margin * (window.x_max - window.x_min), margin * (window.y_max - window.y_min)
+    axes.set_xlim(window.x_min - wide, window.x_max + wide)
+    axes.set_ylim(window.y_min - high, window.y_max + high)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    for spine in axes.spines.values():
+        spine.set_visible(margin == 0.0)

@@ -52,6 +52,13 @@ typedef struct {
     const int32_t* guide_count; /* [n_guides] points of each, 2 or more */
     const double* guide_xy;     /* [sum of the counts][2] */
     double joint_size; /* cells at the places where fractures meet; 0: as along fractures */
+    int32_t n_foci; /* places away from which cells grow along the fractures, too; 0: they do not */
+    const double* foci; /* [n_foci][2] */
+    double focus_slope; /* growth of sizes per distance from the nearest of them */
+    double focus_size;  /* largest size along fractures that this leads to */
+    int32_t is_rough; /* gmsh's faster triangles, which are smoothed here only: half the time */
+    double ring_slope;  /* growth of sizes per distance beyond three radii of rosettes; 0: as
+                           nearer to them, 0.3 */
 } cm_spec;
 
 typedef struct {

@@ -21,6 +21,9 @@ program test_twolevel_doubt
    real(rk), parameter :: pressure = 6.8e6_rk, friction = 0.5_rk
    real(rk), parameter :: known = (5.0e6_rk - friction*(15.0e6_rk - pressure)) &
                           *sqrt(acos(-1.0_rk)*a)  !< K_II [Pa m^1/2]
+   !> Share of `known` by which K of the body differs from that of an infinite one: a^2 over the
+   !! square of its half-width of 1 m, times less than 1.
+   real(rk), parameter :: finite = a**2
    real(rk), parameter :: usual_toughness = 4.2e5_rk  !< K_eq is 2 % below it [Pa m^1/2]
    type(checks_t) :: checks
    type(timers_t) :: timers
@@ -104,7 +107,8 @@ contains
       call evaluate(simulation)
       associate (now => simulation%tip%intensity)
          call checks%is_true(all(abs(now%k2 - known) < 0.02_rk*known), "K is right then")
-         call checks%is_true(all(abs(now%k2 - known) <= now%k2_error), "within its error")
+         call checks%is_true(all(abs(now%k2 - known) <= now%k2_error + finite*known), &
+                             "within its error")
       end associate
       call improve_windows(simulation, 0.0_rk, any_improved, error)
       call checks%no_error(error, "good windows")

@@ -1,0 +1,152 @@
+!> Paths that a window meshes with fewer vertices: which ones, and that arc lengths stay.
+program test_twolevel_window_path
+   use testing_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use mesh_builder, only: mesh_spec_t
+   use mesh_types, only: fracture_mesh_t, network_t
+   use twolevel_window_path, only: restore_arc_lengths, straighten_far
+   implicit none(type, external)
+
+   integer(ik), parameter :: n = 41  !< vertices of the path, 5 mm apart
+   real(rk), parameter :: step = 0.005_rk  !< [m]
+   type(checks_t) :: checks
+   type(mesh_spec_t) :: spec
+
+   ! A window from 0 to 0.5 m with the tip in its middle, and elements of 5 to 20 mm at fractures.
+   spec%x_min = 0.0_rk
+   spec%x_max = 0.5_rk
+   spec%y_min = 0.0_rk
+   spec%y_max = 0.5_rk
+   spec%size_fracture = step
+   spec%focus_slope = 0.4_rk
+   spec%focus_size = 4.0_rk*step
+   spec%foci = reshape([0.25_rk, 0.25_rk], [2, 1])
+   call test_far_vertices()
+   call test_bends()
+   call test_other_fractures()
+   call test_edge()
+   call test_arc_lengths()
+   call checks%finish()
+
+contains
+
+   !> A path to the tip from the right, lifted by `height` at each second vertex.
+   pure type(network_t) function path(height) result(network)
+      real(rk), intent(in) :: height  !< [m]
+      integer(ik) :: i
+
+      network%first = [1_ik, n + 1_ik]
+      network%s_start = [0.1_rk]
+  network%xy = reshape([(0.25_rk + step*(n - i), 0.25_rk + height*mod(i, 2_ik), i=1, n)], [2_ik, n])
+   end function path
+
+   !> Vertices go where the elements are larger than their distance, and only there.
+   subroutine test_far_vertices()
+      type(network_t) :: simple
+      integer(ik), allocatable :: kept(:)
+      real(rk) :: longest
+      integer(ik) :: i
+
+      call straighten_far(path(0.0_rk), spec, .true., simple, kept)
+      call checks%is_true(kept(1) == 1 .and. kept(size(kept)) == n, "path: its ends stay")
+      call checks%is_true(2*size(kept) < n, "path: many vertices go")
+     call checks%is_true(all(simple%first == [1, size(kept) + 1]), "path: all vertices are counted")
+      longest = 0.0_rk
+      do i = 2, size(kept, kind=ik)
+         longest = max(longest, step*(kept(i) - kept(i - 1)))
+         if (n - kept(i) > 2) cycle
+         call checks%is_true(kept(i) == kept(i - 1) + 1, "path: nothing goes at the tip")
+      end do
+      call checks%is_true(longest <= spec%focus_size*(1.0_rk + 1.0e-12_rk), &
+                          "path: no line is longer than elements there")
+      call checks%is_true(longest >= 3.0_rk*step, "path: lines far away are long")
+   end subroutine test_far_vertices
+
+   !> Vertices that are off the line by more than 0.5 % of the elements stay.
+   subroutine test_bends()
+      type(network_t) :: simple
+      integer(ik), allocatable :: kept(:)
+
+      call straighten_far(path(0.006_rk*spec%focus_size), spec, .true., simple, kept)
+      call checks%is_true(size(kept) == n, "bends: all stay")
+      call straighten_far(path(0.001_rk*step), spec, .true., simple, kept)
+      call checks%is_true(size(kept) < n, "bends: slight ones go")
+   end subroutine test_bends
+
+   !> Where another fracture ends on the path or crosses it, the path stays as it is.
+   subroutine test_other_fractures()
+      type(network_t) :: network, simple
+      integer(ik), allocatable :: kept(:)
+      real(rk) :: x
+      integer(ik) :: k
+
+      x = 0.25_rk + step*(n - 6) - 0.3_rk*step  ! between vertices 6 and 7
+      do k = 1, 2
+         network = path(0.0_rk)
+         network%first = [1_ik, n + 1_ik, n + 3_ik]
+         network%s_start = [0.1_rk, 0.0_rk]
+         network%xy = reshape([network%xy, x, merge(0.25_rk, 0.2_rk, k == 1), x, 0.3_rk], &
+                              [2_ik, n + 2_ik])
+         call straighten_far(network, spec, .true., simple, kept)
+         call checks%is_true(all([any(kept == 6), any(kept == 7)]), "joint: its segment stays")
+         call checks%is_true(all(kept(size(kept) - 1:) == [n + 1, n + 2]), "joint: the other stays")
+         call checks%is_true(size(kept) < n, "joint: elsewhere vertices go")
+      end do
+   end subroutine test_other_fractures
+
+   !> Where the path leaves the window it stays as it is: displacements there are told apart by
+   !! side.
+   subroutine test_edge()
+      type(network_t) :: network, simple
+      integer(ik), allocatable :: kept(:)
+      integer(ik) :: i
+
+      network = path(0.0_rk)
+      spec%x_max = 0.25_rk + step*(n - 6) - 0.3_rk*step
+      call straighten_far(network, spec, .false., simple, kept)
+      call checks%is_true(all([any(kept == 6), any(kept == 7)]), "edge: what crosses it stays")
+      call checks%is_true(any([(.not. any(kept == i), i=1, 5)]), "edge: outside vertices go")
+      spec%x_max = 0.5_rk
+   end subroutine test_edge
+
+   !> Fracture cells of the simple path have the arc lengths of the whole one: exactly at vertices,
+   !! and in proportion between them.
+   subroutine test_arc_lengths()
+      type(network_t) :: network, simple
+      type(fracture_mesh_t) :: fractures
+      integer(ik), allocatable :: kept(:)
+      real(rk) :: lengths(n), simple_s
+      integer(ik) :: i
+
+      network = path(0.002_rk*spec%focus_size)
+      lengths(1) = 0.1_rk
+      do i = 2, n
+         lengths(i) = lengths(i - 1) + norm2(network%xy(:, i) - network%xy(:, i - 1))
+      end do
+      call straighten_far(network, spec, .true., simple, kept)
+      call checks%is_true(size(kept) < n, "arc lengths: vertices go")
+      ! Two cells between each two vertices.
+      fractures%n_cells = 2*(size(kept, kind=ik) - 1)
+      allocate (fractures%cell_fracture(fractures%n_cells), source=1_ik)
+      allocate (fractures%cell_s(2, fractures%n_cells))
+      simple_s = 0.1_rk
+      do i = 1, size(kept, kind=ik) - 1
+         associate (length => norm2(simple%xy(:, i + 1) - simple%xy(:, i)))
+            fractures%cell_s(:, 2*i - 1) = simple_s + [0.0_rk, 0.3_rk]*length
+            fractures%cell_s(:, 2*i) = simple_s + [0.3_rk, 1.0_rk]*length
+            simple_s = simple_s + length
+         end associate
+      end do
+      call restore_arc_lengths(network, simple, kept, fractures)
+      do i = 1, size(kept, kind=ik) - 1
+         associate (whole => lengths(kept(i:i + 1)), s => fractures%cell_s(:, 2*i - 1:2*i))
+            call checks%is_close(s(1, 1), whole(1), 1.0e-14_rk, "arc lengths: start")
+            call checks%is_close(s(2, 2), whole(2), 1.0e-14_rk, "arc lengths: end")
+            call checks%is_close(s(2, 1), whole(1) + 0.3_rk*(whole(2) - whole(1)), 1.0e-14_rk, &
+                                 "arc lengths: between")
+            call checks%is_close(s(1, 2), s(2, 1), 1.0e-14_rk, "arc lengths: cells touch")
+         end associate
+      end do
+   end subroutine test_arc_lengths
+
+end program test_twolevel_window_path

@@ -1,0 +1,156 @@
+!> Fractures as a window meshes them: each vertex of a path is a node of its mesh, and paths that
+!! have grown have one every few millimetres. Far from the tips that the window is for, where its
+!! elements are larger than that, vertices that lie almost on a straight line are left out.
+!!
+!! What is left out changes neither joints nor where fractures cross the window's edge, and places
+!! along the fractures keep their arc lengths: the coarse level knows them by these.
+module twolevel_window_path
+   use base_kinds, only: ik, rk
+   use base_plane, only: crosses, point_distance
+   use mesh_builder, only: mesh_spec_t
+   use mesh_types, only: fracture_mesh_t, network_t
+   implicit none(type, external)
+   private
+
+   public :: restore_arc_lengths, straighten_far
+
+   !> A vertex that is left out is no farther from the line than this share of the elements there.
+   real(rk), parameter :: straight = 0.005_rk
+
+contains
+
+   !> The network without the vertices that the window does not need.
+   pure subroutine straighten_far(network, spec, is_body, simple, kept)
+      type(network_t), intent(in) :: network
+      type(mesh_spec_t), intent(in) :: spec  !< its foci and sizes
+      logical, intent(in) :: is_body  !< the window has no edge that fractures cross
+      type(network_t), intent(out) :: simple
+      integer(ik), allocatable, intent(out) :: kept(:)  !< (vertices of simple) those of the network
+      logical :: keeps(size(network%xy, 2))
+      integer(ik) :: f, last, v
+
+      keeps = .true.
+      do f = 1, size(network%first, kind=ik) - 1
+         last = network%first(f)
+         do v = last + 1, network%first(f + 1) - 2
+            keeps(v) = .not. is_dispensable(network, spec, is_body, f, last, v)
+            if (keeps(v)) last = v
+         end do
+      end do
+      kept = pack([(v, v=1, size(keeps, kind=ik))], keeps)
+      simple = network
+      simple%xy = network%xy(:, kept)
+      do f = 1, size(network%first, kind=ik)
+         simple%first(f) = 1 + count(keeps(:network%first(f) - 1), kind=ik)
+      end do
+   end subroutine straighten_far
+
+   !> A straight line from the vertex `last` to the one after v would do.
+   pure logical function is_dispensable(network, spec, is_body, fracture, last, v)
+      type(network_t), intent(in) :: network
+      type(mesh_spec_t), intent(in) :: spec
+      logical, intent(in) :: is_body
+      integer(ik), intent(in) :: fracture, last, v
+      real(rk) :: chord(2, 2), element, from_focus, length
+      integer(ik) :: i
+
+      is_dispensable = .false.
+      chord = network%xy(:, [last, v + 1])
+      length = norm2(chord(:, 2) - chord(:, 1))
+      from_focus = huge(1.0_rk)
+      do i = 1, size(spec%foci, 2, kind=ik)
+         from_focus = min(from_focus, point_distance(spec%foci(:, i), chord))
+      end do
+      element = min(spec%size_fracture + spec%focus_slope*from_focus, spec%focus_size)
+      if (length > min(element, from_focus)) return
+      do i = last + 1, v
+         if (point_distance(network%xy(:, i), chord) > straight*element) return
+      end do
+      if (.not. is_body) then
+         if (crosses_edge(spec, chord, straight*element)) return
+      end if
+      is_dispensable = .not. meets_other(network, fracture, chord, 2.0_rk*straight*element)
+   end function is_dispensable
+
+   !> A line crosses the edge of the window, or comes near to it.
+   pure logical function crosses_edge(spec, line, near)
+      type(mesh_spec_t), intent(in) :: spec
+      real(rk), intent(in) :: line(2, 2)  !< ends [m]
+      real(rk), intent(in) :: near  !< [m]
+      real(rk) :: lower(2), upper(2)
+
+      lower = [spec%x_min, spec%y_min]
+      upper = [spec%x_max, spec%y_max]
+      crosses_edge = .not. (all(minval(line, dim=2) > lower + near) .and. &
+                            all(maxval(line, dim=2) < upper - near))
+      if (.not. crosses_edge) return
+      crosses_edge = .not. (any(maxval(line, dim=2) < lower - near) .or. &
+                            any(minval(line, dim=2) > upper + near))
+   end function crosses_edge
+
+   !> Another fracture comes near to a line, or crosses it.
+   pure logical function meets_other(network, fracture, line, near)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture
+      real(rk), intent(in) :: line(2, 2)  !< ends [m]
+      real(rk), intent(in) :: near  !< [m]
+      real(rk) :: lower(2), other(2, 2), upper(2)
+      integer(ik) :: f, v
+
+      meets_other = .true.
+      lower = minval(line, dim=2) - near
+      upper = maxval(line, dim=2) + near
+      do f = 1, size(network%first, kind=ik) - 1
+         if (f == fracture) cycle
+         do v = network%first(f), network%first(f + 1) - 2
+            other = network%xy(:, v:v + 1)
+            if (any(maxval(other, dim=2) < lower .or. minval(other, dim=2) > upper)) cycle
+            if (crosses(line, other)) return
+            if (min(point_distance(other(:, 1), line), point_distance(other(:, 2), line), &
+                    point_distance(line(:, 1), other), point_distance(line(:, 2), other)) &
+                < near) return
+         end do
+      end do
+      meets_other = .false.
+   end function meets_other
+
+   !> Give the fracture cells the arc lengths that the whole network has at their ends.
+   pure subroutine restore_arc_lengths(network, simple, kept, fractures)
+      type(network_t), intent(in) :: network, simple
+      integer(ik), intent(in) :: kept(:)  !< as straighten_far gives it
+      type(fracture_mesh_t), intent(inout) :: fractures  !< of the mesh of `simple`
+      real(rk) :: whole(size(network%xy, 2)), short(size(simple%xy, 2))
+      integer(ik) :: cell, end, v
+
+      if (size(kept) == size(network%xy, 2)) return
+      whole = arc_lengths(network)
+      short = arc_lengths(simple)
+      do cell = 1, fractures%n_cells
+         associate (f => fractures%cell_fracture(cell), s => fractures%cell_s(:, cell))
+            ! A cell lies between two vertices: the ones around its middle.
+            do v = simple%first(f), simple%first(f + 1) - 3
+               if (0.5_rk*sum(s) < short(v + 1)) exit
+            end do
+            do end = 1, 2
+               s(end) = whole(kept(v)) + (s(end) - short(v)) &
+                        *(whole(kept(v + 1)) - whole(kept(v)))/(short(v + 1) - short(v))
+            end do
+         end associate
+      end do
+   end subroutine restore_arc_lengths
+
+   !> Of all vertices [m].
+   pure function arc_lengths(network) result(s)
+      type(network_t), intent(in) :: network
+      real(rk) :: s(size(network%xy, 2))
+      integer(ik) :: f, v
+
+      do f = 1, size(network%first, kind=ik) - 1
+         s(network%first(f)) = network%s_start(f)
+         do v = network%first(f) + 1, network%first(f + 1) - 1
+            s(v) = s(v - 1) + norm2(network%xy(:, v) - network%xy(:, v - 1))
+         end do
+      end do
+   end function arc_lengths
+
+end module twolevel_window_path
