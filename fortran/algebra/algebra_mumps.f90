@@ -1,9 +1,9 @@
 !> Sparse systems by MUMPS: analysed once per pattern, factorized once per set of values,
 !! solved many times; on request condensed onto a few unknowns (Schur complement).
 !!
-!! Settings follow measurements on systems of this kind: approximate minimum degree (a better
-!! ordering costs more than it saves below some 500 000 unknowns), 40 % spare workspace. MUMPS
-!! reports an exactly singular matrix only with null-pivot detection, which is therefore on.
+!! Settings follow measurements on systems of this kind (docs/solvers.md): approximate minimum
+!! degree unless the caller gives an order (algebra_ordering), 40 % spare workspace. MUMPS reports
+!! an exactly singular matrix only with null-pivot detection, which is therefore on.
 module algebra_mumps
    use, intrinsic :: iso_fortran_env, only: int64
    use base_errors, only: error_t, raise_error
@@ -56,7 +56,7 @@ contains
    !!
    !! One triangle of the matrix as triplets, or all of one that is not symmetric; entries given
    !! twice are added.
-   subroutine analyse(self, n, row, col, kind, error, schur, ordering)
+   subroutine analyse(self, n, row, col, kind, error, schur, ordering, place)
       class(mumps_t), intent(inout) :: self
       integer(ik), intent(in) :: n  !< number of unknowns
       integer(ik), intent(in) :: row(:), col(:)  !< (n_entries) from 1
@@ -64,6 +64,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
       integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _pord
+      !> (n) instead: the place of each unknown in a given order, those to condense onto last
+      integer(ik), intent(in), optional :: place(:)
 
       call self%release()
       self%id%comm = 0
@@ -78,7 +80,12 @@ contains
       self%id%icntl(6) = 0
       self%id%icntl(7) = mumps_minimum_degree
       if (present(ordering)) self%id%icntl(7) = ordering
-      if (kind == mumps_unsymmetric) self%id%icntl(8) = 0  ! callers scale: MUMPS takes an eighth
+      if (present(place)) then
+         self%id%icntl(7) = 1
+         allocate (self%id%perm_in(n))
+         self%id%perm_in = place
+      end if
+      if (kind /= mumps_definite) self%id%icntl(8) = 0  ! callers scale: MUMPS takes an eighth
       self%id%icntl(14) = 40
       self%id%icntl(24) = 1
       self%id%n = n
@@ -100,14 +107,18 @@ contains
       end if
       self%id%job = 1
       call dmumps(self%id)
+      if (associated(self%id%perm_in)) deallocate (self%id%perm_in)
       call check_status(self, "analysis", error)
    end subroutine analyse
 
    !> Factorize for new values, in the order of the triplets.
-   subroutine factorize(self, values, error)
+   subroutine factorize(self, values, error, schur)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(in) :: values(:)
       type(error_t), allocatable, intent(out) :: error
+      !> (n_schur, n_schur) the Schur complement, full and symmetric. Where this is not given it is
+      !! kept until `get_schur`.
+      real(rk), intent(inout), contiguous, target, optional :: schur(:, :)
       integer :: attempt
 
       if (.not. self%active .or. size(values) /= size(self%id%a)) then
@@ -120,8 +131,13 @@ contains
                           "the matrix has an entry that is not a finite number")
          return
       end if
-      if (self%n_schur > 0 .and. .not. associated(self%id%schur)) then
-         allocate (self%id%schur(int(self%n_schur, int64)**2))
+      if (self%n_schur > 0) then
+         if (present(schur)) then
+            if (associated(self%id%schur)) deallocate (self%id%schur)
+            self%id%schur(1:size(schur, kind=int64)) => schur
+         else if (.not. associated(self%id%schur)) then
+            allocate (self%id%schur(int(self%n_schur, int64)**2))
+         end if
       end if
       do attempt = 1, 3
          self%id%a = values
@@ -130,8 +146,10 @@ contains
          if (self%id%infog(1) /= -9) exit
          self%id%icntl(14) = 2*self%id%icntl(14)  ! more delayed pivots than foreseen
       end do
+      if (present(schur)) nullify (self%id%schur)
       call check_status(self, "factorization", error)
       if (allocated(error)) return
+      if (present(schur)) call complete_lower(schur)
       if (self%id%infog(28) > 0) then
          call raise_error(error, "mumps_t%factorize", "the matrix is singular")
       end if
@@ -140,21 +158,20 @@ contains
    !> Solve for one or more right-hand sides, which are overwritten by the solutions.
    subroutine solve(self, x, error, transposed)
       class(mumps_t), intent(inout) :: self
-      real(rk), intent(inout), contiguous :: x(:, :)  !< (n, n_rhs)
+      real(rk), intent(inout), contiguous, target :: x(:, :)  !< (n, n_rhs)
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: transposed  !< with the transpose of the matrix
 
       self%id%nrhs = size(x, 2)
       self%id%lrhs = size(x, 1)
-      call provide_rhs(self, size(x))
-      self%id%rhs = reshape(x, [size(x)])
+      self%id%rhs(1:size(x)) => x
       self%id%icntl(26) = 0
       self%id%icntl(9) = 1
       if (present(transposed)) self%id%icntl(9) = merge(0, 1, transposed)
       self%id%job = 3
       call dmumps(self%id)
+      nullify (self%id%rhs)
       call check_status(self, "solution", error)
-      if (.not. allocated(error)) x = reshape(self%id%rhs, shape(x))
    end subroutine solve
 
    !> The matrix as it was given.
@@ -172,33 +189,33 @@ contains
    subroutine get_schur(self, schur)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(out) :: schur(:, :)  !< (n_schur, n_schur)
-      integer(int64) :: i, j
+      integer(int64) :: j, n
 
-      ! MUMPS gives the lower triangle by rows, that is, the upper one by columns.
-      do j = 1, self%n_schur
-         do i = 1, j
-            schur(i, j) = self%id%schur((j - 1)*self%n_schur + i)
-            schur(j, i) = schur(i, j)
-         end do
+      n = self%n_schur
+      do j = 1, n
+         schur(:j, j) = self%id%schur((j - 1)*n + 1:(j - 1)*n + j)
       end do
       deallocate (self%id%schur)
+      call complete_lower(schur)
    end subroutine get_schur
 
-   !> Forward elimination: the right-hand side of the condensed system.
+   !> Forward elimination: the right-hand side of the condensed system. What else follows from it
+   !! MUMPS keeps until `expand`; `rhs` may be changed on the way.
    subroutine condense(self, rhs, reduced, error)
       class(mumps_t), intent(inout) :: self
-      real(rk), intent(in) :: rhs(:)  !< (n) entries of the condensed unknowns included
+      !> (n) entries of the condensed unknowns included
+      real(rk), intent(inout), contiguous, target :: rhs(:)
       real(rk), intent(out) :: reduced(:)  !< (n_schur)
       type(error_t), allocatable, intent(out) :: error
 
       self%id%nrhs = 1
       self%id%lrhs = size(rhs)
       self%id%lredrhs = self%n_schur
-      call provide_rhs(self, size(rhs))
-      self%id%rhs = rhs
+      self%id%rhs => rhs
       self%id%icntl(26) = 1
       self%id%job = 3
       call dmumps(self%id)
+      nullify (self%id%rhs)
       call check_status(self, "condensation", error)
       reduced = self%id%redrhs
    end subroutine condense
@@ -207,15 +224,16 @@ contains
    subroutine expand(self, condensed, x, error)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(in) :: condensed(:)  !< (n_schur)
-      real(rk), intent(out) :: x(:)  !< (n)
+      real(rk), intent(out), contiguous, target :: x(:)  !< (n)
       type(error_t), allocatable, intent(out) :: error
 
       self%id%redrhs = condensed
+      self%id%rhs => x
       self%id%icntl(26) = 2
       self%id%job = 3
       call dmumps(self%id)
+      nullify (self%id%rhs)
       call check_status(self, "expansion", error)
-      x = self%id%rhs(:size(x))
    end subroutine expand
 
    !> Give all memory back.
@@ -225,7 +243,6 @@ contains
       if (.not. self%active) return
       self%id%job = -2
       if (associated(self%id%irn)) deallocate (self%id%irn, self%id%jcn, self%id%a)
-      if (associated(self%id%rhs)) deallocate (self%id%rhs)
       if (associated(self%id%listvar_schur)) then
          deallocate (self%id%listvar_schur, self%id%redrhs)
          if (associated(self%id%schur)) deallocate (self%id%schur)
@@ -241,16 +258,18 @@ contains
       call self%release()
    end subroutine finalize
 
-   subroutine provide_rhs(self, n)
-      class(mumps_t), intent(inout) :: self
-      integer(ik), intent(in) :: n
+   !> MUMPS gives the lower triangle of a Schur complement by rows, that is, the upper one by
+   !! columns.
+   pure subroutine complete_lower(schur)
+      real(rk), intent(inout) :: schur(:, :)
+      integer(ik) :: i, j
 
-      if (associated(self%id%rhs)) then
-         if (size(self%id%rhs) == n) return
-         deallocate (self%id%rhs)
-      end if
-      allocate (self%id%rhs(n))
-   end subroutine provide_rhs
+      do j = 2, size(schur, 2, kind=ik)
+         do i = 1, j - 1
+            schur(j, i) = schur(i, j)
+         end do
+      end do
+   end subroutine complete_lower
 
    subroutine check_status(self, phase, error)
       class(mumps_t), intent(in) :: self

@@ -15,7 +15,8 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_indefinite, mumps_pord, mumps_t
+   use algebra_mumps, only: mumps_indefinite, mumps_t
+   use algebra_ordering, only: dissect, expand_order, neighbours_of
    use coarse_coupling, only: coupling_t, find_coupling, find_coupling_values
    use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
    use coarse_matrix, only: matrix_t
@@ -65,7 +66,7 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: row(:), col(:), schur(:)
+      integer(ik), allocatable :: row(:), col(:), schur(:), place(:)
       real(rk), allocatable :: values(:)
       integer(ik) :: i, n, n_blocks
 
@@ -81,22 +82,27 @@ contains
          call triplet_pattern(matrix, n_blocks, row, col)
          n = 3*n_blocks
          schur = [(i, i=self%at_fractures, n)]
-         if (self%is_full) then
-            call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur)
-         else
-            call self%solver%analyse(n, row, col, mumps_indefinite, error, ordering=mumps_pord)
-            call find_coupling(matrix, self%coupling)
-         end if
+         call dissect(neighbours_of(matrix%columns, matrix%n_cells), place, error)
          if (allocated(error)) return
+         place = expand_order(place, 3_ik, n_blocks)
+         call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur, place=place)
+         if (allocated(error)) return
+         deallocate (row, col, place)  ! of the size of the matrix: not to be there with the factors
+         if (.not. self%is_full) call find_coupling(matrix, self%coupling)
          self%analysed = .true.
       end if
       call find_scale(matrix, dt, self%scale)
       call triplet_values(matrix, n_blocks, self%scale, dt, values)
-      call self%solver%factorize(values, error)
-      if (allocated(error)) return
       if (self%is_full) then
-         if (self%n > 0) call find_stiffness(self)
+         if (allocated(self%stiffness)) deallocate (self%stiffness)
+         allocate (self%stiffness(self%layout%count(), self%layout%count()))
+         call self%solver%factorize(values, error, self%stiffness)
+         if (.not. allocated(error)) call find_stiffness(self)
       else
+         call self%solver%factorize(values, error)
+      end if
+      if (allocated(error)) return
+      if (.not. self%is_full) then
          call find_coupling_values(matrix, self%normal, dt, self%coupling)
          self%spring = spread(0.0_rk, 1, self%layout%count())
          self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
@@ -115,7 +121,8 @@ contains
 
       if (self%n == 0) return
       if (self%is_full) then
-         call self%solver%condense(reshape(rhs, [size(rhs)])*self%scale, g, error)
+         all = reshape(rhs, [size(rhs)])*self%scale
+         call self%solver%condense(all, g, error)
          g = g/self%scale(self%at_fractures:)
          call turn_to_normals(self, g)
       else
@@ -251,16 +258,13 @@ contains
       end associate
    end subroutine solve_rock
 
-   !> S, in the fractures' own directions.
+   !> S, in its units and in the fractures' own directions.
    subroutine find_stiffness(self)
       class(condensed_t), intent(inout) :: self
       integer(ik) :: at, cell, end, i
       real(rk), allocatable :: first(:)
 
-      if (allocated(self%stiffness)) deallocate (self%stiffness)
-      allocate (self%stiffness(self%layout%count(), self%layout%count()))
       associate (s => self%scale(self%at_fractures:), stiffness => self%stiffness)
-         call self%solver%get_schur(stiffness)
          do i = 1, size(s)
             stiffness(:, i) = stiffness(:, i)/(s*s(i))
             call turn_to_normals(self, stiffness(:, i))

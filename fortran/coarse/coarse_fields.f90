@@ -10,7 +10,8 @@ module coarse_fields
    implicit none(type, external)
    private
 
-   public :: cell_contents, cell_stresses, corner_tractions, curved_displacement, nodal_values
+   public :: cell_contents, cell_stress, cell_stresses, corner_tractions, curved_displacement
+   public :: nodal_values, node_values
 
 contains
 
@@ -60,18 +61,29 @@ contains
       type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: stresses(:, :)  !< (3, n_cells) xx, yy, xy [Pa]
-      integer(ik) :: c, k
-      real(rk) :: stress(2, 2), rotation
+      integer(ik) :: c
 
-      stresses = 0.0_rk
       do c = 1, mesh%n_cells
-         do k = 1, 3
-            call corner_stress(mesh, regions, tractions, c, k, stress, rotation)
-            stresses(:, c) = stresses(:, c) + [stress(1, 1), stress(2, 2), &
-                                               0.5_rk*(stress(1, 2) + stress(2, 1))]/3.0_rk
-         end do
+         stresses(:, c) = cell_stress(mesh, regions, tractions, c)
       end do
    end subroutine cell_stresses
+
+   !> The same in one cell.
+   pure function cell_stress(mesh, regions, tractions, cell) result(mean)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk) :: mean(3)  !< xx, yy, xy [Pa]
+      integer(ik) :: k
+      real(rk) :: stress(2, 2), rotation
+
+      mean = 0.0_rk
+      do k = 1, 3
+         call corner_stress(mesh, regions, tractions, cell, k, stress, rotation)
+         mean = mean + [stress(1, 1), stress(2, 2), 0.5_rk*(stress(1, 2) + stress(2, 1))]/3.0_rk
+      end do
+   end function cell_stress
 
    !> Displacement and pressure at the mesh's nodes: mean of what the cells around extrapolate.
    subroutine nodal_values(mesh, rock, regions, unknowns, tractions, values)
@@ -82,7 +94,7 @@ contains
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
       integer(ik) :: c, k, v
-      real(rk) :: gradient(2, 2, 3), offset(2), pressure_gradient(2)
+      real(rk) :: gradient(2, 2, 3), value(3)
       real(rk), allocatable :: weight(:)
 
       allocate (weight(mesh%n_nodes), source=0.0_rk)
@@ -91,11 +103,8 @@ contains
          call corner_gradients(mesh, rock, regions, unknowns, tractions, c, gradient)
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
-            offset = mesh%xy(:, v) - cell_centre(mesh, c)
-            call corner_gradient(mesh, rock%resistivity, regions, regions%flux, unknowns(3, :), c, &
-                                 k, pressure_gradient)
-            values(1:2, v) = values(1:2, v) + unknowns(1:2, c) + matmul(gradient(:, :, k), offset)
-            values(3, v) = values(3, v) + unknowns(3, c) + dot_product(pressure_gradient, offset)
+            call extrapolate(mesh, rock, regions, unknowns, c, k, gradient(:, :, k), value)
+            values(:, v) = values(:, v) + value
             weight(v) = weight(v) + 1.0_rk
          end do
       end do
@@ -103,6 +112,51 @@ contains
          values(:, v) = values(:, v)/weight(v)
       end do
    end subroutine nodal_values
+
+   !> The same at one node.
+   pure function node_values(mesh, rock, regions, unknowns, tractions, node) result(mean)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      integer(ik), intent(in) :: node
+      real(rk) :: mean(3)  !< [m], [m], [Pa]
+      integer(ik) :: c, cell, k, n, region
+      real(rk) :: gradient(2, 2, 3), value(3)
+
+      mean = 0.0_rk
+      n = 0
+      region = regions%region_of_node(node)
+      do c = 1, regions%cell_count(region)
+         cell = regions%blocks%at(region, c)
+         k = findloc(mesh%cell_nodes(:, cell), node, dim=1)
+         if (k == 0) cycle  ! on another side of a fracture
+         call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
+         call extrapolate(mesh, rock, regions, unknowns, cell, k, gradient(:, :, k), value)
+         mean = mean + value
+         n = n + 1
+      end do
+      mean = mean/n
+   end function node_values
+
+   !> Displacement and pressure at a corner, from those of the cell and its gradients.
+   pure subroutine extrapolate(mesh, rock, regions, unknowns, cell, k, gradient, value)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      integer(ik), intent(in) :: cell, k
+      real(rk), intent(in) :: gradient(2, 2)  !< of the displacement at the corner [-]
+      real(rk), intent(out) :: value(3)  !< [m], [m], [Pa]
+      real(rk) :: offset(2), pressure_gradient(2)
+
+      offset = mesh%xy(:, mesh%cell_nodes(k, cell)) - cell_centre(mesh, cell)
+      call corner_gradient(mesh, rock%resistivity, regions, regions%flux, unknowns(3, :), cell, k, &
+                           pressure_gradient)
+      value(1:2) = unknowns(1:2, cell) + matmul(gradient, offset)
+      value(3) = unknowns(3, cell) + dot_product(pressure_gradient, offset)
+   end subroutine extrapolate
 
    !> Displacement at the mesh's nodes, and its gradient there, for an interpolation that is exact
    !! for quadratic fields: from a cell's centre to a node with the mean of the gradients of both.

@@ -11,7 +11,7 @@ module coarse_fractures
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_slopes, only: slopes_t
    use coarse_state, only: fracture_cells_t, state_t
-   use coarse_full_step, only: find_full_step
+   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_sparse_step, only: sparse_step_t
    use coarse_wells, only: wells_t
    use contact_law, only: contact_law_t
@@ -63,6 +63,7 @@ module coarse_fractures
       integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
       real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
       logical, allocatable :: is_flow(:)  !< (unknowns of x)
+      type(kinds_t) :: kinds  !< which of them may leave the full matrix
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
@@ -159,7 +160,27 @@ contains
       end do
       allocate (eq%is_flow(eq%layout%count()), source=.false.)
       eq%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)) = .true.
+      call find_kinds(eq)
    end subroutine link_unknowns
+
+   !> Which of the unknowns may leave the full matrix. Along a fracture flows follow each other from
+   !! the last cell to the first.
+   pure subroutine find_kinds(eq)
+      class(fracture_system_t), intent(inout) :: eq
+      integer(ik) :: end, flow_to(eq%layout%n_cells), i, k
+
+      associate (layout => eq%layout, kinds => eq%kinds, n => eq%layout%n_cells)
+         kinds%jump = [((layout%at_jump(i, end), end=1, 2), i=1, n)]
+         kinds%face = [((layout%at_face_pressure(i, end), end=1, 2), i=1, n)]
+         kinds%fluid = layout%at_pressure([(i, i=1, n)])
+         flow_to = 0
+         do k = 1, layout%n_flows
+            flow_to(maxval(eq%connections(:, k))) = k
+         end do
+         kinds%flow = layout%at_flow(pack(flow_to(n:1:-1), flow_to(n:1:-1) > 0))
+         kinds%end_of_flow = layout%at_pressure(pack([(i, i=n, 1, -1)], flow_to(n:1:-1) > 0))
+      end associate
+   end subroutine find_kinds
 
    !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
    !! state everywhere, but as a unit of the equations only.
@@ -241,14 +262,11 @@ contains
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< [Pa]
       type(step_quality_t), intent(out) :: quality
-      integer(ik) :: end, i
 
       if (self%condensed%is_full) then
-         associate (jumps => [((self%layout%at_jump(i, end), end=1, 2), i=1, self%condensed%n)])
-            call find_full_step(self%condensed%stiffness, self%slopes, jumps, self%x_of_q, &
-                                self%q_per_x, self%is_flow, self%residual, with_condition, step, &
-                                quality)
-         end associate
+         call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%x_of_q, &
+                             self%q_per_x, self%is_flow, self%residual, self%stress_scale, &
+                             with_condition, step, quality)
       else
          call self%factors%find_step(self%condensed, self%slopes, self%x_of_q, self%q_per_x, &
                                      self%is_flow, self%residual, self%stress_scale, step, quality)

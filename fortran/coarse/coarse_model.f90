@@ -193,7 +193,7 @@ contains
    pure logical function is_full(mesh, condensation)
       type(mesh_t), intent(in) :: mesh
       character(len=*), intent(in) :: condensation  !< "auto", "full", "sparse"
-      real(rk), parameter :: cells_per_square = 15.0_rk  ! where both cost the same, measured
+      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
 
       is_full = real(mesh%fracture%n_cells, rk)**2 <= cells_per_square*mesh%n_cells
       if (condensation /= "auto") is_full = condensation == "full"

@@ -7,15 +7,11 @@ module contact_dense
    implicit none(type, external)
    private
 
-   public :: solve_full
+   public :: factorize_full, solve_factorized, solve_full
 
 contains
 
-   !> Solve for the step; equations are scaled to a largest coefficient of one. The condition is
-   !! that of the scaled matrix in the 1-norm of its transpose: what a relative error of an equation
-   !! makes of the unknowns. Some of these may be left out of it, as flows are: those that go round
-   !! in a loop of open fractures are driven by less than the rounding of pressures, know little of
-   !! themselves, and change nothing else. Matrix and residual are used up.
+   !> Solve for the step. Matrix and residual are used up.
    subroutine solve_full(jacobian, residual, with_condition, step, quality, left_out)
       real(rk), intent(inout), contiguous :: jacobian(:, :)  !< (n, n) an equation per column [-]
       real(rk), intent(inout) :: residual(:)  !< (n) [Pa]
@@ -23,28 +19,63 @@ contains
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(out) :: quality
       logical, intent(in), optional :: left_out(:)  !< (n) unknowns
-      real(rk) :: norm, rhs(size(step), 1), scale
-      integer(ik) :: info, n, pivots(size(step)), row
+      real(rk) :: scale(size(step))
+      integer(ik) :: pivots(size(step))
 
-      n = size(step, kind=ik)
+      call factorize_full(jacobian, with_condition, scale, pivots, quality, left_out)
+      if (.not. quality%is_singular) call solve_factorized(jacobian, scale, pivots, residual, step)
+   end subroutine solve_full
+
+   !> Factorize; equations are scaled to a largest coefficient of one. The condition is that of the
+   !! scaled matrix in the 1-norm of its transpose: what a relative error of an equation makes of
+   !! the unknowns. Some of these may be left out of it, as flows are: those that go round in a loop
+   !! of open fractures are driven by less than the rounding of pressures, know little of
+   !! themselves, and change nothing else.
+   subroutine factorize_full(jacobian, with_condition, scale, pivots, quality, left_out)
+      !> (n, n) an equation per column [-]; its factors afterwards
+      real(rk), intent(inout), contiguous :: jacobian(:, :)
+      logical, intent(in) :: with_condition
+      real(rk), intent(out) :: scale(:)  !< (n) of the equations [-]
+      integer(ik), intent(out) :: pivots(:)  !< (n)
+      type(step_quality_t), intent(out) :: quality
+      logical, intent(in), optional :: left_out(:)  !< (n) unknowns
+      real(rk) :: norm
+      integer(ik) :: info, n, row
+
+      n = size(scale, kind=ik)
       if (n == 0) return
       norm = 0.0_rk
       do row = 1, n
-         scale = maxval(abs(jacobian(:, row)))
-         if (scale > 0.0_rk) then
-            jacobian(:, row) = jacobian(:, row)/scale
-            residual(row) = residual(row)/scale
+         scale(row) = maxval(abs(jacobian(:, row)))
+         if (scale(row) > 0.0_rk) then
+            jacobian(:, row) = jacobian(:, row)/scale(row)
+         else
+            scale(row) = 1.0_rk
          end if
          if (with_condition) norm = max(norm, sum(abs(jacobian(:, row))))
       end do
-      rhs(:, 1) = -residual
       call dgetrf(n, n, jacobian, n, pivots, info)
       quality%is_singular = info /= 0
       if (quality%is_singular) return
-      call dgetrs("T", n, 1_ik, jacobian, n, pivots, rhs, n, info)
-      step = rhs(:, 1)
       if (with_condition) quality%condition = norm*norm_of_inverse(jacobian, pivots, left_out)
-   end subroutine solve_full
+   end subroutine factorize_full
+
+   !> The step from factors of factorize_full.
+   subroutine solve_factorized(factors, scale, pivots, residual, step)
+      real(rk), intent(in), contiguous :: factors(:, :)  !< (n, n)
+      real(rk), intent(in) :: scale(:)  !< (n)
+      integer(ik), intent(in) :: pivots(:)  !< (n)
+      real(rk), intent(in) :: residual(:)  !< (n) [Pa]
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      real(rk) :: rhs(size(step), 1)
+      integer(ik) :: info, n
+
+      n = size(step, kind=ik)
+      if (n == 0) return
+      rhs(:, 1) = -residual/scale
+      call dgetrs("T", n, 1_ik, factors, n, pivots, rhs, n, info)
+      step = rhs(:, 1)
+   end subroutine solve_factorized
 
    !> The 1-norm of the inverse of a matrix, estimated from its factors (Higham 1988); columns of
    !! the inverse may be left out.

@@ -4,12 +4,13 @@ module twolevel_results
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
    use base_plane, only: barycentric
-   use coarse_fields, only: cell_stresses, nodal_values
+   use coarse_fields, only: cell_stress, cell_stresses, nodal_values, node_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
+   use results_fields, only: matrix_fields_t
    use results_rows, only: history_row_t, probe_row_t
    use results_summary, only: summary_t
    use simulation_types, only: snapshot_t
@@ -111,38 +112,39 @@ contains
       end associate
    end function slip_potency
 
-   !> Displacement, stress and pressure at the probes.
+   !> Displacement, stress and pressure at the probes, each from the cells around its own.
    subroutine probes_of_levels(simulation, row, error)
-      class(two_levels_t), intent(inout) :: simulation
+      class(two_levels_t), intent(in) :: simulation
       type(probe_row_t), intent(out) :: row
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: xy(:, :), values(:, :), stresses(:, :)
+      real(rk), allocatable :: xy(:, :)
+      real(rk) :: at_nodes(3, 3), value(3)
       integer(ik), allocatable :: cells(:)
-      integer(ik) :: i, n
+      integer(ik) :: i, k, n
 
       n = size(simulation%scene%probes)
-      allocate (xy(2, n), values(3, n), cells(n))
+      allocate (xy(2, n), cells(n))
+      allocate (row%displacement(2, n), row%pressure(n), row%stress(3, n))
       xy(1, :) = simulation%scene%probes%x
       xy(2, :) = simulation%scene%probes%y
       call locate(simulation%mesher, xy, cells, error)
       if (allocated(error)) return
-      call simulation%update_values()
-      do i = 1, n
-         associate (nodes => simulation%mesh%cell_nodes(:, cells(i)))
-            values(:, i) = matmul(simulation%coarse_values%nodal(:, nodes), &
-                                  barycentric(simulation%mesh%xy(:, nodes), xy(:, i)))
-         end associate
-      end do
-      stresses = stresses_of(simulation)
-      row%displacement = values(:2, :)
-      row%pressure = values(3, :)
-      row%stress = stresses(:, cells)
-      if (.not. allocated(simulation%model%in_situ)) return
-      associate (in_situ => simulation%model%in_situ, y => cell_heights(simulation%mesh))
-         row%pressure = row%pressure + in_situ%pressure_at(xy(2, :))
-         do i = 1, n  ! what is in situ is known at the point itself
-            row%stress(:, i) = row%stress(:, i) + in_situ%stress_at(xy(2, i)) &
-                               - in_situ%stress_at(y(cells(i)))
+      associate (mesh => simulation%mesh, model => simulation%model, state => simulation%state)
+         do i = 1, n
+            associate (nodes => mesh%cell_nodes(:, cells(i)))
+               do k = 1, 3
+                  at_nodes(:, k) = node_values(mesh, model%rock, model%regions, state%unknowns, &
+                                               state%tractions, nodes(k))
+               end do
+               value = matmul(at_nodes, barycentric(mesh%xy(:, nodes), xy(:, i)))
+            end associate
+            row%displacement(:, i) = value(:2)
+            row%pressure(i) = value(3)
+            row%stress(:, i) = cell_stress(mesh, model%regions, state%tractions, cells(i))
+            if (.not. allocated(model%in_situ)) cycle
+            ! What is in situ is known at the point itself.
+            row%pressure(i) = row%pressure(i) + model%in_situ%pressure_at(xy(2, i))
+            row%stress(:, i) = row%stress(:, i) + model%in_situ%stress_at(xy(2, i))
          end do
       end associate
    end subroutine probes_of_levels
@@ -163,34 +165,21 @@ contains
       end do
    end function stresses_of
 
-   !> Displacement, pressure, stress, and what the fracture faces do.
+   !> Displacement, pressure, stress, where the scene wants them, and what the fracture faces do.
    function snapshot_of_levels(simulation) result(snapshot)
       class(two_levels_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
-      real(rk), allocatable :: nodal(:, :), pressure(:)
+      real(rk), allocatable :: pressure(:)
       integer(ik), allocatable :: shown(:)
       integer(ik) :: k
 
       snapshot%time = simulation%state%time
-      snapshot%mesh = simulation%mesh
-      associate (state => simulation%state, n => simulation%mesh%n_cells, &
-                 matrix => snapshot%matrix, fracture => snapshot%fracture)
-         matrix%displacement = state%unknowns(:2, :n)
-         allocate (nodal(3, snapshot%mesh%n_nodes))
-         call nodal_values(snapshot%mesh, simulation%model%rock, simulation%model%regions, &
-                           state%unknowns, state%tractions, nodal)
-         matrix%node_displacement = nodal(:2, :)
-         matrix%pressure = simulation%rock_pressure()
-         matrix%stress = stresses_of(simulation)
-         if (allocated(simulation%scene%regions)) then
-            matrix%permeability = simulation%model%rock%permeability
-            associate (rock => simulation%model%rock)
-               if (size(rock%shear) > 1) then
-                  matrix%poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
-                  matrix%biot = rock%biot
-               end if
-            end associate
-         end if
+      snapshot%mesh%fracture = simulation%mesh%fracture
+      if (simulation%scene%output%vtu) then
+         snapshot%mesh = simulation%mesh
+         snapshot%matrix = rock_fields(simulation)
+      end if
+      associate (state => simulation%state, fracture => snapshot%fracture)
          fracture%aperture = state%aperture
          fracture%jump_n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
          fracture%jump_t = 0.5_rk*sum(state%jump(2, :, :), dim=1)
@@ -210,6 +199,30 @@ contains
          end associate
       end associate
    end function snapshot_of_levels
+
+   !> Displacement, pressure and stress in the rock.
+   function rock_fields(simulation) result(fields)
+      class(two_levels_t), intent(in) :: simulation
+      type(matrix_fields_t) :: fields
+      real(rk), allocatable :: nodal(:, :)
+
+      associate (mesh => simulation%mesh, model => simulation%model, state => simulation%state)
+         fields%displacement = state%unknowns(:2, :mesh%n_cells)
+         allocate (nodal(3, mesh%n_nodes))
+         call nodal_values(mesh, model%rock, model%regions, state%unknowns, state%tractions, nodal)
+         fields%node_displacement = nodal(:2, :)
+         fields%pressure = simulation%rock_pressure()
+         fields%stress = stresses_of(simulation)
+         if (.not. allocated(simulation%scene%regions)) return
+         associate (rock => model%rock)
+            fields%permeability = rock%permeability
+            if (size(rock%shear) > 1) then
+               fields%poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+               fields%biot = rock%biot
+            end if
+         end associate
+      end associate
+   end function rock_fields
 
    !> Flow along each fracture cell in its direction, the mean of its two ends [m2/s].
    pure function fracture_flow(simulation) result(flow)

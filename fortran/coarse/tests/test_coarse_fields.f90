@@ -4,7 +4,8 @@ program test_coarse_fields
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, nodal_values
+   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, nodal_values, &
+                            node_values
    use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_regions, only: regions_t
@@ -47,6 +48,8 @@ contains
       type(matrix_t) :: matrix
       type(error_t), allocatable :: error
       real(rk), allocatable :: tractions(:)
+      real(rk) :: worst
+      integer(ik) :: v
 
       rock = new_rock(scene%material, scene%fluid)
       call discretize(mesh, rock, scene%sides, regions, matrix, error)
@@ -56,6 +59,12 @@ contains
       call cell_stresses(mesh, regions, tractions, stresses)
       call cell_contents(mesh, rock, regions, matrix, unknowns, tractions, content)
       call nodal_values(mesh, rock, regions, unknowns, tractions, values)
+      worst = 0.0_rk
+      do v = 1, mesh%n_nodes
+         worst = max(worst, maxval(abs(node_values(mesh, rock, regions, unknowns, tractions, v) &
+                                       - values(:, v))/(1.0e-15_rk + abs(values(:, v)))))
+      end do
+      call checks%is_close(worst, 0.0_rk, 1.0e-13_rk, "the same at each node by itself")
    end subroutine evaluate
 
    !> Any uniform strain, rotation and pressure. At a corner of the body with one cell whose

@@ -1,0 +1,72 @@
+!> The linear step on a full matrix, of faces whose pressures leave it though their own volumes have
+!! a small part in them: the step fulfils the equations as they are, where that part is small, where
+!! it is not, and where only that of a face's own pressure is.
+program test_coarse_full_step
+   use testing_checks, only: checks_t
+   use base_kinds, only: ik, rk
+   use coarse_full_step, only: find_full_step, full_slopes, kinds_t
+   use coarse_slopes, only: slopes_t
+   use contact_newton, only: step_quality_t
+   implicit none(type, external)
+
+   integer(ik), parameter :: n = 5  !< two faces, two cells of fluid, a flow between them
+   integer(ik), parameter :: x_of_q(2) = [1_ik, 2_ik]
+   real(rk), parameter :: q_per_x(2) = 1.0_rk
+   logical, parameter :: is_flow(n) = [.false., .false., .false., .false., .true.]
+   type(checks_t) :: checks
+
+   call compare("small", 0.1_rk)
+   call compare("large", 1.0e5_rk)
+   call compare("small but for the other face's", 1.0_rk, by_other=4.0e4_rk)
+   call checks%finish()
+
+contains
+
+   !> Face pressures p, pressures of fluid f, flow w between: r S p - p + f and the balances
+   !! f_1 + w - (S p)_1, f_2 - w - (S p)_2, and f_2 - f_1 + 1e-12 w, each with some residual.
+   subroutine compare(name, volume, by_other)
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: volume  !< of a face by its own pressure, S(1, 1)
+      real(rk), intent(in), optional :: by_other  !< S(1, 2) over that
+      real(rk), parameter :: resistance = 5.0e-5_rk
+      type(slopes_t) :: slopes
+      type(kinds_t) :: kinds
+      type(step_quality_t) :: quality
+      real(rk), allocatable :: jacobian(:, :)
+      real(rk) :: residual(n), step(n), stiffness(2, 2)
+      integer(ik) :: i
+
+      stiffness = -volume*reshape([1.0_rk, 0.3_rk, 0.3_rk, 1.0_rk], [2, 2])
+      if (present(by_other)) then
+         stiffness(1, 2) = volume*by_other
+         stiffness(2, 1) = volume*by_other
+      end if
+      call slopes%clear(n)
+      do i = 1, 2
+         call slopes%add_force(i, i, resistance)
+         call slopes%add(i, i, -1.0_rk)
+         call slopes%add(i, i + 2_ik, 1.0_rk)
+         call slopes%add_force(i + 2_ik, i, -1.0_rk)
+         call slopes%add(i + 2_ik, i + 2_ik, 1.0_rk)
+         call slopes%add(i + 2_ik, 5_ik, real(3 - 2*i, rk))
+         call slopes%add(5_ik, i + 2_ik, real(2*i - 3, rk))
+      end do
+      call slopes%add(5_ik, 5_ik, 1.0e-12_rk)
+      kinds%jump = [integer(ik) ::]
+      kinds%face = [1_ik, 2_ik]
+      kinds%fluid = [3_ik, 4_ik]
+      kinds%flow = [5_ik]
+      kinds%end_of_flow = [4_ik]
+      residual = [1.0_rk, -2.0_rk, 1.0_rk, 1.0_rk, 0.5_rk]
+      call find_full_step(stiffness, slopes, kinds, x_of_q, q_per_x, is_flow, residual, 1.0_rk, &
+                          .true., step, quality, links_faces=.true.)
+      call checks%is_true(.not. quality%is_singular, name//": there is a step")
+      call full_slopes(stiffness, slopes, x_of_q, q_per_x, jacobian)
+      ! Rounding: some terms of 1e-16 of the largest.
+      call checks%is_close(maxval(abs(matmul(step, jacobian) + residual) &
+                                  /maxval(abs(jacobian), dim=1))/maxval(abs(step)), 0.0_rk, &
+                           1.0e-14_rk, name//": the equations are fulfilled")
+      call checks%is_true(quality%rest <= 1.0e-13_rk, name//": and it says so")
+   end subroutine compare
+
+end program test_coarse_full_step
