@@ -76,8 +76,8 @@ double SizeFoci::operator()(Vec2 p) const {
 
 double SizeDisc::operator()(Vec2 p) const {
     const double outside = std::max(0.0, distance(p, centre) - radius);
-    const double near = std::min(outside, near_part * radius);
-    return size + slope * near + far_slope * (outside - near);
+    return size + slope * outside +
+           (far_slope - slope) * std::max(0.0, outside - near_part * radius);
 }
 
 double SizeField::operator()(Vec2 p) const {
