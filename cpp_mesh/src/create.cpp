@@ -72,8 +72,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         rosette_discs(graph, plans, specification.rosette_sectors, specification.ring_slope));
     if (specification.joint_size > 0.0)
         for (const Joint& joint : joints_of(graph))
-            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints,
-                                   growth_around_joints});
+            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
     // Cells between fractures that meet, or almost do, must not be much longer than what is left
     // for them.
     if (mesh.size.is_scale_free() ||

@@ -95,7 +95,8 @@ std::vector<SizeDisc> rosette_discs(const Graph& graph, const std::vector<Rosett
     std::vector<SizeDisc> discs;
     for (const RosettePlan& plan : plans)
         discs.push_back({graph.points[plan.point].xy, plan.radius,
-                         2.0 * plan.radius * std::sin(pi / sectors), growth_around, far_slope});
+                         2.0 * plan.radius * std::sin(pi / sectors), growth_around,
+                         far_slope - growth_around});
     return discs;
 }
 

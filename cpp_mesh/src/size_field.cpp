@@ -11,7 +11,7 @@ namespace {
 // size too.
 constexpr double reach = 0.5;
 
-// How far outside a disc cells grow by its slope, in radii, before they grow by its far slope.
+// How far outside a disc cells grow by its slope, in radii, before they grow faster.
 constexpr double near_part = 2.0;
 
 // Numbers this near to a tie are on one side of it whatever their rounding errors.
@@ -76,8 +76,7 @@ double SizeFoci::operator()(Vec2 p) const {
 
 double SizeDisc::operator()(Vec2 p) const {
     const double outside = std::max(0.0, distance(p, centre) - radius);
-    return size + slope * outside +
-           (far_slope - slope) * std::max(0.0, outside - near_part * radius);
+    return size + slope * outside + far_more * std::max(0.0, outside - near_part * radius);
 }
 
 double SizeField::operator()(Vec2 p) const {

@@ -18,13 +18,13 @@ struct SizeSource {
 };
 
 // Cells have `size` within `radius` of the centre and grow away from it by `slope` per distance,
-// beyond three radii by `far_slope`.
+// beyond three radii by `far_more` more than that.
 struct SizeDisc {
     Vec2 centre;
     double radius = 0.0;
     double size = 0.0;
     double slope = 0.3;
-    double far_slope = 0.3;
+    double far_more = 0.0;
 
     double operator()(Vec2 p) const;
 };
