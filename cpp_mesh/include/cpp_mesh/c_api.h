@@ -56,7 +56,7 @@ typedef struct {
     const double* foci; /* [n_foci][2] */
     double focus_slope; /* growth of sizes per distance from the nearest of them */
     double focus_size;  /* largest size along fractures that this leads to */
-    int32_t is_rough; /* gmsh's faster triangles, which are smoothed here only: half the time */
+    int32_t is_rough;   /* gmsh's faster triangles, which are smoothed here only: half the time */
     double ring_slope;  /* growth of sizes per distance beyond three radii of rosettes; 0: as
                            nearer to them, 0.3 */
 } cm_spec;
