@@ -2,7 +2,7 @@
 !! (Karypis and Kumar 1998). It leaves fewer entries in the factors of large meshes than minimum
 !! degree does, and takes longer to find.
 module algebra_ordering
-   use, intrinsic :: iso_c_binding, only: c_int32_t, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_int32_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_lists, only: lists_t
@@ -25,16 +25,14 @@ module algebra_ordering
          integer(c_int32_t), intent(out) :: options(n_options)
       end function metis_set_default_options
 
-      integer(c_int32_t) function metis_node_nd(n, first, item, weight, options, order, place) &
-         bind(c, name="METIS_NodeND")
-         import :: c_int32_t, c_ptr, n_options
+      integer(c_int32_t) function algebra_node_nd(n, first, item, options, order, place) bind(c)
+         import :: c_int32_t, n_options
          implicit none(type, external)
-         integer(c_int32_t), intent(in) :: n
+         integer(c_int32_t), value :: n
          integer(c_int32_t), intent(in) :: first(n + 1), item(first(n + 1))
-         type(c_ptr), value :: weight
          integer(c_int32_t), intent(in) :: options(n_options)
          integer(c_int32_t), intent(out) :: order(n), place(n)
-      end function metis_node_nd
+      end function algebra_node_nd
    end interface
 
 contains
@@ -62,7 +60,7 @@ contains
          options(option_compress) = 0  ! nodes with the same neighbours are not looked for
          options(option_numbering) = 0  ! from 1 METIS would change the graph for a while
          associate (first => neighbours%first - 1, item => neighbours%item - 1)
-            if (metis_node_nd(n, first, item, c_null_ptr, options, order, place) == metis_ok) then
+            if (algebra_node_nd(n, first, item, options, order, place) == metis_ok) then
                place = place + 1
                return
             end if
