@@ -33,7 +33,7 @@ contains
       do f = 1, size(network%first, kind=ik) - 1
          last = network%first(f)
          do v = last + 1, network%first(f + 1) - 2
-            keeps(v) = .not. is_dispensable(network, spec, is_body, f, last, v)
+            keeps(v) = .not. is_dispensable(network, spec, is_body, last, v)
             if (keeps(v)) last = v
          end do
       end do
@@ -46,11 +46,11 @@ contains
    end subroutine straighten_far
 
    !> A straight line from the vertex `last` to the one after v would do.
-   pure logical function is_dispensable(network, spec, is_body, fracture, last, v)
+   pure logical function is_dispensable(network, spec, is_body, last, v)
       type(network_t), intent(in) :: network
       type(mesh_spec_t), intent(in) :: spec
       logical, intent(in) :: is_body
-      integer(ik), intent(in) :: fracture, last, v
+      integer(ik), intent(in) :: last, v
       real(rk) :: chord(2, 2), element, from_focus, length
       integer(ik) :: i
 
@@ -69,7 +69,7 @@ contains
       if (.not. is_body) then
          if (crosses_edge(spec, chord, straight*element)) return
       end if
-      is_dispensable = .not. meets_other(network, fracture, chord, 2.0_rk*straight*element)
+      is_dispensable = .not. meets_other(network, last, v, chord, 2.0_rk*straight*element)
    end function is_dispensable
 
    !> A line crosses the edge of the window, or comes near to it.
@@ -88,10 +88,10 @@ contains
                             any(minval(line, dim=2) > upper + near))
    end function crosses_edge
 
-   !> Another fracture comes near to a line, or crosses it.
-   pure logical function meets_other(network, fracture, line, near)
+   !> Another fracture, or another part of the same one, comes near to a line, or crosses it.
+   pure logical function meets_other(network, last, dropped, line, near)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: fracture
+      integer(ik), intent(in) :: last, dropped  !< the line is from `last` to after this vertex
       real(rk), intent(in) :: line(2, 2)  !< ends [m]
       real(rk), intent(in) :: near  !< [m]
       real(rk) :: lower(2), other(2, 2), upper(2)
@@ -101,8 +101,9 @@ contains
       lower = minval(line, dim=2) - near
       upper = maxval(line, dim=2) + near
       do f = 1, size(network%first, kind=ik) - 1
-         if (f == fracture) cycle
          do v = network%first(f), network%first(f + 1) - 2
+            ! Segments that the line replaces, or that go on from it
+            if (v >= last - 1 .and. v <= dropped + 1) cycle
             other = network%xy(:, v:v + 1)
             if (any(maxval(other, dim=2) < lower .or. minval(other, dim=2) > upper)) cycle
             if (crosses(line, other)) return

@@ -24,6 +24,7 @@ program test_twolevel_window_path
    call test_far_vertices()
    call test_bends()
    call test_other_fractures()
+   call test_loop()
    call test_edge()
    call test_arc_lengths()
    call checks%finish()
@@ -93,6 +94,22 @@ contains
          call checks%is_true(size(kept) < n, "joint: elsewhere vertices go")
       end do
    end subroutine test_other_fractures
+
+   !> A path that comes back to itself: where its end meets it, it stays as it is.
+   subroutine test_loop()
+      type(network_t) :: network, simple
+      integer(ik), allocatable :: kept(:)
+      real(rk) :: x
+
+      x = 0.25_rk + step*(n - 6) - 0.3_rk*step  ! between vertices 6 and 7
+      network = path(0.0_rk)
+      network%first = [1_ik, n + 4_ik]
+      network%xy = reshape([x, 0.25_rk, x, 0.4_rk, network%xy(1, 1), 0.4_rk, network%xy], &
+                           [2_ik, n + 3_ik])
+      call straighten_far(network, spec, .true., simple, kept)
+      call checks%is_true(all([any(kept == 9), any(kept == 10)]), "loop: its segment stays")
+      call checks%is_true(size(kept) < n, "loop: elsewhere vertices go")
+   end subroutine test_loop
 
    !> Where the path leaves the window it stays as it is: displacements there are told apart by
    !! side.
