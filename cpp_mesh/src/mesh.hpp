@@ -62,6 +62,11 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
 // the radii are those of all tips. Throws MeshError where that does not go: make a new mesh then.
 Mesh grow_mesh(const Mesh& old_mesh, const Network& network, const RosetteRadii& radii);
 
+// The cells of a mesh, whose nodes have moved along with tips that have gone on, or back, along the
+// last pieces of their paths, or turned with these. Throws MeshError where the network differs
+// otherwise, or cells would have a bad shape: make a new mesh then.
+Mesh move_tips(const Mesh& old_mesh, const Network& network);
+
 } // namespace cpp_mesh
 
 #endif

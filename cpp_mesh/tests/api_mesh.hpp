@@ -79,6 +79,12 @@ public:
                             end_radius.empty() ? nullptr : end_radius.data(), &handle));
     }
 
+    bool move_tips(const ApiMesh& old_mesh, TestNetwork network) {
+        cm_destroy(&handle);
+        const cm_network view = network.view();
+        return read(cm_move_tips(old_mesh.handle, &view, &handle));
+    }
+
     bool remesh(const ApiMesh& old_mesh, TestNetwork network, const std::vector<Point>& centres,
                 double radius, double size) {
         cm_destroy(&handle);

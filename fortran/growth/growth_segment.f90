@@ -21,6 +21,7 @@ module growth_segment
       real(rk), private :: excess(2) = 0.0_rk  !< [-]
       integer, private :: tries = 0
       real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
+      real(rk), private :: speed = 0.0_rk  !< of the tip in the last step [m/s]
    contains
       procedure :: open_segment
       procedure :: leave_rest
@@ -30,10 +31,14 @@ module growth_segment
       procedure :: place
       procedure :: is_complete
       procedure :: restart
+      procedure :: set_out
+      procedure :: keep_pace
+      procedure :: pace
       procedure :: improve
       procedure :: learn
       procedure :: steep
       procedure :: go_to
+      procedure, private :: within
       procedure :: is_at_rest
       procedure :: lowest
       procedure :: keep_up_with
@@ -126,6 +131,33 @@ contains
       self%tries = 0
    end subroutine restart
 
+   !> Begin a piece where its excess will probably vanish, by what the piece before has shown.
+   elemental subroutine set_out(self, excess)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the piece [-]
+
+      if (.not. (self%is_open .and. self%slope < 0.0_rk)) return
+      self%reached = self%within(-excess/self%steep(self%slope))
+   end subroutine set_out
+
+   !> Begin a step where the tip comes if it goes on as fast as in the last one.
+   elemental subroutine keep_pace(self, dt)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< length of the step [s]
+
+      if (self%is_open) self%reached = self%within(self%lowest() + self%speed*dt)
+   end subroutine keep_pace
+
+   !> What an accepted step says of the tip's speed.
+   elemental subroutine pace(self, advance, dt)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: advance  !< [m]; 0: what comes next has nothing to do with it
+      real(rk), intent(in) :: dt  !< [s]
+
+      self%speed = 0.0_rk
+      if (dt > 0.0_rk) self%speed = max(0.0_rk, advance)/dt
+   end subroutine pace
+
    !> Go where the excess probably vanishes: back no farther than the last accepted state, and on no
    !! farther than the end of the piece.
    pure subroutine improve(self, excess, tolerance, has_moved)
@@ -176,11 +208,19 @@ contains
       logical, intent(out) :: has_moved
       real(rk) :: to
 
-      to = min(self%length, max(self%lowest(), wanted))
-      if (to > 0.97_rk*self%length) to = self%length  ! no sliver is left for the next step
+      to = self%within(wanted)
       has_moved = abs(to - self%reached) > closest*self%length
       if (has_moved) self%reached = to
    end subroutine go_to
+
+   !> What is nearest to a place of where the tip may be [m].
+   elemental real(rk) function within(self, wanted)
+      class(segment_t), intent(in) :: self
+      real(rk), intent(in) :: wanted  !< from the start of the piece [m]
+
+      within = min(self%length, max(self%lowest(), wanted))
+      if (within > 0.97_rk*self%length) within = self%length  ! no sliver is left for the next step
+   end function within
 
    !> The tip is where it has to be, or as far as the piece lets it.
    elemental logical function is_at_rest(self, excess, tolerance)

@@ -3,7 +3,7 @@ module mesh_builder
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_grow, cm_locate, &
-                             cm_network_t, cm_quality, cm_remesh, cm_spec_t
+                             cm_move_tips, cm_network_t, cm_quality, cm_remesh, cm_spec_t
    use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
    use mesh_c_outputs, only: copy_map, copy_mesh
    use mesh_faults, only: raise_library_error
@@ -13,8 +13,8 @@ module mesh_builder
    private
 
    public :: mesh_spec_t, mesher_t
-   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, remesh
-   public :: transfer_mesher
+   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, move_tips
+   public :: remesh, transfer_mesher
 
    !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
    !! empty; use transfer_mesher to move one.
@@ -150,6 +150,32 @@ contains
       end if
       call copy_mesh(mesher_new%handle, mesh, error)
    end subroutine grow_mesh
+
+   !> The cells of an old mesh, whose nodes have moved along with the ends of fractures that lie
+   !! elsewhere in the network. An error says that this does not go: make a new mesh then. The old
+   !! mesher stays as it is.
+   subroutine move_tips(mesher_old, network, mesher_new, mesh, error)
+      type(mesher_t), intent(in) :: mesher_old
+      type(network_t), intent(in) :: network  !< the old one but for its ends
+      type(mesher_t), intent(inout) :: mesher_new  !< what it held before is released
+      type(mesh_t), intent(out) :: mesh
+      type(error_t), allocatable, intent(out) :: error
+      type(cm_network_t) :: c_network
+      type(c_network_arrays_t), target :: arrays
+
+      call destroy_mesher(mesher_new)
+      if (.not. c_associated(mesher_old%handle)) then
+         call raise_error(error, "move_tips", "there is no old mesh; build one first")
+         return
+      end if
+      call prepare_network(network, arrays, c_network, error)
+      if (allocated(error)) return
+      if (cm_move_tips(mesher_old%handle, c_network, mesher_new%handle) /= 0) then
+         call raise_library_error(error, "move_tips", network)
+         return
+      end if
+      call copy_mesh(mesher_new%handle, mesh, error)
+   end subroutine move_tips
 
    !> The cell that holds each point; 0 outside.
    subroutine locate(mesher, xy, cells, error)

@@ -8,6 +8,7 @@ module mesh_c_binding
    public :: cm_arrays_t, cm_counts_t, cm_fault_t, cm_joint_t, cm_network_t, cm_spec_t
    public :: cm_check, cm_last_fault
    public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
+   public :: cm_move_tips
    public :: cm_map_copy, cm_map_sizes, cm_quality, cm_remesh, cm_sizes
    public :: c_string_length
 
@@ -174,6 +175,16 @@ module mesh_c_binding
          type(c_ptr), intent(out) :: new_mesh
          integer(c_int) :: status
       end function cm_grow
+
+      function cm_move_tips(old_mesh, network, new_mesh) result(status) &
+         bind(C, name="cm_move_tips")
+         import :: c_int, c_ptr, cm_network_t
+         implicit none(type, external)
+         type(c_ptr), value :: old_mesh
+         type(cm_network_t), intent(in) :: network
+         type(c_ptr), intent(out) :: new_mesh
+         integer(c_int) :: status
+      end function cm_move_tips
 
       function cm_sizes(mesh, counts) result(status) bind(C, name="cm_sizes")
          import :: c_int, c_ptr, cm_counts_t

@@ -139,6 +139,7 @@ contains
       end associate
       self%before = self%state
       call self%segment%restart()
+      if (.not. may_jump) call self%segment%keep_pace(dt)
       call self%certainty%begin_step()
    end subroutine begin_search
 
@@ -274,6 +275,8 @@ contains
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: excess(size(self%tip))
+      integer :: i
 
       associate (toughness => self%rules%toughness, before => search%tip%drive%intensity)
          search%is_over = any(wants .and. doubtful(self%tip, toughness))
@@ -294,8 +297,15 @@ contains
             return
          end if
       end associate
+      excess = [(maxval(excesses(self), mask=wants .and. search%kind == search%kind(i)), &
+                 i=1, size(wants))]
       call begin_pieces(self, wants, timers, error)
       if (allocated(error)) return
+      if (.not. search%may_jump) then
+         do i = 1, size(wants)
+            if (wants(i)) call self%segment(i)%set_out(excess(i))
+         end do
+      end if
       ! Not those that have come to something already: nothing lies between.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%segment%stays())
       search%lesson = lesson_t()  ! of other pieces
@@ -356,10 +366,12 @@ contains
    end subroutine ask_others
 
    !> The tried state is accepted.
-   subroutine accept_equilibrium(self)
+   subroutine accept_equilibrium(self, dt)
       class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
 
       self%tip%advance = advances(self)
+      call self%segment%pace(self%tip%advance, dt)
       where (self%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%segment%gain = self%segment%gain + self%tip%advance
       call self%company%accept(self%tip%drive%intensity/self%rules%toughness, self%tip%advance, &

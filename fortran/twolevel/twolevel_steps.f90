@@ -158,7 +158,8 @@ contains
       self%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (self%is_equilibrium()) then
-         call accept_equilibrium(self)
+         ! Nor does the speed of tips in a step in which cracks join, or without equilibrium.
+         call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
          call self%notes%note_competition(self)
       end if
       call self%stepper%step_done(trial, self%dt)

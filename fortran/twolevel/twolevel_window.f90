@@ -21,7 +21,7 @@ module twolevel_window
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use growth_network, only: end_pieces
-   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t
+   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips, transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: material_t, scene_t
    use simulation_body, only: shape_body
@@ -30,7 +30,7 @@ module twolevel_window
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
-   use twolevel_window_path, only: restore_arc_lengths, straighten_far
+   use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
    use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
@@ -73,7 +73,11 @@ module twolevel_window
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
       integer :: times_larger = 0  !< than the scene says
       type(mesher_t) :: mesher
+      type(mesher_t) :: as_made  !< the mesh before tips moved in it, if they have
       type(mesh_t) :: mesh
+      type(network_t) :: network  !< that it was made for
+      integer(ik), allocatable :: kept(:)  !< its vertices that the mesh has
+      logical :: has_moved = .false.  !< the mesh is another one than was made
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
@@ -90,6 +94,7 @@ module twolevel_window
       type(face_map_t) :: faces
    contains
       procedure :: build
+      procedure :: follow
       procedure :: edge_length
       procedure :: can_be_larger
       procedure :: set_rock
@@ -114,7 +119,6 @@ contains
       type(mesh_spec_t) :: spec
       type(network_t) :: far_straight
       real(rk), allocatable :: piece(:, :)
-      integer(ik), allocatable :: kept(:)
       integer(ik) :: i
 
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
@@ -154,13 +158,52 @@ contains
       if (any(regions_of_other_rock(scene))) then
          call follow_outlines(scene%regions, scene%domain, spec)
       end if
+      call straighten_far(network, spec, self%is_body, far_straight, self%kept)
+      call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
+      if (allocated(error)) return
+      self%network = network
+      self%has_moved = .false.
+      call restore_arc_lengths(network, far_straight, self%kept, self%mesh%fracture)
+      call set_up(self, scene, tips, error)
+   end subroutine build
+
+   !> Let the nodes of the window's mesh follow tips that have gone on along the last pieces of
+   !! their paths. The window stays where it is. Where this does not go, it has to be built anew.
+   subroutine follow(self, scene, network, tips, is_done, error)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
+      logical, intent(out) :: is_done
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: refusal
+      type(network_t) :: far_straight
+
+      is_done = .false.
+      if (.not. allocated(self%kept) .or. any(regions_of_other_rock(scene))) return
+      if (size(network%xy, 2) /= size(self%network%xy, 2)) return
+      if (any(network%first /= self%network%first)) return
+      far_straight = without(network, self%kept)
+      if (.not. self%has_moved) call transfer_mesher(self%mesher, self%as_made)
+      self%has_moved = .true.
+      call move_tips(self%as_made, far_straight, self%mesher, self%mesh, refusal)
+      if (allocated(refusal)) return
+      call restore_arc_lengths(network, far_straight, self%kept, self%mesh%fracture)
+      call set_up(self, scene, tips, error)
+      is_done = .not. allocated(error)
+   end subroutine follow
+
+   !> The model and the loads of a new mesh.
+   subroutine set_up(self, scene, tips, error)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
       end if
-      call straighten_far(network, spec, self%is_body, far_straight, kept)
-      call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
-      if (allocated(error)) return
-      call restore_arc_lengths(network, far_straight, kept, self%mesh%fracture)
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
@@ -173,7 +216,7 @@ contains
       call load_in_situ(self, scene)
       if (any(self%sides%of%changes())) self%force_in_situ = self%loads%force
       call self%sides%add_loads(self%model%mesh, self%loads%force)
-   end subroutine build
+   end subroutine set_up
 
    !> Take what the sides have now, in the course of time.
    pure subroutine follow_sides(self, scene)

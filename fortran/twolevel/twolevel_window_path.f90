@@ -12,7 +12,7 @@ module twolevel_window_path
    implicit none(type, external)
    private
 
-   public :: restore_arc_lengths, straighten_far
+   public :: restore_arc_lengths, straighten_far, without
 
    !> A vertex that is left out is no farther from the line than this share of the elements there.
    real(rk), parameter :: straight = 0.005_rk
@@ -38,12 +38,22 @@ contains
          end do
       end do
       kept = pack([(v, v=1, size(keeps, kind=ik))], keeps)
+      simple = without(network, kept)
+   end subroutine straighten_far
+
+   !> A network of which only some vertices are kept.
+   pure function without(network, kept) result(simple)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: kept(:)  !< its vertices that stay, in ascending order
+      type(network_t) :: simple
+      integer(ik) :: f
+
       simple = network
       simple%xy = network%xy(:, kept)
       do f = 1, size(network%first, kind=ik)
-         simple%first(f) = 1 + count(keeps(:network%first(f) - 1), kind=ik)
+         simple%first(f) = 1 + count(kept < network%first(f), kind=ik)
       end do
-   end subroutine straighten_far
+   end function without
 
    !> A straight line from the vertex `last` to the one after v would do.
    pure logical function is_dispensable(network, spec, is_body, last, v)

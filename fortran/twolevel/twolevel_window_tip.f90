@@ -23,6 +23,8 @@ module twolevel_window_tip
       !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
       !! last [Pa m^1/2]: what they lack by it, and how large it may be
       real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
+      real(rk) :: compared(2) = 0.0_rk  !< K_I, K_II of the window then [Pa m^1/2]
+      real(rk) :: compared_at(2) = 0.0_rk  !< where the tip was then [m]
       real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
       real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
@@ -72,6 +74,7 @@ contains
       class(window_tip_t), intent(inout) :: self
 
       self%lacking = 0.0_rk
+      self%compared = 0.0_rk
       self%uncertain = 0.0_rk
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk

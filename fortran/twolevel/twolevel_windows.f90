@@ -28,6 +28,7 @@ module twolevel_windows
    type :: windows_t
       type(window_t), allocatable :: window(:)
       logical, allocatable :: built(:), projected(:)  !< (windows)
+      logical, allocatable :: may_follow(:)  !< (windows) built, but tips have moved since
       integer(ik), allocatable :: window_of(:)  !< (tips)
       type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
       real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
@@ -42,6 +43,7 @@ module twolevel_windows
       procedure :: coarse_changed
       procedure :: intensity_of
       procedure :: is_asked
+      procedure :: has_to_mesh
       procedure :: make_anew
       procedure :: take_body
       procedure :: n_unknowns
@@ -65,7 +67,8 @@ contains
       allocate (self%resistance(size(tips)), source=1.0_rk)
       allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
       allocate (self%was_free(size(tips), n_windows), source=.true.)
-      allocate (self%built(n_windows), self%projected(n_windows), source=.false.)
+      allocate (self%built(n_windows), self%projected(n_windows), self%may_follow(n_windows), &
+                source=.false.)
       do i = 1, size(tips, kind=ik)
          self%window_of(i) = merge(1_ik, i, is_body)
          self%tip(i)%fracture = tips(i)%fracture
@@ -113,22 +116,13 @@ contains
          associate (window => self%window(w))
             if (.not. self%is_asked(w, tips)) then
                self%built(w) = .false.
+               self%may_follow(w) = .false.
                cycle
             end if
             if (.not. any(asked(window%serves))) cycle
             if (.not. self%built(w)) then
-               call window%build(scene, network, self%tip, error)
+               call renew(self, w, scene, network, tips, error)
                if (allocated(error)) return
-               if (any(tips(window%serves)%is_free .and. self%tip(window%serves)%at == 0)) then
-                  call raise_error(error, "evaluate", "a window has not the tip that it is for")
-                  return
-               end if
-               self%built(w) = .true.
-               self%projected(w) = .false.
-               self%was_free(:, w) = tips%is_free
-               do i = 1, size(tips, kind=ik)
-                  self%built_for(:, i, w) = tips(i)%xy
-               end do
             end if
             if (.not. self%projected(w)) then
                call window%project(mesher, mesh, values, error)
@@ -145,6 +139,38 @@ contains
          end associate
       end do
    end subroutine evaluate
+
+   !> Mesh a window anew, or let its mesh follow the tips if nothing else has changed in it.
+   subroutine renew(self, w, scene, network, tips, error)
+      class(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: w  !< window
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(tip_t), intent(in) :: tips(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+      logical :: follows
+
+      associate (window => self%window(w))
+         follows = self%may_follow(w) .and. all(tips%is_free .eqv. self%was_free(:, w))
+         if (follows) call window%follow(scene, network, self%tip, follows, error)
+         if (.not. (follows .or. allocated(error))) then
+            call window%build(scene, network, self%tip, error)
+         end if
+         if (allocated(error)) return
+         if (any(tips(window%serves)%is_free .and. self%tip(window%serves)%at == 0)) then
+            call raise_error(error, "evaluate", "a window has not the tip that it is for")
+            return
+         end if
+      end associate
+      self%built(w) = .true.
+      self%may_follow(w) = .true.
+      self%projected(w) = .false.
+      self%was_free(:, w) = tips%is_free
+      do i = 1, size(tips, kind=ik)
+         self%built_for(:, i, w) = tips(i)%xy
+      end do
+   end subroutine renew
 
    !> What a window has found, to the free tips that it serves.
    pure subroutine tell(self, window, tips)
@@ -184,6 +210,21 @@ contains
 
       is_asked = any(tips(self%window(window)%serves)%is_free)
    end function is_asked
+
+   !> Meshes of some windows are those of other tips than these: to be made anew, or to be moved.
+   pure logical function has_to_mesh(self, tips)
+      class(windows_t), intent(in) :: self
+      type(tip_t), intent(in) :: tips(:)
+      integer(ik) :: i, w
+
+      has_to_mesh = .false.
+      do w = 1, size(self%window, kind=ik)
+         if (.not. self%is_asked(w, tips)) cycle
+         has_to_mesh = has_to_mesh .or. .not. self%built(w)
+         if (has_to_mesh) return
+         has_to_mesh = any([(has_moved(self, tips, i, w), i=1, size(tips, kind=ik))])
+      end do
+   end function has_to_mesh
 
    !> The state that was evaluated last has become history: its slip is what the next one starts
    !! from.
@@ -249,6 +290,7 @@ contains
       integer(ik), intent(in) :: tip
 
       self%built(self%window_of(tip)) = .false.
+      self%may_follow(self%window_of(tip)) = .false.
       call self%tip(tip)%forget_coarse_error()
    end subroutine make_anew
 
@@ -271,7 +313,9 @@ contains
    pure subroutine network_changed(self)
       class(windows_t), intent(inout) :: self
 
-      if (allocated(self%built)) self%built = .false.
+      if (.not. allocated(self%built)) return
+      self%built = .false.
+      self%may_follow = .false.
    end subroutine network_changed
 
    !> The coarse mesh is another one now.

@@ -12,6 +12,7 @@ program test_growth_segment
    call test_bounds()
    call test_rest()
    call test_steep()
+   call test_guesses()
    call checks%finish()
 
 contains
@@ -35,6 +36,38 @@ contains
       call checks%is_close(segment%reached, 0.2_rk, 1.0e-15_rk, "the rest as well")
       call checks%is_true(.not. segment%is_open, "nothing is left of it")
    end subroutine test_rest
+
+   !> A step begins where the speed of the last one leads to, and a piece where the excess that is
+   !! left at the end of the one before vanishes on it; neither beyond its ends, and only if known.
+   subroutine test_guesses()
+      type(segment_t) :: segment
+      logical :: has_moved
+
+      call segment%open_segment([0.0_rk, 0.0_rk], [1.0_rk, 0.0_rk], 1.0_rk)
+      associate (least => segment%lowest())
+         call segment%keep_pace(10.0_rk)
+         call checks%is_close(segment%reached, least, 0.0_rk, "no speed is known")
+         call segment%set_out(0.2_rk)
+         call checks%is_close(segment%reached, least, 0.0_rk, "no slope is known")
+      end associate
+      call segment%improve(0.10_rk, tolerance, has_moved)
+      call segment%go_to(0.3_rk, has_moved)
+      call segment%learn(0.05_rk)
+      call segment%accept()
+      call segment%pace(0.3_rk, 2.0_rk)
+      call segment%keep_pace(1.0_rk)
+      call checks%is_close(segment%reached, 0.45_rk, 1.0e-15_rk, "as fast as before")
+      call segment%keep_pace(10.0_rk)
+      call checks%is_close(segment%reached, 1.0_rk, 0.0_rk, "no farther than the piece")
+      call segment%pace(-0.1_rk, 1.0_rk)
+      call segment%keep_pace(1.0_rk)
+      call checks%is_close(segment%reached, 0.3_rk, 1.0e-15_rk, "never back")
+      associate (slope => segment%slope)
+         call segment%open_segment([1.0_rk, 0.0_rk], [0.0_rk, 1.0_rk], 1.0_rk)
+         call segment%set_out(-0.5_rk*slope)
+         call checks%is_close(segment%reached, 0.5_rk, 1.0e-15_rk, "where the excess vanishes")
+      end associate
+   end subroutine test_guesses
 
    !> The excess falls along the piece, (s/s0)^(-1/2) - 1: the tip ends at s0, and remembers it.
    subroutine test_equilibrium()

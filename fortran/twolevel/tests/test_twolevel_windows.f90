@@ -23,24 +23,50 @@ program test_twolevel_windows
    call start(simulation)
    before = simulation%tip(2)%intensity%k2
    place = simulation%tip(1)%xy
-   call move(simulation, 0.5e-3_rk*length)
+   call move(simulation, place, 0.5e-3_rk*length)
    call checks%is_true(is_meshed_for(1_ik), "the tip's own window follows it")
    call checks%is_true(.not. is_meshed_for(2_ik), "the other one's stays")
    call checks%is_close(simulation%tip(2)%intensity%k2/before, 1.0_rk, 1.0e-3_rk, "its intensity")
    ! Small moves add up.
-   call move(simulation, 1.1e-3_rk*length)
+   call move(simulation, place, 1.1e-3_rk*length)
    call checks%is_true(is_meshed_for(1_ik) .and. is_meshed_for(2_ik), "noticeable to both")
    ! Longer by 5 %: K_II by 2.5 % where nothing else is near, half of what the near tip has.
-   call move(simulation, 0.05_rk*length)
+   call move(simulation, place, 0.05_rk*length)
    call checks%is_true(is_meshed_for(2_ik), "far")
    call checks%is_close(simulation%tip(2)%intensity%k2/before, sqrt(1.05_rk), 5.0e-3_rk, &
                         "the intensity grows with the crack")
+   call test_following()
    call checks%finish()
 
 contains
 
-   subroutine start(simulation)
+   !> The mesh of a tip's own window follows it along the last piece of its path, forth and back,
+   !! and the intensity is that of the crack as long as it is: it goes with the root of its length.
+   subroutine test_following()
+      real(rk), parameter :: piece = 0.05_rk*length
+      real(rk) :: before, place(2)
+      real(rk), parameter :: gains(4) = [-0.4_rk, 0.3_rk, 0.7_rk, 1.5_rk]*piece
+      type(twolevel_simulation_t) :: simulation
+      integer(ik) :: k
+
+      call start(simulation, piece)
+      before = simulation%tip(1)%intensity%k2
+      place = simulation%tip(1)%xy
+      do k = 1, size(gains, kind=ik)
+         call move(simulation, place, gains(k))
+         associate (window => simulation%windows%window(1))
+            call checks%is_true(window%has_moved .eqv. k < 4, "it follows, if not too far")
+         end associate
+         call checks%is_close(simulation%tip(1)%intensity%k2/before, &
+                              sqrt((length + gains(k))/length), 3.0e-3_rk, &
+                              "the intensity of a tip whose window has followed it")
+      end do
+   end subroutine test_following
+
+   !> The last piece at the first tip is as long as given, or there is only one.
+   subroutine start(simulation, piece)
       type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), intent(in), optional :: piece  !< [m]
       real(rk), parameter :: along = 0.5_rk*length*sqrt(0.5_rk)
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -48,15 +74,22 @@ contains
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       scene%discretization%size_fracture = 0.02_rk
       scene%discretization%window = 0.4_rk
-      call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
-                        0.0_rk)
+      if (present(piece)) then
+         associate (x => 1.0_rk + along*[-1.0_rk, -1.0_rk + 2.0_rk*piece/length, 1.0_rk])
+            call add_fracture(scene, "f", x, x, 0.1_rk, 0.0_rk)
+         end associate
+      else
+        call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
+                           0.0_rk)
+      end if
       call evaluate_initial_state(scene, simulation, timers, error)
       call checks%no_error(error, "initial state")
    end subroutine start
 
    !> The first tip goes on from where it was at first, along the crack; the coarse level stays.
-   subroutine move(simulation, by)
+   subroutine move(simulation, place, by)
       type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: place(2)  !< where it was [m]
       real(rk), intent(in) :: by  !< [m]
       type(error_t), allocatable :: error
 
