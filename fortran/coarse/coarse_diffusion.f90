@@ -46,7 +46,7 @@ contains
       call new_local_system(n, m, local)
       call add_corners(mesh, resistivity, regions, region, local)
       call add_fracture_faces(mesh, regions, region, local)
-      local%rhs(:m, :n) = local%coupling(:m, :n)
+      local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
       call apply_sides(mesh, is_given, given, regions, region, local)
       call eliminate(local, response, share, info)
    end subroutine find_flux_stencil
@@ -72,7 +72,7 @@ contains
          w = area/3.0_rk
          do j = 1, 2
             do i = 1, 2
-               local%matrix(at(i), at(j)) = local%matrix(at(i), at(j)) &
+               local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
                                             + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
                                                                    matmul(resistivity(:, :, kind), &
                                                                                        lever(:, j)))
@@ -109,13 +109,13 @@ contains
       type(local_system_t), intent(inout) :: local
       integer(ik) :: f, j, last
 
-      last = local%m + 1
+      last = local%last()
       do j = 1, regions%flow_faces%length(region)
          f = regions%flow_faces%at(region, j)
          associate (side => mesh%face_side(f))
             if (side == 0) cycle
             if (is_given(side)) then
-               local%rhs(last, j) = local%rhs(last, j) - 0.5_rk*face_length(mesh, f)*given(side)
+               local%equations(last, j) = local%equations(last, j) - 0.5_rk*face_length(mesh, f)*given(side)
             else
                call fix_unknown(local, j, given(side))
             end if

@@ -20,9 +20,10 @@ module coarse_elimination
    type :: local_system_t
       integer(ik) :: n = 0  !< unknowns to be eliminated
       integer(ik) :: m = 0  !< global unknowns around the vertex
-      real(rk), allocatable :: matrix(:, :)  !< M (n, n)
+      real(rk), allocatable :: equations(:, :)  !< (M, R, b)' (n + m + 1, n)
       real(rk), allocatable :: coupling(:, :)  !< C' (m, n)
-      real(rk), allocatable :: rhs(:, :)  !< (R, b)' (m + 1, n)
+   contains
+      procedure :: last
    end type local_system_t
 
    !> The eliminated unknowns, a column (m + 1) for each, per unit of each global one around the
@@ -49,19 +50,24 @@ contains
       integer(ik) :: room(2)
 
       room = 0
-      if (allocated(local%matrix)) room = [size(local%matrix, 1), size(local%coupling, 1)]
-      if (any(room < [n, m])) then
-         if (allocated(local%matrix)) deallocate (local%matrix, local%coupling, local%rhs)
-         room = max(room, [n, m])
-         allocate (local%matrix(room(1), room(1)), local%coupling(room(2), room(1)), &
-                   local%rhs(room(2) + 1, room(1)))
+      if (allocated(local%coupling)) room = shape(local%coupling)
+      if (any(room < [m, n])) then
+         if (allocated(local%coupling)) deallocate (local%equations, local%coupling)
+         room = max(room, [m, n])
+         allocate (local%equations(sum(room) + 1, room(2)), local%coupling(room(1), room(2)))
       end if
       local%n = n
       local%m = m
-      local%matrix(:n, :n) = 0.0_rk
+      local%equations(:local%last(), :n) = 0.0_rk
       local%coupling(:m, :n) = 0.0_rk
-      local%rhs(:m + 1, :n) = 0.0_rk
    end subroutine new_local_system
+
+   !> Where b stands in an equation.
+   pure integer(ik) function last(self)
+      class(local_system_t), intent(in) :: self
+
+      last = self%n + self%m + 1
+   end function last
 
    !> Replace the equation of an unknown by: unknown = value.
    pure subroutine fix_unknown(local, i, value)
@@ -69,13 +75,12 @@ contains
       integer(ik), intent(in) :: i  !< the unknown
       real(rk), intent(in) :: value  !< [unit of the unknown]
 
-      associate (n => local%n, last => local%m + 1)
-         local%rhs(last, :n) = local%rhs(last, :n) - local%matrix(:n, i)*value
-         local%matrix(:n, i) = 0.0_rk
-         local%matrix(i, :n) = 0.0_rk
-         local%matrix(i, i) = 1.0_rk
-         local%rhs(:last, i) = 0.0_rk
-         local%rhs(last, i) = value
+      associate (n => local%n, last => local%last(), equations => local%equations)
+         equations(last, :n) = equations(last, :n) - equations(:n, i)*value
+         equations(:last, i) = 0.0_rk
+         equations(i, :n) = 0.0_rk
+         equations(i, i) = 1.0_rk
+         equations(last, i) = value
       end associate
    end subroutine fix_unknown
 
@@ -85,86 +90,86 @@ contains
       type(response_t), intent(out) :: response
       type(share_t), intent(out) :: share
       integer(ik), intent(out) :: info
-      integer(ik) :: a, b, i, last
+      integer(ik) :: a, b, first, i
+      real(rk) :: c
 
-      last = local%m + 1
-      call solve(local%n, last, local%matrix, local%rhs, info)
+      call solve(local%n, local%last(), local%equations, info)
       if (info /= 0) return
       allocate (share%matrix(local%m, local%m), share%known(local%m))
       share%matrix = 0.0_rk
       share%known = 0.0_rk
-      do i = 1, local%n
-         associate (c => local%coupling(:local%m, i), y => local%rhs(:last, i))
+      first = local%n + 1
+      response%matrix = local%equations(first:local%last(), :local%n)
+      associate (y => response%matrix)
+         do i = 1, local%n
             do b = 1, local%m
-               if (.not. abs(c(b)) > 0.0_rk) cycle  ! each cell has a part in few of the unknowns
+               c = local%coupling(b, i)
+               if (.not. abs(c) > 0.0_rk) cycle  ! a cell has a part in few of the unknowns
                do a = 1, local%m
-                  share%matrix(a, b) = share%matrix(a, b) - c(b)*y(a)
+                  share%matrix(a, b) = share%matrix(a, b) - c*y(a, i)
                end do
-               share%known(b) = share%known(b) + c(b)*y(last)
+               share%known(b) = share%known(b) + c*y(local%m + 1, i)
             end do
-         end associate
-      end do
-      response%matrix = local%rhs(:last, :local%n)
+         end do
+      end associate
    end subroutine eliminate
 
-   !> Gauss elimination, an equation per column, by the largest pivots in a column of the matrix.
-   pure subroutine solve(n, m, matrix, rhs, info)
+   !> Gauss elimination, an equation per column, by the largest pivots in a row of the array. What
+   !! stands behind the n coefficients of the equations becomes that of the solutions.
+   pure subroutine solve(n, last, equations, info)
       integer(ik), intent(in) :: n  !< equations
-      integer(ik), intent(in) :: m  !< right-hand sides
-      real(rk), intent(inout), contiguous :: matrix(:, :)  !< (n, n); used up
-      real(rk), intent(inout), contiguous :: rhs(:, :)  !< (m, n); the solutions afterwards
-      integer(ik), intent(out) :: info  !< 0, or the first column without a pivot
-      real(rk) :: factor, inverse
+      integer(ik), intent(in) :: last  !< where they end
+      real(rk), intent(inout), contiguous :: equations(:, :)  !< (last, n)
+      integer(ik), intent(out) :: info  !< 0, or the first unknown without a pivot
+      real(rk) :: factor, kept
       integer(ik) :: a, i, k, pivot
 
       info = 0
       do k = 1, n
          pivot = k
          do i = k + 1, n
-            if (abs(matrix(k, i)) > abs(matrix(k, pivot))) pivot = i
+            if (abs(equations(k, i)) > abs(equations(k, pivot))) pivot = i
          end do
-         if (.not. abs(matrix(k, pivot)) > 0.0_rk) then
+         if (.not. abs(equations(k, pivot)) > 0.0_rk) then
             info = k
             return
          end if
          if (pivot /= k) then
-            do a = k, n
-               factor = matrix(a, k)
-               matrix(a, k) = matrix(a, pivot)
-               matrix(a, pivot) = factor
-            end do
-            do a = 1, m
-               factor = rhs(a, k)
-               rhs(a, k) = rhs(a, pivot)
-               rhs(a, pivot) = factor
+            do a = k, last
+               kept = equations(a, k)
+               equations(a, k) = equations(a, pivot)
+               equations(a, pivot) = kept
             end do
          end if
-         inverse = 1.0_rk/matrix(k, k)
          do i = k + 1, n
-            if (.not. abs(matrix(k, i)) > 0.0_rk) cycle
-            factor = matrix(k, i)*inverse
-            do a = k + 1, n
-               matrix(a, i) = matrix(a, i) - factor*matrix(a, k)
-            end do
-            do a = 1, m
-               rhs(a, i) = rhs(a, i) - factor*rhs(a, k)
-            end do
+            if (abs(equations(k, i)) > 0.0_rk) then
+               factor = equations(k, i)/equations(k, k)
+               call subtract(last - k, factor, equations(k + 1:last, k), equations(k + 1:last, i))
+            end if
          end do
       end do
       do k = n, 1, -1
-         inverse = 1.0_rk/matrix(k, k)
-         do a = 1, m
-            rhs(a, k) = rhs(a, k)*inverse
-         end do
+         equations(n + 1:last, k) = equations(n + 1:last, k)/equations(k, k)
          do i = 1, k - 1
-            if (.not. abs(matrix(k, i)) > 0.0_rk) cycle
-            factor = matrix(k, i)
-            do a = 1, m
-               rhs(a, i) = rhs(a, i) - factor*rhs(a, k)
-            end do
+            if (abs(equations(k, i)) > 0.0_rk) then
+               call subtract(last - n, equations(k, i), equations(n + 1:last, k), &
+                             equations(n + 1:last, i))
+            end if
          end do
       end do
    end subroutine solve
+
+   !> y - factor x instead of y.
+   pure subroutine subtract(n, factor, x, y)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: factor, x(n)
+      real(rk), intent(inout) :: y(n)
+      integer(ik) :: i
+
+      do i = 1, n
+         y(i) = y(i) - factor*x(i)
+      end do
+   end subroutine subtract
 
    !> The eliminated unknowns from the global ones around the vertex, in their units.
    pure subroutine apply(self, d, y)

@@ -63,7 +63,7 @@ contains
       call new_local_system(n, m, local)
       call add_corners(mesh, rock, regions, region, local, doubled)
       call add_jumps(mesh, regions, region, local)
-      local%rhs(:m, :n) = -local%coupling(:m, :n)
+      local%equations(n + 1:n + m, :n) = -local%coupling(:m, :n)
       call apply_sides(mesh, sides, regions, region, local, in_situ)
       if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
       call eliminate(local, response, share, info)
@@ -105,11 +105,11 @@ contains
          do j = 1, 2
             do i = 1, 2
                w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear(here))
-               call add_compliance(local%matrix, at(i), at(j), w, nu, lever(:, i), lever(:, j))
+               call add_compliance(local%equations, at(i), at(j), w, nu, lever(:, i), lever(:, j))
             end do
             w = sign_out(j)*area/(3.0_rk*doubled(rotation - first))
-            call add_symmetric(local%matrix, at(j), rotation, -w*lever(2, j))
-            call add_symmetric(local%matrix, at(j) + 1, rotation, w*lever(1, j))
+            call add_symmetric(local%equations, at(j), rotation, -w*lever(2, j))
+            call add_symmetric(local%equations, at(j) + 1, rotation, w*lever(1, j))
             w = sign_out(j)*area/3.0_rk
             local%coupling(at_component(c, 1), at(j)) = 0.5_rk*sign_out(j)*length(j)
             local%coupling(at_component(c, 2), at(j) + 1) = 0.5_rk*sign_out(j)*length(j)
@@ -130,7 +130,7 @@ contains
       integer(ik) :: i, k
 
       do k = 1, size(rows, 2, kind=ik)
-         left = local%matrix(:n_tractions, n_tractions + k)
+         left = local%equations(:n_tractions, n_tractions + k)
          whole = norm2(left)
          rows(:, k) = 0.0_rk
          if (.not. whole > 0.0_rk) cycle
@@ -205,7 +205,7 @@ contains
       real(rk) :: traction(2)
       integer(ik) :: axis, f, j, last, n
 
-      last = local%m + 1
+      last = local%last()
       do j = 1, regions%faces%length(region)
          f = regions%faces%at(region, j)
          if (mesh%face_side(f) == 0) cycle
@@ -220,12 +220,13 @@ contains
             do axis = 1, 2
                n = 2*(j - 1) + axis
                if (side%displacement_given(axis)) then
-                  local%rhs(last, n) = local%rhs(last, n) + half_length*side%displacement(axis)
+                  local%equations(last, n) = local%equations(last, n) &
+                                             + half_length*side%displacement(axis)
                else if (side%spring(axis) > 0.0_rk) then
                   ! The side moves by what the traction lacks of the given one, over the spring.
                   associate (give => half_length/side%spring(axis))
-                     local%matrix(n, n) = local%matrix(n, n) + give
-                     local%rhs(last, n) = local%rhs(last, n) + give*traction(axis)
+                     local%equations(n, n) = local%equations(n, n) + give
+                     local%equations(last, n) = local%equations(last, n) + give*traction(axis)
                   end associate
                else
                   call fix_unknown(local, n, traction(axis))
@@ -236,7 +237,7 @@ contains
       ! Where all tractions are given, as in a loaded corner, the rotation is free and without
       ! effect.
       do n = 2*regions%faces%length(region) + 1, local%n
-         if (.not. any(abs(local%matrix(:local%n, n)) > 0.0_rk)) local%matrix(n, n) = 1.0_rk
+         if (.not. any(abs(local%equations(:local%n, n)) > 0.0_rk)) local%equations(n, n) = 1.0_rk
       end do
    end subroutine apply_sides
 

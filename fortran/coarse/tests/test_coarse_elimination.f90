@@ -20,10 +20,10 @@ contains
       type(local_system_t), intent(out) :: local
 
       call new_local_system(2_ik, 2_ik, local)
-      local%matrix = reshape([2.0_rk, 1.0_rk, 1.0_rk, 1.0_rk], [2, 2])
+      local%equations(:2, :) = reshape([2.0_rk, 1.0_rk, 1.0_rk, 1.0_rk], [2, 2])
       local%coupling = reshape([1.0_rk, 0.0_rk, 0.0_rk, 4.0_rk], [2, 2])
-      local%rhs(:2, :) = local%coupling
-      local%rhs(3, 1) = 3.0_rk
+      local%equations(3:4, :) = local%coupling
+      local%equations(5, 1) = 3.0_rk
    end subroutine some_system
 
    !> The inverse of M is (1 -1; -1 2).
@@ -66,7 +66,7 @@ contains
       integer(ik) :: info
 
       call some_system(local)
-      local%matrix = 1.0_rk
+      local%equations(:2, :) = 1.0_rk
       call eliminate(local, response, share, info)
       call checks%is_true(info /= 0, "a singular system is reported")
    end subroutine refuses_singular
