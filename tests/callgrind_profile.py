@@ -69,7 +69,7 @@ def profile(scene: str, place: Path) -> Profile:
             *("run", "scene.nml", "--out", "out", "--quiet"),
         ],
         cwd=place,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
         check=False,

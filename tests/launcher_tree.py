@@ -41,6 +41,7 @@ if [[ $1 == name ]]; then
 fi
 printf 'solver %s\\n' "$*"
 printf 'threads %s\\n' "$OPENBLAS_NUM_THREADS"
+if [[ $OMP_NUM_THREADS != "$OPENBLAS_NUM_THREADS" ]]; then printf 'loops on %s\\n' "$OMP_NUM_THREADS"; fi
 source "$2"
 """
 

@@ -82,7 +82,7 @@ def test_results_stay_until_there_are_new_ones(fault: str, tmp_path: Path) -> No
         done = subprocess.run(
             ["bash", "-c", f"ulimit -v 440000; {SOLVER} run small.nml --out out --quiet"],
             cwd=tmp_path,
-            env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             capture_output=True,
             text=True,
             check=False,

@@ -1,10 +1,11 @@
 # What the launcher hands over to: the solver and the Python packages. Sourced by the launcher.
 # shellcheck shell=bash
 
-# solve THREADS ARGUMENT...: call the solver, with as many threads of the dense linear algebra.
+# solve THREADS ARGUMENT...: call the solver, with as many threads of its loops and of the dense
+# linear algebra.
 solve() {
     local status lacking
-    OPENBLAS_NUM_THREADS=$1 supervise "$solver" "${@:2}"
+    OPENBLAS_NUM_THREADS=$1 OMP_NUM_THREADS=$1 supervise "$solver" "${@:2}"
     status=$?
     if ((status == 127)); then
         lacking=$(ldd "$solver" 2>/dev/null | sed -n 's/^[[:space:]]*\(.*\) => not found$/\1/p')

@@ -7,7 +7,7 @@ begin_steps() {
     steps_tried=0
     cd "$root" || fail 1 "$root cannot be entered"
     # As in a run; and the compiled tests take no more of a processor than they are given.
-    export OPENBLAS_NUM_THREADS=1
+    export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 }
 
 # step NAME COMMAND...: run it, go on in any case, remember a failure.

@@ -19,15 +19,15 @@ module coarse_diffusion
    implicit none(type, external)
    private
 
-   public :: cell_outflow, corner_gradient, find_flux_stencil
+   public :: cell_outflow, corner_gradient, find_flux_stencil, region_fluxes
 
 contains
 
    !> Eliminate the fluxes of one region.
    !!
    !! `info` is 0, or the local system could not be solved (degenerate cells).
-   subroutine find_flux_stencil(mesh, resistivity, is_given, given, regions, region, response, &
-                                share, info)
+   pure subroutine find_flux_stencil(mesh, resistivity, is_given, given, regions, region, local, &
+                                     response, share, info)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
@@ -35,23 +35,24 @@ contains
       real(rk), intent(in) :: given(:)  !< (sides) its value [Pa], or the flux out of the body [m/s]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local  !< memory to work in
       type(response_t), intent(out) :: response  !< fluxes [m/s]
       type(share_t), intent(out) :: share  !< flows into cells, and into fractures negated [m2/s]
       integer(ik), intent(out) :: info
-      type(local_system_t) :: local
-      integer(ik) :: m
+      integer(ik) :: m, n
 
       m = regions%blocks%length(region)
-      call new_local_system(regions%flow_faces%length(region), m, local)
+      n = regions%flow_faces%length(region)
+      call new_local_system(n, m, local)
       call add_corners(mesh, resistivity, regions, region, local)
       call add_fracture_faces(mesh, regions, region, local)
-      local%rhs(:, :m) = local%coupling
+      local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
       call apply_sides(mesh, is_given, given, regions, region, local)
       call eliminate(local, response, share, info)
    end subroutine find_flux_stencil
 
    !> What the cells' corners around the vertex give.
-   subroutine add_corners(mesh, resistivity, regions, region, local)
+   pure subroutine add_corners(mesh, resistivity, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
@@ -71,18 +72,18 @@ contains
          w = area/3.0_rk
          do j = 1, 2
             do i = 1, 2
-               local%matrix(at(i), at(j)) = local%matrix(at(i), at(j)) &
+               local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
                                             + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
                                                                    matmul(resistivity(:, :, kind), &
                                                                                        lever(:, j)))
             end do
-            local%coupling(at(j), c) = 0.5_rk*sign_out(j)*length(j)
+            local%coupling(c, at(j)) = 0.5_rk*sign_out(j)*length(j)
          end do
       end do
    end subroutine add_corners
 
    !> Scalars on the fracture faces, which are unknowns.
-   subroutine add_fracture_faces(mesh, regions, region, local)
+   pure subroutine add_fracture_faces(mesh, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
@@ -94,12 +95,12 @@ contains
          cell = fracture_cell_of_block(mesh, block)
          at = regions%flow_faces%place(region, &
                                        mesh%fracture%cell_faces(end_of_block(mesh, block), cell))
-         local%coupling(at, b) = -0.5_rk*face_length(mesh, mesh%fracture%cell_faces(1, cell))
+         local%coupling(b, at) = -0.5_rk*face_length(mesh, mesh%fracture%cell_faces(1, cell))
       end do
    end subroutine add_fracture_faces
 
    !> Outer boundary: the scalar is given, or the flux.
-   subroutine apply_sides(mesh, is_given, given, regions, region, local)
+   pure subroutine apply_sides(mesh, is_given, given, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       logical, intent(in) :: is_given(:)  !< (sides)
       real(rk), intent(in) :: given(:)  !< (sides) [Pa] or [m/s]
@@ -108,19 +109,35 @@ contains
       type(local_system_t), intent(inout) :: local
       integer(ik) :: f, j, last
 
-      last = size(local%rhs, 2)
+      last = local%last()
       do j = 1, regions%flow_faces%length(region)
          f = regions%flow_faces%at(region, j)
          associate (side => mesh%face_side(f))
             if (side == 0) cycle
             if (is_given(side)) then
-               local%rhs(j, last) = local%rhs(j, last) - 0.5_rk*face_length(mesh, f)*given(side)
+               local%equations(last, j) = local%equations(last, j) - 0.5_rk*face_length(mesh, f)*given(side)
             else
                call fix_unknown(local, j, given(side))
             end if
          end associate
       end do
    end subroutine apply_sides
+
+   !> Fluxes through the faces around one vertex.
+   pure subroutine region_fluxes(regions, responses, scalars, region, flux)
+      type(regions_t), intent(in) :: regions
+      type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
+      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      integer(ik), intent(in) :: region
+      real(rk), intent(out) :: flux(:)  !< (flow faces of the region) [m/s]
+      real(rk) :: around(regions%blocks%length(region))
+      integer(ik) :: b
+
+      do b = 1, size(around, kind=ik)
+         around(b) = scalars(regions%blocks%at(region, b))
+      end do
+      call responses(region)%apply(around, flux)
+   end subroutine region_fluxes
 
    !> What leaves each cell through its faces.
    subroutine cell_outflow(mesh, regions, responses, scalars, outflow)
@@ -135,7 +152,7 @@ contains
       outflow = 0.0_rk
       do r = 1, regions%n_regions
          allocate (flux(regions%flow_faces%length(r)))
-         call responses(r)%apply(scalars(regions%blocks%of(r)), flux)
+         call region_fluxes(regions, responses, scalars, r, flux)
          do j = 1, size(flux)
             f = regions%flow_faces%at(r, j)
             associate (cells => mesh%face_cells(:, f), flow => 0.5_rk*face_length(mesh, f)*flux(j))
@@ -148,33 +165,23 @@ contains
    end subroutine cell_outflow
 
    !> Gradient of the scalar at corner k of a cell.
-   pure subroutine corner_gradient(mesh, resistivity, regions, responses, scalars, cell, k, &
-                                   gradient)
+   pure subroutine corner_gradient(mesh, resistivity, regions, flux, cell, k, gradient)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
-      type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
-      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      real(rk), intent(in) :: flux(:)  !< of region_fluxes around the corner [m/s]
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: gradient(2)  !< [Pa/m]
-      integer(ik) :: faces(2), b, before, j, m, r, row
-      real(rk) :: sign_out(2), length(2), lever(2, 2), area, flux, velocity(2)
+      integer(ik) :: faces(2), j
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, velocity(2)
 
-      r = regions%region_of_node(mesh%cell_nodes(k, cell))
-      m = regions%blocks%length(r)
-      before = regions%blocks%first(r) - 1
       call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
       velocity = 0.0_rk
-      associate (response => responses(r)%matrix)
-         do j = 1, 2
-            row = regions%flow_faces%place(r, faces(j))
-            flux = response(row, m + 1)
-            do b = 1, m
-               flux = flux + response(row, b)*scalars(regions%blocks%item(before + b))
-            end do
-            velocity = velocity + sign_out(j)*lever(:, j)*flux
-         end do
-      end associate
+      do j = 1, 2
+         associate (row => regions%flow_faces%place(regions%regions_of_block(k, cell), faces(j)))
+            velocity = velocity + sign_out(j)*lever(:, j)*flux(row)
+         end associate
+      end do
       gradient = -matmul(resistivity(:, :, min(cell, size(resistivity, 3, kind=ik))), velocity)
    end subroutine corner_gradient
 

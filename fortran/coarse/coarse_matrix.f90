@@ -10,7 +10,7 @@ module coarse_matrix
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
    use coarse_diffusion, only: find_flux_stencil
-   use coarse_elimination, only: response_t, share_t
+   use coarse_elimination, only: local_system_t, share_t
    use coarse_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component
@@ -41,6 +41,16 @@ module coarse_matrix
    contains
       procedure :: elastic_forces
    end type matrix_t
+
+   !> What one vertex adds.
+   type :: stencil_t
+      type(share_t) :: elastic, flow
+      integer(ik) :: info = 0  !< not 0: it has none (degenerate cells)
+   end type stencil_t
+
+   !> Vertices whose stencils are found one after another by one thread, and those that are kept
+   !! until they are added, in the order of the vertices whatever the threads do.
+   integer(ik), parameter :: slice = 64, batch = 8*slice
 
 contains
 
@@ -75,16 +85,28 @@ contains
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(share_t) :: elastic, flow
-      integer(ik) :: at, c, r
+      type(stencil_t), allocatable :: stencil(:)
+      integer(ik) :: at, c, first, i, k, n
 
       call find_regions(mesh, regions, rock%stiffness)
       call find_pattern(mesh, regions, matrix)
-      do r = 1, regions%n_regions
-         call find_stencils(mesh, rock, sides, regions, r, elastic, flow, error, in_situ)
-         if (allocated(error)) return
-         call add_region(regions, r, elastic, flow, matrix)
-         call add_known(regions, r, elastic, flow, matrix)
+      allocate (stencil(min(batch, regions%n_regions)))
+      do first = 1, regions%n_regions, batch
+         n = min(batch, regions%n_regions - first + 1)
+         !$omp parallel do
+         do k = 1, n, slice
+            call find_stencils(mesh, rock, sides, regions, first + k - 1, &
+                               stencil(k:min(k + slice - 1, n)), in_situ)
+         end do
+         !$omp end parallel do
+         do i = 1, n
+            if (stencil(i)%info /= 0) then
+               call refuse_place(mesh%xy(:, regions%nodes%at(first + i - 1, 1_ik)), error)
+               return
+            end if
+            call add_region(regions, first + i - 1, stencil(i), matrix)
+            call add_known(regions, first + i - 1, stencil(i), matrix)
+         end do
       end do
       do c = 1, mesh%n_cells
          at = min(c, size(rock%shear, kind=ik))
@@ -105,7 +127,7 @@ contains
       type(matrix_t), intent(inout) :: matrix
       type(error_t), allocatable, intent(out) :: error
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(share_t) :: elastic, flow
+      type(stencil_t) :: stencil(1)
       integer(ik) :: r
 
       matrix%elastic_known = 0.0_rk
@@ -114,37 +136,40 @@ contains
          associate (faces => regions%faces)
             if (.not. any(mesh%face_side(faces%item(faces%first(r):faces%last(r))) > 0)) cycle
          end associate
-         call find_stencils(mesh, rock, sides, regions, r, elastic, flow, error, in_situ)
-         if (allocated(error)) return
-         call add_known(regions, r, elastic, flow, matrix)
+         call find_stencils(mesh, rock, sides, regions, r, stencil, in_situ)
+         if (stencil(1)%info /= 0) then
+            call refuse_place(mesh%xy(:, regions%nodes%at(r, 1_ik)), error)
+            return
+         end if
+         call add_known(regions, r, stencil(1), matrix)
       end do
    end subroutine renew_sides
 
-   !> Stress and flow around one vertex.
-   subroutine find_stencils(mesh, rock, sides, regions, region, elastic, flow, error, in_situ)
+   !> Stress and flow around vertices that follow each other.
+   subroutine find_stencils(mesh, rock, sides, regions, first, stencil, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(inout) :: regions
-      integer(ik), intent(in) :: region
-      type(share_t), intent(out) :: elastic, flow
-      type(error_t), allocatable, intent(out) :: error
+      integer(ik), intent(in) :: first  !< region
+      type(stencil_t), intent(out) :: stencil(:)
       type(in_situ_state_t), intent(in), optional :: in_situ
-      type(response_t) :: flux, traction
-      integer(ik) :: info
+      type(local_system_t) :: local
+      real(rk) :: given(size(sides))  ! [Pa] or [m/s]
+      integer(ik) :: i
 
-      call find_stress_stencil(mesh, rock, sides, regions, region, traction, elastic, info, in_situ)
-      if (info == 0) then
-         call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, &
-                                merge(sides%pressure, -sides%inflow, sides%pressure_given), &
-                                regions, region, flux, flow, info)
-      end if
-      if (info /= 0) then
-         call refuse_place(mesh%xy(:, regions%nodes%at(region, 1_ik)), error)
-         return
-      end if
-      call move_alloc(traction%matrix, regions%traction(region)%matrix)
-      call move_alloc(flux%matrix, regions%flux(region)%matrix)
+      given = merge(sides%pressure, -sides%inflow, sides%pressure_given)
+      do i = 1, size(stencil, kind=ik)
+         associate (r => first + i - 1, elastic => stencil(i)%elastic, flow => stencil(i)%flow, &
+                    info => stencil(i)%info)
+            call find_stress_stencil(mesh, rock, sides, regions, r, local, regions%traction(r), &
+                                     elastic, info, in_situ)
+            if (info == 0) then
+               call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, given, &
+                                      regions, r, local, regions%flux(r), flow, info)
+            end if
+         end associate
+      end do
    end subroutine find_stencils
 
    !> The error of cells that no stencil can be found on.
@@ -198,43 +223,49 @@ contains
    end subroutine find_pattern
 
    !> Add the shares of one region.
-   subroutine add_region(regions, region, elastic, flow, matrix)
+   pure subroutine add_region(regions, region, stencil, matrix)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
-      type(share_t), intent(in) :: elastic, flow
+      type(stencil_t), intent(in) :: stencil
       type(matrix_t), intent(inout) :: matrix
-      integer(ik) :: a, at_a, at_b, b, entry, row
-      integer(ik), allocatable :: blocks(:)
+      integer(ik) :: a, at_a, at_b, b, col, entry, i, j, row
 
-      allocate (blocks, source=regions%blocks%of(region))
-      do a = 1, size(blocks)
-         row = blocks(a)
-         at_a = at_component(a, 1)
-         do b = 1, size(blocks)
-            if (blocks(b) > row) cycle
-            at_b = at_component(b, 1)
-            entry = matrix%columns%first(row) - 1 + matrix%columns%place(row, blocks(b))
-            matrix%elastic(:, :, entry) = matrix%elastic(:, :, entry) &
-                                          + elastic%matrix(at_a:at_a + 2, at_b:at_b + 2)
-            matrix%flow(entry) = matrix%flow(entry) + flow%matrix(a, b)
+      do a = 1, regions%blocks%length(region)
+         row = regions%blocks%at(region, a)
+         at_a = at_component(a, 1) - 1
+         do b = 1, regions%blocks%length(region)
+            col = regions%blocks%at(region, b)
+            if (col > row) cycle
+            at_b = at_component(b, 1) - 1
+            entry = matrix%columns%first(row)
+            do while (matrix%columns%item(entry) /= col)
+               entry = entry + 1
+            end do
+            do j = 1, 3
+               do i = 1, 3
+                  matrix%elastic(i, j, entry) = matrix%elastic(i, j, entry) &
+                                                + stencil%elastic%matrix(at_a + i, at_b + j)
+               end do
+            end do
+            matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
          end do
       end do
    end subroutine add_region
 
    !> Add what the boundary data of one region give.
-   subroutine add_known(regions, region, elastic, flow, matrix)
+   pure subroutine add_known(regions, region, stencil, matrix)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
-      type(share_t), intent(in) :: elastic, flow
+      type(stencil_t), intent(in) :: stencil
       type(matrix_t), intent(inout) :: matrix
-      integer(ik) :: a, at
+      integer(ik) :: a, at, row
 
       do a = 1, regions%blocks%length(region)
          at = at_component(a, 1)
-         associate (row => regions%blocks%at(region, a))
-            matrix%elastic_known(:, row) = matrix%elastic_known(:, row) + elastic%known(at:at + 2)
-            matrix%flow_known(row) = matrix%flow_known(row) + flow%known(a)
-         end associate
+         row = regions%blocks%at(region, a)
+         matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
+                                        + stencil%elastic%known(at:at + 2)
+         matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
       end do
    end subroutine add_known
 

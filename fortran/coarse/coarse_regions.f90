@@ -11,6 +11,7 @@ module coarse_regions
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
    use coarse_elimination, only: response_t
+   use coarse_geometry, only: corner_geometry
    use coarse_layout, only: block_count, end_block
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -41,6 +42,9 @@ module coarse_regions
       !> (3, corner, n_cells) where, in the packed tractions of at_traction, those on the faces
       !! after and before a corner begin, and where the rotation of its node stands
       integer(ik), allocatable :: at_corner(:, :, :)
+      !> (2, 2, corner, n_cells) what these two tractions build the stress there from (component,
+      !! face), turned where they count as those of the other side [-]
+      real(rk), allocatable :: lever(:, :, :, :)
    contains
       procedure :: traction_count
       procedure :: at_traction
@@ -144,17 +148,17 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(inout) :: regions
       integer(ik) :: c, faces(2), j, k, r
-      real(rk) :: sign_out
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area
 
-      allocate (regions%at_corner(3, 3, mesh%n_cells))
+      allocate (regions%at_corner(3, 3, mesh%n_cells), regions%lever(2, 2, 3, mesh%n_cells))
       do c = 1, mesh%n_cells
          do k = 1, 3
             r = regions%regions_of_block(k, c)
-            faces = mesh%cell_faces([k, mod(k + 1, 3_ik) + 1], c)
+            call corner_geometry(mesh, c, k, faces, sign_out, length, lever, area)
             do j = 1, 2
-               sign_out = 1.0_rk
-               call traction_face(mesh, faces(j), sign_out)
+               call traction_face(mesh, faces(j), sign_out(j))
                regions%at_corner(j, k, c) = regions%at_traction(r, faces(j))
+               regions%lever(:, j, k, c) = sign_out(j)*lever(:, j)
             end do
             regions%at_corner(3, k, c) = regions%at_rotation(r, regions%rotation_of_corner(k, c))
          end do

@@ -42,51 +42,52 @@ contains
    !> Eliminate the tractions and the rotations of one region.
    !!
    !! `info` is 0, or the local system could not be solved (degenerate cells).
-   subroutine find_stress_stencil(mesh, rock, sides, regions, region, response, share, info, &
-                                  in_situ)
+   pure subroutine find_stress_stencil(mesh, rock, sides, regions, region, local, response, share, &
+                                       info, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
+      type(local_system_t), intent(inout) :: local  !< memory to work in
       type(response_t), intent(out) :: response  !< tractions x, y [Pa], then rotations [-]
       type(share_t), intent(out) :: share  !< forces [N/m] and contents [m2]
       integer(ik), intent(out) :: info
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(local_system_t) :: local
-      real(rk), allocatable :: doubled(:)
-      integer(ik) :: k, m, n_tractions
+      real(rk) :: doubled(regions%nodes%length(region))
+      integer(ik) :: k, m, n, n_tractions
 
       n_tractions = 2*regions%faces%length(region)
+      n = n_tractions + regions%nodes%length(region)
       m = 3*regions%blocks%length(region)
-      call new_local_system(n_tractions + regions%nodes%length(region), m, local)
+      call new_local_system(n, m, local)
       call add_corners(mesh, rock, regions, region, local, doubled)
       call add_jumps(mesh, regions, region, local)
-      local%rhs(:, :m) = -local%coupling
+      local%equations(n + 1:n + m, :n) = -local%coupling(:m, :n)
       call apply_sides(mesh, sides, regions, region, local, in_situ)
       if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
       call eliminate(local, response, share, info)
       if (info /= 0) return
       do k = 1, size(doubled, kind=ik)
-         associate (rotation => response%matrix(n_tractions + k, :))
+         associate (rotation => response%matrix(:, n_tractions + k))
             rotation = rotation/doubled(k)
          end associate
       end do
    end subroutine find_stress_stencil
 
    !> What the cells' corners around the vertex give.
-   subroutine add_corners(mesh, rock, regions, region, local, doubled)
+   pure subroutine add_corners(mesh, rock, regions, region, local, doubled)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-      real(rk), allocatable, intent(out) :: doubled(:)  !< 2 G of each rotation [Pa]
+      real(rk), intent(out) :: doubled(:)  !< 2 G of each rotation [Pa]
       integer(ik) :: at(2), c, cell, faces(2), first, here, i, j, k, rotation
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, nu, w
 
       first = 2*regions%faces%length(region)
-      allocate (doubled(regions%nodes%length(region)), source=0.0_rk)
+      doubled = 0.0_rk
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
          k = findloc(regions%regions_of_block(:, cell), region, dim=1)
@@ -104,15 +105,15 @@ contains
          do j = 1, 2
             do i = 1, 2
                w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear(here))
-               call add_compliance(local%matrix, at(i), at(j), w, nu, lever(:, i), lever(:, j))
+               call add_compliance(local%equations, at(i), at(j), w, nu, lever(:, i), lever(:, j))
             end do
             w = sign_out(j)*area/(3.0_rk*doubled(rotation - first))
-            call add_symmetric(local%matrix, at(j), rotation, -w*lever(2, j))
-            call add_symmetric(local%matrix, at(j) + 1, rotation, w*lever(1, j))
+            call add_symmetric(local%equations, at(j), rotation, -w*lever(2, j))
+            call add_symmetric(local%equations, at(j) + 1, rotation, w*lever(1, j))
             w = sign_out(j)*area/3.0_rk
-            local%coupling(at(j), at_component(c, 1)) = 0.5_rk*sign_out(j)*length(j)
-            local%coupling(at(j) + 1, at_component(c, 2)) = 0.5_rk*sign_out(j)*length(j)
-            local%coupling(at(j):at(j) + 1, at_component(c, 3)) = &
+            local%coupling(at_component(c, 1), at(j)) = 0.5_rk*sign_out(j)*length(j)
+            local%coupling(at_component(c, 2), at(j) + 1) = 0.5_rk*sign_out(j)*length(j)
+            local%coupling(at_component(c, 3), at(j):at(j) + 1) = &
                w*lever(:, j)*rock%biot(here)/(2.0_rk*(rock%lame(here) + rock%shear(here)))
          end do
       end do
@@ -120,16 +121,16 @@ contains
 
    !> Rotations whose equations, in the tractions that are not given, follow from those before:
    !! fixed, so that the rotations before stand for them too.
-   subroutine leave_out_repeated(n_tractions, local)
+   pure subroutine leave_out_repeated(n_tractions, local)
       integer(ik), intent(in) :: n_tractions
       type(local_system_t), intent(inout) :: local
       real(rk), parameter :: nothing = 1.0e-10_rk  !< what is left of a repeated row
-      real(rk) :: rows(n_tractions, size(local%matrix, 1) - n_tractions), left(n_tractions)
+      real(rk) :: rows(n_tractions, local%n - n_tractions), left(n_tractions)
       real(rk) :: whole
       integer(ik) :: i, k
 
       do k = 1, size(rows, 2, kind=ik)
-         left = local%matrix(n_tractions + k, :n_tractions)
+         left = local%equations(:n_tractions, n_tractions + k)
          whole = norm2(left)
          rows(:, k) = 0.0_rk
          if (.not. whole > 0.0_rk) cycle
@@ -145,7 +146,7 @@ contains
    end subroutine leave_out_repeated
 
    !> Jumps of the fracture cells, which are unknowns: each end's acts in the region where it lies.
-   subroutine add_jumps(mesh, regions, region, local)
+   pure subroutine add_jumps(mesh, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
@@ -160,8 +161,8 @@ contains
          f = mesh%fracture%cell_faces(1, cell)
          half_length = 0.5_rk*face_length(mesh, f)
          at = 2*regions%faces%place(region, f) - 1
-         local%coupling(at, at_component(b, 1)) = half_length
-         local%coupling(at + 1, at_component(b, 2)) = half_length
+         local%coupling(at_component(b, 1), at) = half_length
+         local%coupling(at_component(b, 2), at + 1) = half_length
       end do
    end subroutine add_jumps
 
@@ -194,7 +195,7 @@ contains
    end subroutine add_symmetric
 
    !> Outer boundary: a component is displaced as given, loaded as given, or both on a spring.
-   subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
+   pure subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(in) :: regions
@@ -204,7 +205,7 @@ contains
       real(rk) :: traction(2)
       integer(ik) :: axis, f, j, last, n
 
-      last = size(local%rhs, 2)
+      last = local%last()
       do j = 1, regions%faces%length(region)
          f = regions%faces%at(region, j)
          if (mesh%face_side(f) == 0) cycle
@@ -219,12 +220,13 @@ contains
             do axis = 1, 2
                n = 2*(j - 1) + axis
                if (side%displacement_given(axis)) then
-                  local%rhs(n, last) = local%rhs(n, last) + half_length*side%displacement(axis)
+                  local%equations(last, n) = local%equations(last, n) &
+                                             + half_length*side%displacement(axis)
                else if (side%spring(axis) > 0.0_rk) then
                   ! The side moves by what the traction lacks of the given one, over the spring.
                   associate (give => half_length/side%spring(axis))
-                     local%matrix(n, n) = local%matrix(n, n) + give
-                     local%rhs(n, last) = local%rhs(n, last) + give*traction(axis)
+                     local%equations(n, n) = local%equations(n, n) + give
+                     local%equations(last, n) = local%equations(last, n) + give*traction(axis)
                   end associate
                else
                   call fix_unknown(local, n, traction(axis))
@@ -234,8 +236,8 @@ contains
       end do
       ! Where all tractions are given, as in a loaded corner, the rotation is free and without
       ! effect.
-      do n = 2*regions%faces%length(region) + 1, size(local%matrix, 1)
-         if (.not. any(abs(local%matrix(n, :)) > 0.0_rk)) local%matrix(n, n) = 1.0_rk
+      do n = 2*regions%faces%length(region) + 1, local%n
+         if (.not. any(abs(local%equations(:local%n, n)) > 0.0_rk)) local%equations(n, n) = 1.0_rk
       end do
    end subroutine apply_sides
 

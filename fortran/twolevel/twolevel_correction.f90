@@ -5,7 +5,8 @@
 module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_fields, only: corner_tractions, curved_displacement
+   use coarse_fields, only: corner_tractions
+   use coarse_nodes, only: curved_displacement
    use coarse_layout, only: block_count, end_block
    use mesh_types, only: mesh_t
    use twolevel_faces, only: coarse_jumps

@@ -4,7 +4,8 @@ module twolevel_results
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
    use base_plane, only: barycentric
-   use coarse_fields, only: cell_stress, cell_stresses, nodal_values, node_values
+   use coarse_fields, only: cell_stress, cell_stresses
+   use coarse_nodes, only: nodal_values, node_values
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
@@ -140,7 +141,7 @@ contains
             end associate
             row%displacement(:, i) = value(:2)
             row%pressure(i) = value(3)
-            row%stress(:, i) = cell_stress(mesh, model%regions, state%tractions, cells(i))
+            row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             if (.not. allocated(model%in_situ)) cycle
             ! What is in situ is known at the point itself.
             row%pressure(i) = row%pressure(i) + model%in_situ%pressure_at(xy(2, i))

@@ -4,9 +4,9 @@ module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use coarse_fields, only: curved_displacement, nodal_values
    use coarse_geometry, only: cell_area
    use coarse_model, only: new_state, rest_fluid
+   use coarse_nodes, only: nodal_fields
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_company, only: company_t
    use growth_front, only: growth_rules_t
@@ -305,10 +305,8 @@ contains
          if (allocated(values%nodal)) deallocate (values%nodal, values%displacement, &
                                                   values%gradient)
          allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
-         call nodal_values(self%mesh, model%rock, model%regions, state%unknowns, &
-                           state%tractions, values%nodal)
-         call curved_displacement(self%mesh, model%rock, model%regions, state%unknowns, &
-                                  state%tractions, values%displacement, values%gradient)
+         call nodal_fields(self%mesh, model%rock, model%regions, state%unknowns, state%tractions, &
+                           values%nodal, values%displacement, values%gradient)
          values%law = model%cells%law
          values%is_grown = model%cells%roughness > 0.0_rk
       end associate

@@ -19,7 +19,7 @@ from wingcrack_bench.catalogue import Benchmark
 from wingcrack_bench.scenes import write_scene
 
 # One thread, and one set of kernels of OpenBLAS whatever the processor: counts mean something then.
-_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 _COUNTED = {**_ONE_THREAD, "OPENBLAS_CORETYPE": "Haswell"}
 
 

@@ -4,10 +4,10 @@ program test_coarse_fields
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, nodal_values, &
-                            node_values
+   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
    use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
+   use coarse_nodes, only: nodal_values, node_values
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use mesh_builder, only: mesher_t

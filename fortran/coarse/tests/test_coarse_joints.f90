@@ -6,7 +6,8 @@ program test_coarse_joints
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_equations, only: equations_t
-   use coarse_fields, only: cell_stresses, nodal_values
+   use coarse_fields, only: cell_stresses
+   use coarse_nodes, only: nodal_values
    use coarse_fractures, only: prepare
    use coarse_full_step, only: full_slopes
    use coarse_model, only: coarse_model_t, new_state

@@ -7,7 +7,8 @@ program test_coarse_model
    use base_timers, only: timers_t
    use contact_law, only: contact_law_t
    use contact_states, only: state_slip, state_stick
-   use coarse_fields, only: cell_stresses, nodal_values
+   use coarse_fields, only: cell_stresses
+   use coarse_nodes, only: nodal_values
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t

@@ -5,7 +5,8 @@ program test_coarse_solid
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, curved_displacement
+   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
+   use coarse_nodes, only: curved_displacement
    use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_permeability, only: place_regions

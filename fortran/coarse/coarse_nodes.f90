@@ -1,0 +1,202 @@
+!> Values at the nodes of the mesh, from those of the cells around them.
+module coarse_nodes
+   use base_kinds, only: ik, rk
+   use coarse_diffusion, only: corner_gradient, region_fluxes
+   use coarse_fields, only: corner_gradients, displacement_gradients
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: rock_t
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: curved_displacement, nodal_fields, nodal_values, node_values
+
+contains
+
+   !> Displacement and pressure at the mesh's nodes: mean of what the cells around extrapolate.
+   subroutine nodal_values(mesh, rock, regions, unknowns, tractions, values)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
+      real(rk), allocatable :: at_corners(:, :, :, :)
+
+      call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
+      call extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
+   end subroutine nodal_values
+
+   !> Displacement at the mesh's nodes, and its gradient there, for an interpolation that is exact
+   !! for quadratic fields: from a cell's centre to a node with the mean of the gradients of both.
+   subroutine curved_displacement(mesh, rock, regions, unknowns, tractions, values, gradients)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      real(rk), intent(out) :: values(:, :)  !< (2, n_nodes) [m]
+      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) d u_i / d x_j [-]
+      real(rk), allocatable :: at_corners(:, :, :, :)
+
+      call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
+      call curve_to_nodes(mesh, unknowns, at_corners, values, gradients)
+   end subroutine curved_displacement
+
+   !> Both of these, which have the gradients in common.
+   subroutine nodal_fields(mesh, rock, regions, unknowns, tractions, values, curved, gradients)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) of nodal_values [m], [m], [Pa]
+      real(rk), intent(out) :: curved(:, :)  !< (2, n_nodes) of curved_displacement [m]
+      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) of curved_displacement [-]
+      real(rk), allocatable :: at_corners(:, :, :, :)
+
+      call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
+      call extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
+      call curve_to_nodes(mesh, unknowns, at_corners, curved, gradients)
+   end subroutine nodal_fields
+
+   !> See nodal_values. Each node has the cells of one region around it, those on its side of a
+   !! fracture.
+   subroutine extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
+      real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
+      real(rk), allocatable :: weight(:)
+      integer(ik) :: r, v
+
+      values = 0.0_rk
+      allocate (weight(mesh%n_nodes), source=0.0_rk)
+      !$omp parallel do
+      do r = 1, regions%n_regions
+         call extrapolate_around(mesh, rock, regions, unknowns, at_corners, r, values, weight)
+      end do
+      !$omp end parallel do
+      do v = 1, mesh%n_nodes
+         values(:, v) = values(:, v)/weight(v)
+      end do
+   end subroutine extrapolate_to_nodes
+
+   !> Add up what the cells of one region give at its nodes.
+   pure subroutine extrapolate_around(mesh, rock, regions, unknowns, at_corners, region, values, &
+                                      weight)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
+      integer(ik), intent(in) :: region
+      real(rk), intent(inout) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
+      real(rk), intent(inout) :: weight(:)  !< (n_nodes) their number [-]
+      real(rk) :: flux(regions%flow_faces%length(region)), value(3)
+      integer(ik) :: c, cell, k, v
+
+      call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
+      do c = 1, regions%cell_count(region)
+         cell = regions%blocks%at(region, c)
+         do k = 1, 2
+            if (regions%regions_of_block(k, cell) == region) exit
+         end do
+         v = mesh%cell_nodes(k, cell)
+         call extrapolate(mesh, rock, regions, unknowns, cell, k, at_corners(:, :, k, cell), flux, &
+                          value)
+         values(:, v) = values(:, v) + value
+         weight(v) = weight(v) + 1.0_rk
+      end do
+   end subroutine extrapolate_around
+
+   !> See curved_displacement.
+   pure subroutine curve_to_nodes(mesh, unknowns, at_corners, values, gradients)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
+      real(rk), intent(out) :: values(:, :)  !< (2, n_nodes) [m]
+      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) [-]
+      real(rk) :: at_centre(2, 2), centre(2)
+      real(rk), allocatable :: weight(:)
+      integer(ik) :: c, k, v
+
+      allocate (weight(mesh%n_nodes), source=0.0_rk)
+      values = 0.0_rk
+      gradients = 0.0_rk
+      do c = 1, mesh%n_cells
+         at_centre = sum(at_corners(:, :, :, c), dim=3)/3.0_rk
+         centre = cell_centre(mesh, c)
+         do k = 1, 3
+            v = mesh%cell_nodes(k, c)
+            values(:, v) = values(:, v) + unknowns(1:2, c) &
+                           + matmul(0.5_rk*(at_corners(:, :, k, c) + at_centre), &
+                                    mesh%xy(:, v) - centre)
+            gradients(:, :, v) = gradients(:, :, v) + at_corners(:, :, k, c)
+            weight(v) = weight(v) + 1.0_rk
+         end do
+      end do
+      do v = 1, mesh%n_nodes
+         values(:, v) = values(:, v)/weight(v)
+         gradients(:, :, v) = gradients(:, :, v)/weight(v)
+      end do
+   end subroutine curve_to_nodes
+
+   !> Displacement and pressure at one node, as nodal_values finds them.
+   pure function node_values(mesh, rock, regions, unknowns, tractions, node) result(mean)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
+      integer(ik), intent(in) :: node
+      real(rk) :: mean(3)  !< [m], [m], [Pa]
+      real(rk) :: flux(regions%flow_faces%length(regions%region_of_node(node)))
+      real(rk) :: gradient(2, 2, 3), value(3)
+      integer(ik) :: c, cell, k, n, region
+
+      mean = 0.0_rk
+      n = 0
+      region = regions%region_of_node(node)
+      call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
+      do c = 1, regions%cell_count(region)
+         cell = regions%blocks%at(region, c)
+         k = findloc(mesh%cell_nodes(:, cell), node, dim=1)
+         if (k == 0) cycle  ! on another side of a fracture
+         call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
+         call extrapolate(mesh, rock, regions, unknowns, cell, k, gradient(:, :, k), flux, value)
+         mean = mean + value
+         n = n + 1
+      end do
+      mean = mean/n
+   end function node_values
+
+   !> Displacement and pressure at a corner, from those of the cell and its gradients.
+   pure subroutine extrapolate(mesh, rock, regions, unknowns, cell, k, gradient, flux, value)
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(regions_t), intent(in) :: regions
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      integer(ik), intent(in) :: cell, k
+      real(rk), intent(in) :: gradient(2, 2)  !< of the displacement at the corner [-]
+      real(rk), intent(in) :: flux(:)  !< of region_fluxes around it [m/s]
+      real(rk), intent(out) :: value(3)  !< [m], [m], [Pa]
+      real(rk) :: offset(2), pressure_gradient(2)
+
+      offset = mesh%xy(:, mesh%cell_nodes(k, cell)) - cell_centre(mesh, cell)
+      call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
+      value(1:2) = unknowns(1:2, cell) + matmul(gradient, offset)
+      value(3) = unknowns(3, cell) + dot_product(pressure_gradient, offset)
+   end subroutine extrapolate
+
+   pure function cell_centre(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function cell_centre
+
+end module coarse_nodes
