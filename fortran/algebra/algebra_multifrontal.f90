@@ -63,6 +63,8 @@ module algebra_multifrontal
       integer(ik), allocatable :: waiting(:)  !< fronts on the stack
       integer(ik) :: n_waiting = 0
       integer(ik), allocatable :: place(:)  !< (unknowns) in the present front
+      integer(ik), allocatable :: places(:)  !< the same of an element or of what a child has left
+      real(rk), allocatable :: matrix(:)  !< of an element
    end type workspace_t
 
 contains
@@ -179,11 +181,15 @@ contains
       type(multifrontal_t), intent(in) :: self
       type(workspace_t), intent(out) :: work
       integer(int64) :: highest, largest
-      integer(ik) :: i, k
+      integer(ik) :: e, i, k, largest_element
 
       allocate (work%place(self%n), work%waiting(self%fronts%n))
       highest = 0
       largest = 0
+      largest_element = 0
+      do e = 1, size(self%unknowns%first, kind=ik) - 1
+         largest_element = max(largest_element, self%unknowns%length(e))
+      end do
       do i = 1, self%fronts%n
          largest = max(largest, int(size_of(self, i), int64)**2)
          do k = 1, self%fronts%n_children(i)
@@ -198,6 +204,7 @@ contains
       work%top = 0
       work%n_waiting = 0
       allocate (work%front(largest), work%stack(highest))
+      allocate (work%places(self%n), work%matrix(largest_element**2))
    end subroutine prepare
 
    !> How many entries what front i leaves has.
@@ -217,7 +224,7 @@ contains
       integer(ik), intent(in) :: i
       type(workspace_t), intent(inout) :: work
       integer(ik), intent(out) :: place  !< of a pivot that is not positive; 0: none
-      integer(ik) :: child, k, n, n_pivots
+      integer(ik) :: child, k, m, n, n_pivots
 
       n_pivots = pivots_of(self, i)
       n = size_of(self, i)
@@ -229,9 +236,11 @@ contains
          do k = 1, n - n_pivots
             work%place(fronts%rows%at(i, k)) = n_pivots + k
          end do
-         call add_elements(self, matrices, i, work%place, n, work%front)
+         call add_elements(self, matrices, i, work%place, work%places, work%matrix, n, work%front)
          do child = 1, fronts%n_children(i)
-            call add_child(self, n, work)
+            call pop(self, work, m)
+            if (m == 0) cycle
+            call add_triangle(m, work%places, work%stack(work%top + 1), n, work%front)
          end do
          call eliminate(work%front, n, n_pivots, place)
          if (place > 0) return
@@ -244,61 +253,62 @@ contains
    end subroutine eliminate_front
 
    !> Add the elements of front i to its matrix.
-   pure subroutine add_elements(self, matrices, i, place, n, front)
+   pure subroutine add_elements(self, matrices, i, place, places, matrix, n, front)
       type(multifrontal_t), intent(in) :: self
       class(element_matrices_t), intent(in) :: matrices
       integer(ik), intent(in) :: i
       integer(ik), intent(in) :: place(:)  !< (unknowns) in the front
+      integer(ik), intent(inout) :: places(:)  !< room for the places of an element
+      real(rk), intent(inout) :: matrix(:)  !< room for its matrix
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: front(n, n)
-      integer(ik) :: e, k
+      integer(ik) :: e, j, k, m
 
       do k = self%fronts%elements%first(i), self%fronts%elements%last(i)
          e = self%fronts%elements%item(k)
-         call add_element(matrices, e, self%unknowns%length(e), &
-                          place(self%unknowns%item(self%unknowns%first(e): &
-                                                   self%unknowns%last(e))), n, front)
+         m = self%unknowns%length(e)
+         do j = 1, m
+            places(j) = place(self%unknowns%at(e, j))
+         end do
+         call matrices%give(e, m, matrix)
+         call add_matrix(m, places, matrix, n, front)
       end do
    end subroutine add_elements
 
-   !> Add one element to a front.
-   pure subroutine add_element(matrices, element, m, places, n, front)
-      class(element_matrices_t), intent(in) :: matrices
-      integer(ik), intent(in) :: element
-      integer(ik), intent(in) :: m  !< unknowns of the element
-      integer(ik), intent(in) :: places(m)  !< in the front
+   !> Add the matrix of an element to a front.
+   pure subroutine add_matrix(m, places, matrix, n, front)
+      integer(ik), intent(in) :: m
+      integer(ik), intent(in) :: places(m)
+      real(rk), intent(in) :: matrix(m, m)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: front(n, n)
-      real(rk) :: matrix(m, m)
-      integer(ik) :: a, b, p
+      integer(ik) :: a, b, p, q
 
-      call matrices%give(element, m, matrix)
       do b = 1, m
-         p = places(b)
          do a = b, m
-            associate (entry => front(max(places(a), p), min(places(a), p)))
-               entry = entry + matrix(a, b)
-            end associate
+            p = max(places(a), places(b))
+            q = min(places(a), places(b))
+            front(p, q) = front(p, q) + matrix(a, b)
          end do
       end do
-   end subroutine add_element
+   end subroutine add_matrix
 
-   !> Take what a child has left from the top of the stack.
-   pure subroutine add_child(self, n, work)
+   !> Take what a front has left from the top of the stack: its entries stay right above the new
+   !! top, their places in the present front are in work%places.
+   pure subroutine pop(self, work, m)
       type(multifrontal_t), intent(in) :: self
-      integer(ik), intent(in) :: n
       type(workspace_t), intent(inout) :: work
-      integer(ik) :: child
+      integer(ik), intent(out) :: m  !< unknowns of the front that are left
+      integer(ik) :: child, k
 
       child = work%waiting(work%n_waiting)
       work%n_waiting = work%n_waiting - 1
       work%top = work%top - triangle_of(self, child)
-      associate (rows => self%fronts%rows)
-         call add_triangle(rows%length(child), &
-                           work%place(rows%item(rows%first(child):rows%last(child))), &
-                           work%stack(work%top + 1:), n, work%front)
-      end associate
-   end subroutine add_child
+      m = self%fronts%rows%length(child)
+      do k = 1, m
+         work%places(k) = work%place(self%fronts%rows%at(child, k))
+      end do
+   end subroutine pop
 
    !> Add a triangle to a matrix at rising places.
    pure subroutine add_triangle(m, places, triangle, n, matrix)
@@ -338,20 +348,16 @@ contains
       type(multifrontal_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
       type(workspace_t), intent(inout) :: work
-      integer(ik) :: i, j, n
+      integer(ik) :: i, j, m, n
 
       n = self%n - self%fronts%n_free
       work%place(self%fronts%n_free + 1:) = [(i, i=1, n)]
-      call add_elements(self, matrices, self%fronts%n + 1_ik, work%place, n, self%schur)
+      call add_elements(self, matrices, self%fronts%n + 1_ik, work%place, work%places, &
+                        work%matrix, n, self%schur)
       do while (work%n_waiting > 0)
-         i = work%waiting(work%n_waiting)
-         work%n_waiting = work%n_waiting - 1
-         work%top = work%top - triangle_of(self, i)
-         associate (rows => self%fronts%rows)
-            call add_triangle(rows%length(i), &
-                              work%place(rows%item(rows%first(i):rows%last(i))), &
-                              work%stack(work%top + 1:), n, self%schur)
-         end associate
+         call pop(self, work, m)
+         if (m == 0) cycle
+         call add_triangle(m, work%places, work%stack(work%top + 1), n, self%schur)
       end do
       do j = 2, n
          self%schur(:j - 1, j) = self%schur(j, :j - 1)
@@ -431,25 +437,26 @@ contains
    pure subroutine substitute_forwards(self, y)
       class(multifrontal_t), intent(in) :: self
       real(rk), intent(inout) :: y(:)  !< (n) in the order of elimination
+      real(rk) :: part(self%n)
       integer(ik) :: i
 
       do i = 1, self%fronts%n
          associate (rows => self%fronts%rows, first => self%fronts%first_pivot(i))
             call forwards(size_of(self, i), pivots_of(self, i), &
                           self%factor(self%first_entry(i):self%first_entry(i + 1) - 1), &
-                          rows%item(rows%first(i):rows%last(i)), first, y)
+                          rows%item(rows%first(i):rows%last(i)), first, y, part)
          end associate
       end do
    end subroutine substitute_forwards
 
    !> The part of one front.
-   pure subroutine forwards(n, n_pivots, factor, rows, first, y)
+   pure subroutine forwards(n, n_pivots, factor, rows, first, y, part)
       integer(ik), intent(in) :: n, n_pivots
       real(rk), intent(in) :: factor(n, n_pivots)
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk) :: part(n)
+      real(rk), intent(out) :: part(n)  !< room
       integer(ik) :: j, k
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
@@ -470,33 +477,54 @@ contains
    pure subroutine substitute_backwards(self, y)
       class(multifrontal_t), intent(in) :: self
       real(rk), intent(inout) :: y(:)  !< (n) in the order of elimination
+      real(rk) :: part(self%n)
       integer(ik) :: i
 
       do i = self%fronts%n, 1, -1
          associate (rows => self%fronts%rows, first => self%fronts%first_pivot(i))
             call backwards(size_of(self, i), pivots_of(self, i), &
                            self%factor(self%first_entry(i):self%first_entry(i + 1) - 1), &
-                           rows%item(rows%first(i):rows%last(i)), first, y)
+                           rows%item(rows%first(i):rows%last(i)), first, y, part)
          end associate
       end do
    end subroutine substitute_backwards
 
    !> The part of one front.
-   pure subroutine backwards(n, n_pivots, factor, rows, first, y)
+   pure subroutine backwards(n, n_pivots, factor, rows, first, y, part)
       integer(ik), intent(in) :: n, n_pivots
       real(rk), intent(in) :: factor(n, n_pivots)
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk) :: part(n)
+      real(rk), intent(out) :: part(n)  !< room
       integer(ik) :: j
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
-      part(n_pivots + 1:) = y(rows)
+      do j = 1, n - n_pivots
+         part(n_pivots + j) = y(rows(j))
+      end do
       do j = n_pivots, 1, -1
-         part(j) = (part(j) - sum(factor(j + 1:, j)*part(j + 1:)))/factor(j, j)
+         part(j) = (part(j) - product_of(n - j, factor(min(j + 1, n), j), part(min(j + 1, n)))) &
+                   /factor(j, j)
       end do
       y(first:first + n_pivots - 1) = part(:n_pivots)
    end subroutine backwards
+
+   !> The sum of x y, in four sums that the processor forms at the same time.
+   pure real(rk) function product_of(n, x, y)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: x(n), y(n)
+      real(rk) :: sums(4)
+      integer(ik) :: i
+
+      sums = 0.0_rk
+      do i = 1, n - 3, 4
+         sums = sums + x(i:i + 3)*y(i:i + 3)
+      end do
+      product_of = sum(sums)
+      do i = n - modulo(n, 4) + 1, n
+         product_of = product_of + x(i)*y(i)
+      end do
+   end function product_of
 
 end module algebra_multifrontal

@@ -91,31 +91,40 @@ contains
       integer(ik), intent(in) :: element
       integer(ik), intent(in) :: n  !< unknowns of the element
       real(rk), intent(out) :: matrix(n, n)  !< [Pa]
+
+      associate (nodes => self%cell_nodes(:, element))
+         if (n == 12 .and. all(self%constraints%n_columns(nodes) == 2)) then
+            matrix = self%stiffness(:, :, element)
+         else
+            call tie(self%constraints, nodes, self%stiffness(:, :, element), n, matrix)
+         end if
+      end associate
+   end subroutine give
+
+   !> T' K T.
+   pure subroutine tie(constraints, nodes, stiffness, n, matrix)
+      type(constraints_t), intent(in) :: constraints
+      integer(ik), intent(in) :: nodes(6)
+      real(rk), intent(in) :: stiffness(12, 12)  !< [Pa]
+      integer(ik), intent(in) :: n  !< unknowns of the element
+      real(rk), intent(out) :: matrix(n, n)  !< [Pa]
       real(rk) :: ties(12, n)
       integer(ik) :: column, d, k, m, unknowns(6*columns_max)
 
-      associate (nodes => self%cell_nodes(:, element), dof => self%constraints%dof, &
-                 n_columns => self%constraints%n_columns)
-         if (n == 12 .and. all(n_columns(nodes) == 2)) then
-            matrix = self%stiffness(:, :, element)
-            return
-         end if
-         ties = 0.0_rk
-         m = 0
-         do k = 1, 6
-            do column = 1, n_columns(nodes(k))
-               d = findloc(unknowns(:m), dof(column, nodes(k)), dim=1, kind=ik)
-               if (d == 0) then
-                  m = m + 1
-                  d = m
-                  unknowns(m) = dof(column, nodes(k))
-               end if
-               ties(2*k - 1:2*k, d) = ties(2*k - 1:2*k, d) &
-                                      + self%constraints%basis(:, column, nodes(k))
-            end do
+      ties = 0.0_rk
+      m = 0
+      do k = 1, 6
+         do column = 1, constraints%n_columns(nodes(k))
+            d = findloc(unknowns(:m), constraints%dof(column, nodes(k)), dim=1, kind=ik)
+            if (d == 0) then
+               m = m + 1
+               d = m
+               unknowns(m) = constraints%dof(column, nodes(k))
+            end if
+            ties(2*k - 1:2*k, d) = ties(2*k - 1:2*k, d) + constraints%basis(:, column, nodes(k))
          end do
-         matrix = matmul(transpose(ties), matmul(self%stiffness(:, :, element), ties))
-      end associate
-   end subroutine give
+      end do
+      matrix = matmul(transpose(ties), matmul(stiffness, ties))
+   end subroutine tie
 
 end module fine_assembly
