@@ -1,4 +1,4 @@
-!> The routines of LAPACK in use, declared so that the compiler checks every call.
+!> The routines of LAPACK and BLAS in use, declared so that the compiler checks every call.
 !!
 !! Dense systems with n unknowns and nrhs right-hand sides; lda and ldb are the numbers of rows that
 !! the arrays have. `info` is 0 for success, -i where argument i is wrong, and i where pivot i is
@@ -9,7 +9,7 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
+   public :: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyrk, dtrsm
 
    interface
       !> Solve A X = B by LU factors with row exchanges. On return A holds the factors, B is X.
@@ -77,6 +77,32 @@ module algebra_lapack
          real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dpotrs
+
+      !> C = beta C + alpha A A' or, transposed, A' A, of C only one triangle.
+      subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: uplo  !< "U" or "L": the triangle of C
+         character, intent(in) :: trans  !< "N" for A A', "T" for A' A
+         integer(ik), intent(in) :: n, k, lda, ldc
+         real(rk), intent(in) :: alpha, beta
+         real(rk), intent(in) :: a(lda, *)
+         real(rk), intent(inout) :: c(ldc, *)
+      end subroutine dsyrk
+
+      !> Solve A X = alpha B or, from the right, X A = alpha B with a triangular A.
+      subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: side  !< "L" or "R": where A stands
+         character, intent(in) :: uplo  !< "U" or "L": the triangle that A is
+         character, intent(in) :: transa  !< "N" for A, "T" for its transpose
+         character, intent(in) :: diag  !< "U": ones on the diagonal, "N": what stands there
+         integer(ik), intent(in) :: m, n, lda, ldb
+         real(rk), intent(in) :: alpha
+         real(rk), intent(in) :: a(lda, *)
+         real(rk), intent(inout) :: b(ldb, *)
+      end subroutine dtrsm
    end interface
 
 end module algebra_lapack

@@ -1,15 +1,16 @@
 !> In which order the unknowns of a sparse system are eliminated: nested dissection by METIS
-!! (Karypis and Kumar 1998). It leaves fewer entries in the factors of large meshes than minimum
-!! degree does, and takes longer to find.
+!! (Karypis and Kumar 1998), or approximate minimum degree by CAMD of SuiteSparse (Amestoy, Davis
+!! and Duff 2004). The former leaves fewer entries in the factors of large meshes, and takes longer
+!! to find.
 module algebra_ordering
-   use, intrinsic :: iso_c_binding, only: c_int32_t
+   use, intrinsic :: iso_c_binding, only: c_int32_t, c_null_ptr, c_ptr
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_lists, only: lists_t
    implicit none(type, external)
    private
 
-   public :: dissect, expand_order, neighbours_of
+   public :: dissect, expand_order, minimum_degree, neighbours_of
 
    integer, parameter :: n_options = 40  !< METIS_NOPTIONS
    ! Places of options among those, from 0 (moptions_et of metis.h).
@@ -33,6 +34,15 @@ module algebra_ordering
          integer(c_int32_t), intent(in) :: options(n_options)
          integer(c_int32_t), intent(out) :: order(n), place(n)
       end function algebra_node_nd
+
+      integer(c_int32_t) function camd_order(n, first, item, order, control, info, set) bind(c)
+         import :: c_int32_t, c_ptr
+         implicit none(type, external)
+         integer(c_int32_t), value :: n
+         integer(c_int32_t), intent(in) :: first(n + 1), item(first(n + 1)), set(n)
+         integer(c_int32_t), intent(out) :: order(n)
+         type(c_ptr), value :: control, info
+      end function camd_order
    end interface
 
 contains
@@ -68,6 +78,27 @@ contains
       end if
       call raise_error(error, "dissect", "METIS could not order the unknowns")
    end subroutine dissect
+
+   !> Order the nodes of a graph by approximate minimum degree, some of them after all others.
+   subroutine minimum_degree(later, is_last, order, error)
+      type(lists_t), intent(in) :: later  !< of each node its neighbours with higher numbers, rising
+      logical, intent(in) :: is_last(:)  !< (n)
+      integer(ik), allocatable, intent(out) :: order(:)  !< (n) the nodes one after another
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int32_t), parameter :: camd_ok = 0
+      integer(c_int32_t) :: status
+      integer(ik) :: n
+
+      n = size(is_last, kind=ik)
+      allocate (order(n))
+      if (n == 0) return
+      status = camd_order(n, later%first - 1, later%item - 1, order, c_null_ptr, c_null_ptr, &
+                          merge(1_c_int32_t, 0_c_int32_t, is_last))
+      order = order + 1
+      if (status /= camd_ok) then
+         call raise_error(error, "minimum_degree", "CAMD could not order the unknowns")
+      end if
+   end subroutine minimum_degree
 
    !> The graph of a symmetric matrix from the columns of its lower triangle, row by row, the
    !! diagonal included or not.

@@ -2,7 +2,9 @@
 module fine_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_definite, mumps_t
+   use base_lists, only: lists_t
+   use algebra_multifrontal, only: multifrontal_t
+   use fine_assembly, only: find_blocks, list_blocks, tied_elements_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
                             fine_boundary_t
    use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
@@ -31,7 +33,7 @@ module fine_model
       type(contact_problem_t) :: contact_problem
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
       logical :: ready = .false.
-      type(mumps_t), private :: solver
+      type(multifrontal_t), private :: solver
    contains
       procedure :: set_mesh
       procedure :: prepare
@@ -87,8 +89,7 @@ contains
       type(face_conditions_t), intent(in) :: conditions
       type(error_t), allocatable, intent(out) :: error
       type(fine_boundary_t), intent(in), optional :: boundary  !< default: all displacements given
-      integer(ik), allocatable :: bonds(:, :), row(:), col(:)
-      real(rk), allocatable :: values(:)
+      integer(ik), allocatable :: bonds(:, :)
 
       self%ready = .false.
       if (.not. allocated(self%stiffness)) then
@@ -114,19 +115,34 @@ contains
          if (allocated(error)) return
       end if
       if (self%constraints%n_dofs > 0) then
-         call assemble(self, row, col, values)
-         call self%solver%analyse(self%constraints%n_dofs, row, col, mumps_definite, error, &
-                                  schur=self%constraints%contact_dofs)
-         if (.not. allocated(error)) call self%solver%factorize(values, error)
+         call factorize(self, error)
          if (allocated(error)) return
          call condense_contact(self)
       end if
       self%ready = .true.
    end subroutine prepare
 
+   !> Factorize the sum of the elements' matrices.
+   subroutine factorize(self, error)
+      class(fine_model_t), intent(inout), target :: self
+      type(error_t), allocatable, intent(out) :: error
+      type(tied_elements_t) :: elements
+      type(lists_t) :: blocks
+      integer(ik), allocatable :: first_unknown(:)
+
+      call find_blocks(self%constraints, first_unknown)
+      blocks = list_blocks(self%mesh%cell_nodes, self%constraints, first_unknown)
+      call self%solver%analyse(first_unknown, blocks, error, kept=self%constraints%contact_dofs)
+      if (allocated(error)) return
+      elements%cell_nodes => self%mesh%cell_nodes
+      elements%stiffness => self%stiffness
+      elements%constraints => self%constraints
+      call self%solver%factorize(elements, error)
+   end subroutine factorize
+
    !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
    !!
-   !! The Schur complement that MUMPS leaves costs no more than solving for one right-hand side per
+   !! The Schur complement that the elimination leaves costs no more than solving for one right-hand side per
    !! jump: it is what those solutions would compute, restricted to the fronts that hold the jumps.
    subroutine condense_contact(self)
       class(fine_model_t), intent(inout) :: self
@@ -135,59 +151,10 @@ contains
                                self%rocks%elasticity(1)%young, self%contact_problem)
       associate (problem => self%contact_problem)
          if (problem%n == 0) return
-         allocate (problem%condensed(2*problem%n, 2*problem%n))
          call self%solver%get_schur(problem%condensed)
          call close_joints(problem, problem%condensed)
       end associate
    end subroutine condense_contact
-
-   !> One triangle of T' K T as triplets.
-   subroutine assemble(self, row, col, values)
-      class(fine_model_t), intent(in) :: self
-      integer(ik), allocatable, intent(out) :: row(:), col(:)
-      real(rk), allocatable, intent(out) :: values(:)  !< of the entries [Pa]
-      real(rk) :: ties(12, 6*columns_max), products(12, 6*columns_max)
-      real(rk) :: reduced(6*columns_max, 6*columns_max)
-      integer(ik) :: cell, k, column, n_entries, n_columns, i, j, dofs(6*columns_max)
-
-      n_entries = 0
-      do cell = 1, self%mesh%n_cells
-         n_columns = sum(self%constraints%n_columns(self%mesh%cell_nodes(:, cell)))
-         n_entries = n_entries + (n_columns*(n_columns + 1))/2
-      end do
-      allocate (row(n_entries), col(n_entries), values(n_entries))
-
-      n_entries = 0
-      do cell = 1, self%mesh%n_cells
-         associate (nodes => self%mesh%cell_nodes(:, cell), constraints => self%constraints)
-            n_columns = 0
-            ties = 0.0_rk
-            do k = 1, 6
-               do column = 1, constraints%n_columns(nodes(k))
-                  n_columns = n_columns + 1
-                  dofs(n_columns) = constraints%dof(column, nodes(k))
-                  ties(2*k - 1:2*k, n_columns) = constraints%basis(:, column, nodes(k))
-               end do
-            end do
-            associate (tie => ties(:, :n_columns), tied => products(:, :n_columns))
-               if (all(constraints%n_columns(nodes) == 2)) then
-                  reduced(:12, :12) = self%stiffness(:, :, cell)
-               else
-                  tied = matmul(self%stiffness(:, :, cell), tie)
-                  reduced(:n_columns, :n_columns) = matmul(transpose(tie), tied)
-               end if
-            end associate
-         end associate
-         do j = 1, n_columns
-            do i = j, n_columns
-               n_entries = n_entries + 1
-               row(n_entries) = max(dofs(i), dofs(j))
-               col(n_entries) = min(dofs(i), dofs(j))
-               values(n_entries) = reduced(i, j)
-            end do
-         end do
-      end do
-   end subroutine assemble
 
    !> Displacements under the given loads. Faces in contact start from `contact`, which holds their
    !! history, and leave their solution there; without it they start closed and new.
@@ -300,7 +267,7 @@ contains
       character(len=:), allocatable :: reason
 
       if (self%contact_problem%n == 0) then
-         call self%solver%solve(x, error)
+         call self%solver%solve(x(:, 1), error)
          return
       end if
       call self%solver%condense(x(:, 1), load(1, :), error)

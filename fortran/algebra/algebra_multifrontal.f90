@@ -1,0 +1,530 @@
+!> Symmetric positive definite systems that are sums of small dense matrices, such as those of finite
+!! elements, by the multifrontal method (Duff and Reid 1983): the matrix as a whole is never formed.
+!! On request condensed onto a few unknowns, which need not be definite.
+!!
+!! A front is a small dense matrix: its elements and what its children have left are added up, its
+!! pivots eliminated, and what is left waits on a stack for its parent. Nothing is shared between
+!! systems, so that several can be factorized at the same time.
+module algebra_multifrontal
+   use, intrinsic :: iso_fortran_env, only: int64
+   use algebra_fronts, only: find_fronts, fronts_t
+   use algebra_partial_cholesky, only: eliminate
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
+   implicit none(type, external)
+   private
+
+   public :: element_matrices_t, multifrontal_t
+
+   !> Where the matrices of the elements come from.
+   type, abstract :: element_matrices_t
+   contains
+      procedure(give_matrix), deferred :: give
+   end type element_matrices_t
+
+   abstract interface
+      !> The matrix of an element, whose unknowns are those of its blocks one after another.
+      pure subroutine give_matrix(self, element, n, matrix)
+         import :: element_matrices_t, ik, rk
+         implicit none(type, external)
+         class(element_matrices_t), intent(in) :: self
+         integer(ik), intent(in) :: element
+         integer(ik), intent(in) :: n  !< unknowns of the element
+         real(rk), intent(out) :: matrix(n, n)  !< the lower triangle at least
+      end subroutine give_matrix
+   end interface
+
+   !> One matrix with its factors.
+   type :: multifrontal_t
+      private
+      type(fronts_t) :: fronts
+      type(lists_t) :: unknowns  !< numbers of the unknowns of each element
+      integer(ik) :: n = 0  !< unknowns
+      integer(int64), allocatable :: first_entry(:)  !< (fronts + 1) in `factor`
+      real(rk), allocatable :: factor(:)  !< the columns of the fronts' pivots
+      real(rk), allocatable :: schur(:, :)
+      real(rk), allocatable :: eliminated(:)  !< (n) what `condense` leaves for `expand`
+      logical :: is_factorized = .false.
+   contains
+      procedure :: analyse
+      procedure :: factorize
+      procedure :: solve
+      procedure :: get_schur
+      procedure :: condense
+      procedure :: expand
+   end type multifrontal_t
+
+   !> Whole matrices and what waits for its parent.
+   type :: workspace_t
+      real(rk), allocatable :: front(:)
+      real(rk), allocatable :: stack(:)  !< lower triangles column by column
+      integer(int64) :: top = 0  !< the last entry in use
+      integer(ik), allocatable :: waiting(:)  !< fronts on the stack
+      integer(ik) :: n_waiting = 0
+      integer(ik), allocatable :: place(:)  !< (unknowns) in the present front
+      integer(ik), allocatable :: places(:)  !< the same of an element or of what a child has left
+      real(rk), allocatable :: matrix(:)  !< of an element
+   end type workspace_t
+
+contains
+
+   !> Order the unknowns and find the fronts.
+   subroutine analyse(self, first_unknown, elements, error, kept)
+      class(multifrontal_t), intent(inout) :: self
+      !> (blocks + 1) Unknowns that occur in the same elements follow each other and are a block.
+      integer(ik), intent(in) :: first_unknown(:)
+      type(lists_t), intent(in) :: elements  !< the blocks of each
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), intent(in), optional :: kept(:)  !< unknowns to condense onto: whole blocks
+      integer(ik), parameter :: none(0) = [integer(ik)::]
+      integer(ik) :: b, e, i, k, n, u
+
+      self%is_factorized = .false.
+      self%n = first_unknown(size(first_unknown)) - 1
+      if (present(kept)) then
+         call find_fronts(first_unknown, elements, kept, self%fronts, error)
+      else
+         call find_fronts(first_unknown, elements, none, self%fronts, error)
+      end if
+      if (allocated(error)) return
+      n = 0
+      do k = 1, size(elements%item, kind=ik)
+         b = elements%item(k)
+         n = n + first_unknown(b + 1) - first_unknown(b)
+      end do
+      if (allocated(self%unknowns%first)) deallocate (self%unknowns%first, self%unknowns%item)
+      allocate (self%unknowns%first(size(elements%first)), self%unknowns%item(n))
+      n = 0
+      do e = 1, size(elements%first, kind=ik) - 1
+         self%unknowns%first(e) = n + 1
+         do k = elements%first(e), elements%last(e)
+            b = elements%item(k)
+            do u = first_unknown(b), first_unknown(b + 1) - 1
+               n = n + 1
+               self%unknowns%item(n) = self%fronts%number(u)
+            end do
+         end do
+      end do
+      self%unknowns%first(size(elements%first)) = n + 1
+
+      if (allocated(self%first_entry)) deallocate (self%first_entry)
+      allocate (self%first_entry(self%fronts%n + 1))
+      self%first_entry(1) = 1
+      do i = 1, self%fronts%n
+         self%first_entry(i + 1) = self%first_entry(i) &
+                                   + int(pivots_of(self, i), int64)*size_of(self, i)
+      end do
+   end subroutine analyse
+
+   !> How many unknowns front i eliminates.
+   pure integer(ik) function pivots_of(self, i)
+      class(multifrontal_t), intent(in) :: self
+      integer(ik), intent(in) :: i
+
+      pivots_of = self%fronts%first_pivot(i + 1) - self%fronts%first_pivot(i)
+   end function pivots_of
+
+   !> How many unknowns front i has.
+   pure integer(ik) function size_of(self, i)
+      class(multifrontal_t), intent(in) :: self
+      integer(ik), intent(in) :: i
+
+      size_of = pivots_of(self, i) + self%fronts%rows%length(i)
+   end function size_of
+
+   !> Factorize.
+   subroutine factorize(self, matrices, error)
+      class(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      type(error_t), allocatable, intent(out) :: error
+      type(workspace_t) :: work
+      integer(ik) :: i, n_kept, place
+
+      self%is_factorized = .false.
+      if (.not. allocated(self%first_entry)) then
+         call raise_error(error, "multifrontal_t%factorize", "the matrix has not been analysed")
+         return
+      end if
+      if (allocated(self%factor)) then
+         if (size(self%factor, kind=int64) /= self%first_entry(self%fronts%n + 1) - 1) then
+            deallocate (self%factor)
+         end if
+      end if
+      if (.not. allocated(self%factor)) then
+         allocate (self%factor(self%first_entry(self%fronts%n + 1) - 1))
+      end if
+      call prepare(self, work)
+      do i = 1, self%fronts%n
+         call eliminate_front(self, matrices, i, work, place)
+         if (place > 0) then
+            call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
+                             "indefinite, or has an entry that is not a finite number")
+            return
+         end if
+      end do
+
+      n_kept = self%n - self%fronts%n_free
+      if (allocated(self%schur)) deallocate (self%schur)
+      allocate (self%schur(n_kept, n_kept), source=0.0_rk)
+      if (n_kept > 0) call sum_up_kept(self, matrices, work)
+      if (.not. sum(abs(self%schur)) <= huge(1.0_rk)) then
+         call raise_error(error, "multifrontal_t%factorize", &
+                          "the matrix has an entry that is not a finite number")
+         return
+      end if
+      self%is_factorized = .true.
+   end subroutine factorize
+
+   !> Room for the largest front and the highest stack.
+   pure subroutine prepare(self, work)
+      type(multifrontal_t), intent(in) :: self
+      type(workspace_t), intent(out) :: work
+      integer(int64) :: highest, largest
+      integer(ik) :: e, i, k, largest_element
+
+      allocate (work%place(self%n), work%waiting(self%fronts%n))
+      highest = 0
+      largest = 0
+      largest_element = 0
+      do e = 1, size(self%unknowns%first, kind=ik) - 1
+         largest_element = max(largest_element, self%unknowns%length(e))
+      end do
+      do i = 1, self%fronts%n
+         largest = max(largest, int(size_of(self, i), int64)**2)
+         do k = 1, self%fronts%n_children(i)
+            work%top = work%top - triangle_of(self, work%waiting(work%n_waiting))
+            work%n_waiting = work%n_waiting - 1
+         end do
+         work%top = work%top + triangle_of(self, i)
+         work%n_waiting = work%n_waiting + 1
+         work%waiting(work%n_waiting) = i
+         highest = max(highest, work%top)
+      end do
+      work%top = 0
+      work%n_waiting = 0
+      allocate (work%front(largest), work%stack(highest))
+      allocate (work%places(self%n), work%matrix(largest_element**2))
+   end subroutine prepare
+
+   !> How many entries what front i leaves has.
+   pure integer(int64) function triangle_of(self, i)
+      type(multifrontal_t), intent(in) :: self
+      integer(ik), intent(in) :: i
+      integer(int64) :: n
+
+      n = self%fronts%rows%length(i)
+      triangle_of = (n*(n + 1))/2
+   end function triangle_of
+
+   !> Add up a front, eliminate its pivots, and put what is left on the stack.
+   subroutine eliminate_front(self, matrices, i, work, place)
+      type(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      integer(ik), intent(in) :: i
+      type(workspace_t), intent(inout) :: work
+      integer(ik), intent(out) :: place  !< of a pivot that is not positive; 0: none
+      integer(ik) :: child, k, m, n, n_pivots
+
+      n_pivots = pivots_of(self, i)
+      n = size_of(self, i)
+      associate (fronts => self%fronts, front => work%front(:int(n, int64)**2))
+         front = 0.0_rk
+         do k = 1, n_pivots
+            work%place(fronts%first_pivot(i) + k - 1) = k
+         end do
+         do k = 1, n - n_pivots
+            work%place(fronts%rows%at(i, k)) = n_pivots + k
+         end do
+         call add_elements(self, matrices, i, work%place, work%places, work%matrix, n, work%front)
+         do child = 1, fronts%n_children(i)
+            call pop(self, work, m)
+            if (m == 0) cycle
+            call add_triangle(m, work%places, work%stack(work%top + 1), n, work%front)
+         end do
+         call eliminate(work%front, n, n_pivots, place)
+         if (place > 0) return
+         self%factor(self%first_entry(i):self%first_entry(i + 1) - 1) &
+            = work%front(:int(n, int64)*n_pivots)
+         call push(work%front, n, n_pivots, work%stack, work%top)
+         work%n_waiting = work%n_waiting + 1
+         work%waiting(work%n_waiting) = i
+      end associate
+   end subroutine eliminate_front
+
+   !> Add the elements of front i to its matrix.
+   pure subroutine add_elements(self, matrices, i, place, places, matrix, n, front)
+      type(multifrontal_t), intent(in) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      integer(ik), intent(in) :: i
+      integer(ik), intent(in) :: place(:)  !< (unknowns) in the front
+      integer(ik), intent(inout) :: places(:)  !< room for the places of an element
+      real(rk), intent(inout) :: matrix(:)  !< room for its matrix
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: front(n, n)
+      integer(ik) :: e, j, k, m
+
+      do k = self%fronts%elements%first(i), self%fronts%elements%last(i)
+         e = self%fronts%elements%item(k)
+         m = self%unknowns%length(e)
+         do j = 1, m
+            places(j) = place(self%unknowns%at(e, j))
+         end do
+         call matrices%give(e, m, matrix)
+         call add_matrix(m, places, matrix, n, front)
+      end do
+   end subroutine add_elements
+
+   !> Add the matrix of an element to a front.
+   pure subroutine add_matrix(m, places, matrix, n, front)
+      integer(ik), intent(in) :: m
+      integer(ik), intent(in) :: places(m)
+      real(rk), intent(in) :: matrix(m, m)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: front(n, n)
+      integer(ik) :: a, b, p, q
+
+      do b = 1, m
+         do a = b, m
+            p = max(places(a), places(b))
+            q = min(places(a), places(b))
+            front(p, q) = front(p, q) + matrix(a, b)
+         end do
+      end do
+   end subroutine add_matrix
+
+   !> Take what a front has left from the top of the stack: its entries stay right above the new
+   !! top, their places in the present front are in work%places.
+   pure subroutine pop(self, work, m)
+      type(multifrontal_t), intent(in) :: self
+      type(workspace_t), intent(inout) :: work
+      integer(ik), intent(out) :: m  !< unknowns of the front that are left
+      integer(ik) :: child, k
+
+      child = work%waiting(work%n_waiting)
+      work%n_waiting = work%n_waiting - 1
+      work%top = work%top - triangle_of(self, child)
+      m = self%fronts%rows%length(child)
+      do k = 1, m
+         work%places(k) = work%place(self%fronts%rows%at(child, k))
+      end do
+   end subroutine pop
+
+   !> Add a triangle to a matrix at rising places.
+   pure subroutine add_triangle(m, places, triangle, n, matrix)
+      integer(ik), intent(in) :: m
+      integer(ik), intent(in) :: places(m)
+      real(rk), intent(in) :: triangle((m*(m + 1))/2)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      integer(ik) :: a, at, b, p
+
+      at = 0
+      do b = 1, m
+         p = places(b)
+         do a = b, m
+            matrix(places(a), p) = matrix(places(a), p) + triangle(at + a)
+         end do
+         at = at + m - b
+      end do
+   end subroutine add_triangle
+
+   !> Put what is left of a front on the stack.
+   pure subroutine push(front, n, n_pivots, stack, top)
+      integer(ik), intent(in) :: n, n_pivots
+      real(rk), intent(in) :: front(n, n)
+      real(rk), intent(inout) :: stack(:)
+      integer(int64), intent(inout) :: top
+      integer(ik) :: j
+
+      do j = n_pivots + 1, n
+         stack(top + 1:top + n - j + 1) = front(j:, j)
+         top = top + n - j + 1
+      end do
+   end subroutine push
+
+   !> What is left at the end: the Schur complement.
+   pure subroutine sum_up_kept(self, matrices, work)
+      type(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      type(workspace_t), intent(inout) :: work
+      integer(ik) :: i, j, m, n
+
+      n = self%n - self%fronts%n_free
+      work%place(self%fronts%n_free + 1:) = [(i, i=1, n)]
+      call add_elements(self, matrices, self%fronts%n + 1_ik, work%place, work%places, &
+                        work%matrix, n, self%schur)
+      do while (work%n_waiting > 0)
+         call pop(self, work, m)
+         if (m == 0) cycle
+         call add_triangle(m, work%places, work%stack(work%top + 1), n, self%schur)
+      end do
+      do j = 2, n
+         self%schur(:j - 1, j) = self%schur(j, :j - 1)
+      end do
+   end subroutine sum_up_kept
+
+   !> The Schur complement, full and symmetric. It is handed over, not kept: once per factorization.
+   subroutine get_schur(self, schur)
+      class(multifrontal_t), intent(inout) :: self
+      real(rk), allocatable, intent(out) :: schur(:, :)  !< (kept, kept)
+
+      call move_alloc(self%schur, schur)
+   end subroutine get_schur
+
+   !> Solve for a right-hand side, where no unknowns are kept.
+   subroutine solve(self, x, error)
+      class(multifrontal_t), intent(in) :: self
+      real(rk), intent(inout) :: x(:)  !< (n) the right-hand side, then the solution
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: y(self%n)
+
+      call check_factors(self, size(x, kind=ik), error)
+      if (allocated(error)) return
+      y(self%fronts%number) = x
+      call substitute_forwards(self, y)
+      call substitute_backwards(self, y)
+      x = y(self%fronts%number)
+   end subroutine solve
+
+   !> Forward elimination: the right-hand side of the condensed system. What else follows from it is
+   !! kept until `expand`.
+   subroutine condense(self, rhs, reduced, error)
+      class(multifrontal_t), intent(inout) :: self
+      real(rk), intent(in) :: rhs(:)  !< (n) entries of the kept unknowns included
+      real(rk), intent(out) :: reduced(:)  !< (kept)
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_factors(self, size(rhs, kind=ik), error)
+      if (allocated(error)) return
+      if (.not. allocated(self%eliminated)) allocate (self%eliminated(self%n))
+      if (size(self%eliminated) /= self%n) then
+         deallocate (self%eliminated)
+         allocate (self%eliminated(self%n))
+      end if
+      self%eliminated(self%fronts%number) = rhs
+      call substitute_forwards(self, self%eliminated)
+      reduced = self%eliminated(self%fronts%n_free + 1:)
+   end subroutine condense
+
+   !> Back substitution after `condense`: all unknowns from the kept ones.
+   subroutine expand(self, condensed, x, error)
+      class(multifrontal_t), intent(in) :: self
+      real(rk), intent(in) :: condensed(:)  !< (kept)
+      real(rk), intent(out) :: x(:)  !< (n)
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: y(self%n)
+
+      call check_factors(self, size(x, kind=ik), error)
+      if (allocated(error)) return
+      y = self%eliminated
+      y(self%fronts%n_free + 1:) = condensed
+      call substitute_backwards(self, y)
+      x = y(self%fronts%number)
+   end subroutine expand
+
+   pure subroutine check_factors(self, n, error)
+      class(multifrontal_t), intent(in) :: self
+      integer(ik), intent(in) :: n  !< unknowns that are given
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%is_factorized .and. n == self%n) return
+      call raise_error(error, "multifrontal_t", "the matrix has not been factorized for so many"// &
+                       " unknowns")
+   end subroutine check_factors
+
+   !> y := L^-1 y; at the kept unknowns what is left of the right-hand side.
+   pure subroutine substitute_forwards(self, y)
+      class(multifrontal_t), intent(in) :: self
+      real(rk), intent(inout) :: y(:)  !< (n) in the order of elimination
+      real(rk) :: part(self%n)
+      integer(ik) :: i
+
+      do i = 1, self%fronts%n
+         associate (rows => self%fronts%rows, first => self%fronts%first_pivot(i))
+            call forwards(size_of(self, i), pivots_of(self, i), &
+                          self%factor(self%first_entry(i):self%first_entry(i + 1) - 1), &
+                          rows%item(rows%first(i):rows%last(i)), first, y, part)
+         end associate
+      end do
+   end subroutine substitute_forwards
+
+   !> The part of one front.
+   pure subroutine forwards(n, n_pivots, factor, rows, first, y, part)
+      integer(ik), intent(in) :: n, n_pivots
+      real(rk), intent(in) :: factor(n, n_pivots)
+      integer(ik), intent(in) :: rows(n - n_pivots)
+      integer(ik), intent(in) :: first  !< pivot
+      real(rk), intent(inout) :: y(:)
+      real(rk), intent(out) :: part(n)  !< room
+      integer(ik) :: j, k
+
+      part(:n_pivots) = y(first:first + n_pivots - 1)
+      part(n_pivots + 1:) = 0.0_rk
+      do j = 1, n_pivots
+         part(j) = part(j)/factor(j, j)
+         do k = j + 1, n
+            part(k) = part(k) - part(j)*factor(k, j)
+         end do
+      end do
+      y(first:first + n_pivots - 1) = part(:n_pivots)
+      do k = 1, n - n_pivots
+         y(rows(k)) = y(rows(k)) + part(n_pivots + k)
+      end do
+   end subroutine forwards
+
+   !> y := L'^-1 y, where the kept unknowns have their values.
+   pure subroutine substitute_backwards(self, y)
+      class(multifrontal_t), intent(in) :: self
+      real(rk), intent(inout) :: y(:)  !< (n) in the order of elimination
+      real(rk) :: part(self%n)
+      integer(ik) :: i
+
+      do i = self%fronts%n, 1, -1
+         associate (rows => self%fronts%rows, first => self%fronts%first_pivot(i))
+            call backwards(size_of(self, i), pivots_of(self, i), &
+                           self%factor(self%first_entry(i):self%first_entry(i + 1) - 1), &
+                           rows%item(rows%first(i):rows%last(i)), first, y, part)
+         end associate
+      end do
+   end subroutine substitute_backwards
+
+   !> The part of one front.
+   pure subroutine backwards(n, n_pivots, factor, rows, first, y, part)
+      integer(ik), intent(in) :: n, n_pivots
+      real(rk), intent(in) :: factor(n, n_pivots)
+      integer(ik), intent(in) :: rows(n - n_pivots)
+      integer(ik), intent(in) :: first  !< pivot
+      real(rk), intent(inout) :: y(:)
+      real(rk), intent(out) :: part(n)  !< room
+      integer(ik) :: j
+
+      part(:n_pivots) = y(first:first + n_pivots - 1)
+      do j = 1, n - n_pivots
+         part(n_pivots + j) = y(rows(j))
+      end do
+      do j = n_pivots, 1, -1
+         part(j) = (part(j) - product_of(n - j, factor(min(j + 1, n), j), part(min(j + 1, n)))) &
+                   /factor(j, j)
+      end do
+      y(first:first + n_pivots - 1) = part(:n_pivots)
+   end subroutine backwards
+
+   !> The sum of x y, in four sums that the processor forms at the same time.
+   pure real(rk) function product_of(n, x, y)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: x(n), y(n)
+      real(rk) :: sums(4)
+      integer(ik) :: i
+
+      sums = 0.0_rk
+      do i = 1, n - 3, 4
+         sums = sums + x(i:i + 3)*y(i:i + 3)
+      end do
+      product_of = sum(sums)
+      do i = n - modulo(n, 4) + 1, n
+         product_of = product_of + x(i)*y(i)
+      end do
+   end function product_of
+
+end module algebra_multifrontal

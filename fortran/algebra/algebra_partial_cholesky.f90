@@ -1,0 +1,120 @@
+!> Cholesky elimination of the first unknowns of a dense symmetric positive definite matrix.
+module algebra_partial_cholesky
+   use algebra_lapack, only: dpotrf, dsyrk, dtrsm
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: eliminate
+
+   integer(ik), parameter :: panel = 4  !< pivots that are taken together
+
+   !> With fewer pivots or rows than these the plain loops are faster than the calls (measured).
+   integer(ik), parameter :: pivots_for_blas = 16, rows_for_blas = 160
+
+contains
+
+   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what is
+   !! left of the matrix without these unknowns (its Schur complement). The upper triangle is lost.
+   subroutine eliminate(matrix, n, n_pivots, place)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      integer(ik), intent(in) :: n_pivots
+      integer(ik), intent(out) :: place  !< of the first pivot that is not positive; 0: none
+      integer(ik) :: rest
+
+      rest = n - n_pivots
+      if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
+         call eliminate_in_panels(matrix, n, n_pivots, place)
+         return
+      end if
+      call dpotrf("L", n_pivots, matrix, n, place)
+      if (place /= 0 .or. rest == 0) return
+      call dtrsm("R", "L", "T", "N", rest, n_pivots, 1.0_rk, matrix, n, &
+                 matrix(n_pivots + 1, 1), n)
+      call dsyrk("L", "N", rest, n_pivots, -1.0_rk, matrix(n_pivots + 1, 1), n, 1.0_rk, &
+                 matrix(n_pivots + 1, n_pivots + 1), n)
+   end subroutine eliminate
+
+   !> The same in plain loops, a few pivots at a time.
+   pure subroutine eliminate_in_panels(matrix, n, n_pivots, place)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      integer(ik), intent(in) :: n_pivots
+      integer(ik), intent(out) :: place
+      real(rk) :: factor(2, panel)
+      integer(ik) :: first, j, k, last
+
+      place = 0
+      do first = 1, n_pivots, panel
+         last = min(first + panel - 1, n_pivots)
+         do k = first, last
+            if (.not. matrix(k, k) > 0.0_rk) then
+               place = k
+               return
+            end if
+            matrix(k, k) = sqrt(matrix(k, k))
+            call divide(n - k, matrix(k, k), matrix(min(k + 1, n), k))
+            do j = k + 1, last
+               call subtract_one(n - j + 1, matrix(j, k), matrix(j, k), matrix(j, j))
+            end do
+         end do
+         if (last - first + 1 < panel) then
+            do k = first, last
+               do j = last + 1, n
+                  call subtract_one(n - j + 1, matrix(j, k), matrix(j, k), matrix(j, j))
+               end do
+            end do
+         else
+            do j = last + 1, n - 1, 2
+               do k = first, last
+                  factor(:, k - first + 1) = [matrix(j, k), matrix(j + 1, k)]
+               end do
+               call subtract_four_twice(n - j + 1, factor, &
+                                        matrix(j, first), matrix(j, first + 1), &
+                                        matrix(j, first + 2), matrix(j, first + 3), &
+                                        matrix(j, j), matrix(j, j + 1))
+            end do
+            if (modulo(n - last, 2) == 1) then
+               do k = first, last
+                  call subtract_one(1, matrix(n, k), matrix(n, k), matrix(n, n))
+               end do
+            end if
+         end if
+      end do
+   end subroutine eliminate_in_panels
+
+   pure subroutine divide(n, divisor, column)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: divisor
+      real(rk), intent(inout) :: column(n)
+
+      column = column*(1.0_rk/divisor)
+   end subroutine divide
+
+   !> y - factor x
+   pure subroutine subtract_one(n, factor, x, y)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: factor, x(n)
+      real(rk), intent(inout) :: y(n)
+
+      y = y - factor*x
+   end subroutine subtract_one
+
+   !> Four columns from each of two, where the numbers fit into the registers of the processor.
+   pure subroutine subtract_four_twice(n, factor, x1, x2, x3, x4, y1, y2)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: factor(2, 4)
+      real(rk), intent(in) :: x1(n), x2(n), x3(n), x4(n)
+      real(rk), intent(inout) :: y1(n), y2(n)
+      integer(ik) :: i
+
+      do i = 1, n
+         y1(i) = y1(i) - factor(1, 1)*x1(i) - factor(1, 2)*x2(i) - factor(1, 3)*x3(i) &
+                 - factor(1, 4)*x4(i)
+         y2(i) = y2(i) - factor(2, 1)*x1(i) - factor(2, 2)*x2(i) - factor(2, 3)*x3(i) &
+                 - factor(2, 4)*x4(i)
+      end do
+   end subroutine subtract_four_twice
+
+end module algebra_partial_cholesky
