@@ -55,7 +55,8 @@ endfunction()
 
 # gfortran 12 takes the descriptors of allocatable arrays (their `offset` and `dim` before the first
 # allocation) for uninitialized: -Wmaybe-uninitialized in either build, -Wuninitialized where it
-# optimizes. In the debug build the latter is right, and stays.
+# optimizes. In the debug build the latter is right, and stays. No local array is static: procedures
+# may run on several threads at once.
 function(room_compile_options name)
   target_compile_options(
     ${name}
@@ -66,6 +67,7 @@ function(room_compile_options name)
       $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wimplicit-interface
       -fimplicit-none
+      -frecursive
       $<$<CONFIG:Release>:-O3
       ${WINGCRACK_PROCESSOR}
       -Wno-uninitialized

@@ -242,6 +242,7 @@ GmshSession::~GmshSession() {
 
 std::vector<Triangle> GmshSession::triangulate(const Region& region, const SizeField& size,
                                                std::vector<Vec2>& xy, double coverage) {
+    const std::lock_guard lock(at_work_);
     try {
         const Model model;
         gmsh::option::setNumber("Mesh.Algorithm",

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace cpp_mesh {
@@ -32,11 +33,14 @@ public:
     GmshSession(const GmshSession&) = delete;
     GmshSession& operator=(const GmshSession&) = delete;
 
-    // Triangles of the region; nodes that gmsh adds are appended to xy. Fails where gmsh would
+    // One thread at a time; others wait. Triangles of the region; nodes that gmsh adds are appended to xy. Fails where gmsh would
     // cover the region more often than `coverage` times (work_limit.hpp).
     std::vector<Triangle> triangulate(const Region& region, const SizeField& size,
                                       std::vector<Vec2>& xy,
                                       double coverage = WorkLimit::usual_coverage);
+
+private:
+    std::mutex at_work_;
 };
 
 } // namespace cpp_mesh

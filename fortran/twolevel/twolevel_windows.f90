@@ -2,6 +2,8 @@
 !!
 !! Each tip has a window of its own, or the body is one window for all of them. Tips whose own
 !! windows would have to be nearly as large as the body share one that is the body.
+!!
+!! Windows are evaluated side by side on as many threads as there are; each is what it is alone.
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -23,6 +25,11 @@ module twolevel_windows
    !> A tip that another one's window holds has moved where it has by more than this share of its
    !! distance to that: intensities change by a small part of it [-].
    real(rk), parameter :: noticeable = 1.0e-3_rk
+
+   !> Why a window could not be evaluated, if so.
+   type :: failure_t
+      type(error_t), allocatable :: error
+   end type failure_t
 
    !> The windows, and whether each is that of the present network and coarse mesh.
    type :: windows_t
@@ -105,6 +112,7 @@ contains
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
+      type(failure_t) :: failure(size(self%window))
       integer(ik) :: i, w
 
       call see_tips(self, tips)
@@ -112,33 +120,60 @@ contains
          self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
                              i=1, size(tips))]
       end if
+      !$omp parallel do schedule(dynamic, 1)
       do w = 1, size(self%window, kind=ik)
-         associate (window => self%window(w))
-            if (.not. self%is_asked(w, tips)) then
-               self%built(w) = .false.
-               self%may_follow(w) = .false.
-               cycle
+         if (self%is_asked(w, tips)) then
+            if (any(asked(self%window(w)%serves))) then
+               call evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
+                                    undrained, failure(w)%error)
             end if
-            if (.not. any(asked(window%serves))) cycle
-            if (.not. self%built(w)) then
-               call renew(self, w, scene, network, tips, error)
-               if (allocated(error)) return
-            end if
-            if (.not. self%projected(w)) then
-               call window%project(mesher, mesh, values, error)
-               if (allocated(error)) return
-               self%projected(w) = .true.
-            end if
-            if (window%undrained .neqv. undrained) then
-               call window%set_rock(scene, undrained, error)
-               if (allocated(error)) return
-            end if
-            call window%find_intensities(scene, mesh, values, state, self%tip, error)
-            if (allocated(error)) return
-            call tell(self, window, tips)
-         end associate
+         else
+            self%built(w) = .false.
+            self%may_follow(w) = .false.
+         end if
+      end do
+      !$omp end parallel do
+      do w = 1, size(failure, kind=ik)
+         if (.not. allocated(failure(w)%error)) cycle
+         error = failure(w)%error
+         return
       end do
    end subroutine evaluate
+
+   !> The same for the tips of one window. It changes nothing of other windows or tips.
+   subroutine evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
+                              undrained, error)
+      class(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: w
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(tip_t), intent(inout) :: tips(:)
+      type(mesher_t), intent(in) :: mesher
+      type(mesh_t), intent(in) :: mesh
+      type(coarse_values_t), intent(in) :: values
+      type(state_t), intent(in) :: state
+      logical, intent(in) :: undrained
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (window => self%window(w))
+         if (.not. self%built(w)) then
+            call renew(self, w, scene, network, tips, error)
+            if (allocated(error)) return
+         end if
+         if (.not. self%projected(w)) then
+            call window%project(mesher, mesh, values, error)
+            if (allocated(error)) return
+            self%projected(w) = .true.
+         end if
+         if (window%undrained .neqv. undrained) then
+            call window%set_rock(scene, undrained, error)
+            if (allocated(error)) return
+         end if
+         call window%find_intensities(scene, mesh, values, state, self%tip, error)
+         if (allocated(error)) return
+         call tell(self, window, tips)
+      end associate
+   end subroutine evaluate_window
 
    !> Mesh a window anew, or let its mesh follow the tips if nothing else has changed in it.
    subroutine renew(self, w, scene, network, tips, error)
