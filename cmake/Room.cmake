@@ -3,7 +3,7 @@
 # fails to compile. tools/rooms.py also finds what is listed in vain.
 #
 #   add_room(coarse USES mesh)              every .f90 file of the calling folder
-#   add_room(coarse THREADS USES mesh)      whose loops run on as many threads as OMP_NUM_THREADS says
+#   add_room(coarse THREADS USES mesh)      whose loops run on OMP_NUM_THREADS threads
 #   add_room_samples(coarse sample_bodies USES coarse)   tests/sample_bodies.f90, for several tests
 #   add_room_test(test_x USES coarse)       test_x.f90 of the room's tests/ folder, run by CTest
 function(add_room name)
@@ -18,9 +18,9 @@ function(add_room name)
   endif()
 endfunction()
 
-# Loops marked `!$omp parallel do` run on threads. What they compute must not depend on how many: each
-# turn writes what is its own, and sums are taken outside. Rooms without this take the marks for
-# comments.
+# Loops marked `!$omp parallel do` run on threads. What they compute must not depend on how many:
+# each turn writes what is its own, and sums are taken outside. Rooms without this take the marks
+# for comments.
 function(room_threads name)
   target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS})
   target_link_libraries(${name} PRIVATE OpenMP::OpenMP_Fortran)

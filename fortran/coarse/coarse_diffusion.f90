@@ -115,7 +115,8 @@ contains
          associate (side => mesh%face_side(f))
             if (side == 0) cycle
             if (is_given(side)) then
-               local%equations(last, j) = local%equations(last, j) - 0.5_rk*face_length(mesh, f)*given(side)
+               local%equations(last, j) = local%equations(last, j) &
+                                          - 0.5_rk*face_length(mesh, f)*given(side)
             else
                call fix_unknown(local, j, given(side))
             end if
