@@ -5,6 +5,7 @@ program wingcrack_solver
    use app_interrupts, only: catch_interrupts, interrupt_status
    use app_memory, only: machine_memory, prepare_memory
    use app_run, only: run_scene
+   use app_simulations, only: simulates_fluids
    use app_size, only: check_size
    use app_version, only: version
    use base_errors, only: error_t
@@ -17,7 +18,7 @@ program wingcrack_solver
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    implicit none(type, external)
 
-   integer, parameter :: exit_failed = 1, exit_usage = 2
+   integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
                                   "--describe-input | --describe-output | "// &
@@ -98,6 +99,11 @@ contains
       type(error_t), allocatable :: error
 
       call read_scene(argument(2), scene, error, sheet)
+      if (.not. (allocated(error) .or. simulates_fluids())) then
+         if (scene%has_fluid()) call leave("the scene has a fluid, and this program was built "// &
+                                           "without the coarse level, which that takes", &
+                                           exit_environment)
+      end if
       if (.not. allocated(error)) call check_size(sheet, scene, machine_memory(), error)
       if (.not. allocated(error)) call check_geometry(sheet, scene, error)
       if (allocated(error)) call leave(error%message, exit_usage)
