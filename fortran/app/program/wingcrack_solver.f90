@@ -1,5 +1,6 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
+   use algebra_ranks, only: begin_ranks
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
    use app_interrupts, only: catch_interrupts, interrupt_status
@@ -72,6 +73,7 @@ contains
       end do
       call catch_interrupts()
       call prepare_memory()
+      call begin_ranks()
       call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
       call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
