@@ -1,6 +1,4 @@
-"""The program without the coarse level: what it links, what it refuses, and that the coarse level
-costs a scene without a fluid nothing in the program that has it.
-"""
+"""The program without the coarse level: what it links and refuses, what the other costs more."""
 
 from __future__ import annotations
 

@@ -17,6 +17,32 @@ solve() {
     return "$status"
 }
 
+# solve_on RANKS THREADS ARGUMENT...: the same with so many processes that share large matrices.
+solve_on() {
+    if (($1 == 1)); then
+        solve "${@:2}"
+        return
+    fi
+    # A session of their own: of signals, mpiexec takes SIGINT and SIGTERM for its own business, and
+    # hands on two others (algebra_ranks.c).
+    local mpiexec=(setsid mpiexec.openmpi --quiet --oversubscribe --bind-to none
+        --mca mpi_yield_when_idle 1 --mca btl_vader_single_copy_mechanism none)
+    local status sent_for_int=USR1 sent_for_term=USR2
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # as everything else here
+    OPENBLAS_NUM_THREADS=$2 supervise "${mpiexec[@]}" -n "$1" "$ranks_solver" "${@:3}" </dev/null
+    status=$?
+    case $status in
+        $((128 + $(kill -l USR1)))) return 130 ;; # before the ranks knew of them
+        $((128 + $(kill -l USR2)))) return 143 ;;
+        130 | 143) ;;
+        1[3-9][0-9])
+            say "signal $((status - 128)) has ended a rank, which may be for want of memory;" \
+                'the last state written before that is on disk'
+            ;;
+    esac
+    return "$status"
+}
+
 # start PACKAGE ARGUMENT...: run a Python package of post/. matplotlib keeps its list of fonts with
 # the environment: one in the user's home may name what is no longer there.
 start() {
@@ -71,6 +97,11 @@ supervise() {
 
 # forward SIGNAL: hand a signal on to the command that `supervise` runs.
 forward() {
+    local sent=$1
     signalled=$1
-    if [[ -n $child ]]; then kill "-$1" "$child" 2>/dev/null; fi
+    case $1 in
+        INT) sent=${sent_for_int:-INT} ;;
+        TERM) sent=${sent_for_term:-TERM} ;;
+    esac
+    if [[ -n $child ]]; then kill "-$sent" "$child" 2>/dev/null; fi
 }

@@ -1,6 +1,6 @@
 !> Ranks: the processes of MPI among which MUMPS may share a matrix. A program is linked for one
-!! process (`alone`), which is the rule and knows nothing of MPI, or for ranks (`ranks`); of these the
-!! first runs the program, and the others take part in what MUMPS does with the matrices that are shared.
+!! process (`alone`), which is the rule and knows nothing of MPI, or for ranks (`ranks`); of these
+!! the first runs the program, and the others take part in what MUMPS does with shared matrices.
 module algebra_ranks
    use, intrinsic :: iso_c_binding, only: c_int
    implicit none(type, external)

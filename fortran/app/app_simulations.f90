@@ -13,10 +13,12 @@ module app_simulations
    interface
       !> This program has a way to simulate scenes with a fluid.
       pure module logical function simulates_fluids()
+         implicit none(type, external)
       end function simulates_fluids
 
       !> What is meshed first of the scene.
       module function first_mesh(scene, network) result(spec)
+         implicit none(type, external)
          type(scene_t), intent(in) :: scene
          type(network_t), intent(in) :: network  !< its own
          type(mesh_spec_t) :: spec
@@ -24,6 +26,7 @@ module app_simulations
 
       !> What simulates the scene; nothing if this program cannot.
       module subroutine allocate_simulation(scene, simulation)
+         implicit none(type, external)
          type(scene_t), intent(in) :: scene
          class(simulation_t), allocatable, intent(out) :: simulation
       end subroutine allocate_simulation

@@ -22,6 +22,7 @@ program wingcrack_solver
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
+                                  "ranks SCENE.nml | "// &
                                   "--describe-input | --describe-output | "// &
                                   "--describe-limits | --version"
 
@@ -32,6 +33,8 @@ program wingcrack_solver
       call check()
    case ("name")
       call print_name()
+   case ("ranks")
+      call check_ranks()
    case ("--describe-input")
       call describe_input(output_unit)
    case ("--describe-output")
@@ -120,6 +123,19 @@ contains
       if (allocated(error)) call leave(error%message, exit_usage)
       write (output_unit, "(a)") trim(scene%name)
    end subroutine print_name
+
+   !> Whether ranks have anything to share: the matrix of a body with a fluid.
+   subroutine check_ranks()
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call read_scene(argument(2), scene, error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+      if (.not. scene%has_fluid()) then
+         call leave("ranks share the matrices of a body with a fluid, and "//argument(2)// &
+                    " has none: leave --ranks out", exit_usage)
+      end if
+   end subroutine check_ranks
 
    !> A command-line argument; empty where there is none.
    function argument(i) result(text)

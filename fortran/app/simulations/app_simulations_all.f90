@@ -31,7 +31,7 @@ contains
       type(twolevel_simulation_t), allocatable :: levels
       type(mechanics_simulation_t), allocatable :: body
 
-      ! Moved, as gfortran 12 copies what nobody has set where it allocates `simulation` as one of them.
+      ! Moved: where it allocates `simulation` itself, gfortran 12 copies what nobody has set.
       if (scene%has_fluid()) then
          allocate (levels)
          call move_alloc(levels, simulation)
