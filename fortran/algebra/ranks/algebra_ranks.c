@@ -36,8 +36,14 @@ static void end_ranks(void) {
 
 void algebra_begin_ranks(void) {
     int rank;
+    sigset_t all, mask;
     prctl(PR_SET_PDEATHSIG, SIGKILL); // no rank stays behind if mpiexec is killed
+    // Signals are for this thread, which keeps them waiting at times (algebra_metis.c): MPI's own threads
+    // begin with this mask, and keep it.
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &mask);
     MPI_Init(NULL, NULL);
+    pthread_sigmask(SIG_SETMASK, &mask, NULL);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     if (rank > 0) {
         // They end when the first one does, which has a state to write before.
