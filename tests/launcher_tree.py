@@ -15,13 +15,17 @@ _PROJECT = """\
 cmake_minimum_required(VERSION 3.22)
 project(wingcrack VERSION 9.8.7 LANGUAGES NONE)
 file(GLOB parts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fortran/*.sh)
-set(program ${PROJECT_BINARY_DIR}/fortran/app/wingcrack-solver)
-add_custom_command(
-  OUTPUT ${program}
-  COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/assemble.sh ${program} ${parts}
-  DEPENDS ${parts}
-)
-add_custom_target(wingcrack-solver ALL DEPENDS ${program})
+foreach(name wingcrack-solver wingcrack-ranks)
+  set(program ${PROJECT_BINARY_DIR}/fortran/app/${name})
+  add_custom_command(
+    OUTPUT ${program}
+    COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/assemble.sh ${program} ${parts}
+    DEPENDS ${parts}
+  )
+  add_custom_target(${name} DEPENDS ${program})
+endforeach()
+add_custom_target(everything ALL)
+add_dependencies(everything wingcrack-solver)
 """
 
 _ASSEMBLE = """\
@@ -37,6 +41,10 @@ _SOLVER = """\
 if [[ $1 == name ]]; then
     sed -n 's/^# name //p' "$2"
     grep -q '^# bad scene' "$2" && { echo 'what is bad about it' >&2; exit 2; }
+    exit 0
+fi
+if [[ $1 == ranks ]]; then
+    grep -q '^# no fluid' "$2" && { echo 'it has no fluid' >&2; exit 2; }
     exit 0
 fi
 printf 'solver %s\\n' "$*"
@@ -116,6 +124,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     shutil.copy(TOP / "CMakePresets.json", root)
     shutil.copytree(TOP / "tools", root / "tools")
     (root / "tools" / "system_packages.txt").write_text(packages)
+    (root / "tools" / "system_packages_ranks.txt").write_text("")
     (root / "requirements.txt").write_text(requirements)
     (root / "requirements_developer.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)

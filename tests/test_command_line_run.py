@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
-from launcher_tree import Tree
+from launcher_tree import Tree, add_program
 
 
 def test_run_solves_and_then_draws(ready_tree: Tree) -> None:
@@ -164,3 +166,85 @@ def test_fonts_are_listed_beside_the_environment(ready_tree: Tree) -> None:
     finally:
         package.write_text(stand_in)
     assert done.stdout == f"{ready_tree.root / '.venv' / 'matplotlib'}\n"
+
+
+# A stand-in for mpiexec: it tells how many ranks it is to start, and becomes the first of them.
+MPIEXEC = """\
+while [[ $1 != -n ]]; do shift; done
+echo "mpiexec $1 $2"
+shift 2
+exec "$@"
+"""
+
+
+@pytest.fixture
+def ranks_tree(ready_tree: Tree, tmp_path: Path) -> Tree:
+    """The tree that is set up, on a machine with MPI; its place stays empty."""
+    place = tmp_path / "place"
+    place.mkdir()
+    add_program(tmp_path / "machine", "mpiexec.openmpi", MPIEXEC)
+    path = {"PATH": f"{tmp_path / 'machine'}:{os.environ['PATH']}"}
+    return Tree(ready_tree.root, place, path)
+
+
+@pytest.mark.parametrize("options", [["--ranks", "3"], ["--ranks=3"]])
+def test_ranks_are_started_by_mpiexec(ranks_tree: Tree, options: list[str]) -> None:
+    scene = ranks_tree.scene()
+    done = ranks_tree.call("run", scene, "--out", "here", "--threads", "2", *options)
+    assert done.returncode == 0
+    assert done.stdout.splitlines() == [
+        "mpiexec -n 3",
+        f"solver run {scene} --out here",
+        "threads 2",
+        "post plot here",
+    ]
+
+
+def test_one_rank_is_no_affair_of_mpi(ranks_tree: Tree) -> None:
+    done = ranks_tree.call("run", ranks_tree.scene(), "--ranks", "1", "--no-plot")
+    assert done.returncode == 0
+    assert "mpiexec" not in done.stdout
+
+
+def test_ranks_without_a_fluid_are_refused(ranks_tree: Tree) -> None:
+    done = ranks_tree.call("run", ranks_tree.scene("# no fluid"), "--ranks", "2")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "it has no fluid\n")
+
+
+@pytest.mark.parametrize("status", [1, 2, 130, 137])
+def test_ranks_that_fail_keep_their_status(ranks_tree: Tree, status: int) -> None:
+    done = ranks_tree.call("run", ranks_tree.scene(f"exit {status}"), "--ranks", "2")
+    assert done.returncode == status
+    assert "post" not in done.stdout
+    assert ("signal 9 has ended a rank" in done.stderr) == (status == 137)
+
+
+@pytest.mark.parametrize(
+    ("sent", "heard", "status"), [(signal.SIGINT, "USR1", 130), (signal.SIGTERM, "USR2", 143)]
+)
+def test_a_signal_reaches_ranks_as_mpiexec_hands_it_on(
+    ranks_tree: Tree, sent: signal.Signals, heard: str, status: int
+) -> None:
+    scene = ranks_tree.scene(
+        "trap 'echo not this one; exit 1' INT TERM\n"
+        f"trap 'echo state saved; exit {status}' {heard}\n"
+        "echo ready >started\n"
+        "for i in {1..200}; do sleep 0.05; done\n"
+    )
+    with ranks_tree.start("run", scene, "--ranks", "2") as process:
+        deadline = time.monotonic() + 60
+        while not (ranks_tree.place / "started").exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        process.send_signal(sent)
+        out, _ = process.communicate(timeout=60)
+    assert process.returncode == status
+    assert "state saved" in out
+
+
+@pytest.mark.parametrize(("died_of", "status"), [("USR1", 130), ("USR2", 143)])
+def test_a_signal_before_the_ranks_know_it_counts_too(
+    ranks_tree: Tree, died_of: str, status: int
+) -> None:
+    done = ranks_tree.call("run", ranks_tree.scene(f"kill -{died_of} $$"), "--ranks", "2")
+    assert done.returncode == status

@@ -28,7 +28,8 @@ case " $words " in
         if [[ -e $here/stale && ! -e $here/updated ]]; then exit 100; fi
         if [[ -e $here/broken ]]; then echo 'E: no such package' >&2; exit 100; fi
         ln -sf "$(type -P true)" "$here/alpha-tool"
-        ln -sf "$(type -P true)" "$here/beta-tool" ;;
+        ln -sf "$(type -P true)" "$here/beta-tool"
+        if [[ $words == *gamma-mpi* ]]; then ln -sf "$(type -P true)" "$here/gamma-mpi"; fi ;;
 esac
 """
 APT_CACHE = "printf '%s\\n' beta-lib-5.10 beta-lib-5.7 beta-lib-5.9"
@@ -88,6 +89,51 @@ def test_missing_packages_are_named_with_their_purpose_and_installed(
     assert "second thing" in done.stderr
     # The newest of the versions on offer, in the order of versions, not of letters.
     assert asked(machine)[-1] == "install alpha-tool beta-lib-5.10"
+
+
+@pytest.fixture
+def ranks_tree(lacking_tree: Tree, machine: Path) -> Tree:
+    """A tree whose system packages are not there, where ranks take one more."""
+    (lacking_tree.root / "tools" / "system_packages_ranks.txt").write_text(
+        "gamma-mpi | command gamma-mpi | third thing\n"
+    )
+    add_program(machine, "mpiexec.openmpi", 'while [[ $1 != -n ]]; do shift; done; exec "${@:3}"')
+    return lacking_tree
+
+
+def test_what_ranks_take_is_installed_and_built_for_them_alone(
+    ranks_tree: Tree, machine: Path
+) -> None:
+    scene = ranks_tree.scene()
+    assert ranks_tree.call("run", scene, "--no-plot").returncode == 0
+    assert asked(machine)[-1] == "install alpha-tool beta-lib-5.10"
+    program = ranks_tree.root / "build" / "release" / "fortran" / "app" / "wingcrack-ranks"
+    assert not program.exists()
+    done = ranks_tree.call("run", scene, "--ranks", "2", "--no-plot")
+    assert done.returncode == 0, done.stderr
+    assert "third thing" in done.stderr
+    assert asked(machine)[-1] == "install gamma-mpi"
+    assert program.exists()
+    before = ranks_tree.log
+    again = ranks_tree.call("run", scene, "--ranks", "2", "--no-plot")
+    assert (again.returncode, again.stderr) == (0, "")
+    assert ranks_tree.log == before
+
+
+def test_forbidden_to_install_it_names_what_ranks_take(ranks_tree: Tree, machine: Path) -> None:
+    scene = ranks_tree.scene()
+    assert ranks_tree.call("run", scene, "--no-plot").returncode == 0
+    done = ranks_tree.call("run", scene, "--ranks", "2", WINGCRACK_NO_INSTALL="1")
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "gamma-mpi" in done.stderr
+    assert "gamma-mpi" not in asked(machine)[-1]
+
+
+def test_ranks_in_vain_install_nothing(ranks_tree: Tree, machine: Path) -> None:
+    done = ranks_tree.call("run", ranks_tree.scene("# no fluid"), "--ranks", "2")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.splitlines()[-1] == "it has no fluid"
+    assert "gamma-mpi" not in asked(machine)[-1]
 
 
 def test_stale_package_lists_are_updated_once(lacking_tree: Tree, machine: Path) -> None:

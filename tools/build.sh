@@ -2,8 +2,10 @@
 # shellcheck shell=bash
 
 readonly solver_target=wingcrack-solver
+readonly ranks_target=wingcrack-ranks
 readonly verification_target=verification-programs
-readonly solver=$root/build/release/fortran/app/wingcrack-solver
+readonly solver=$root/build/release/fortran/app/$solver_target
+readonly ranks_solver=$root/build/release/fortran/app/$ranks_target
 
 # Exit status of a build that fails. Who only wants to run lacks a program; to a developer it is
 # the result.
@@ -13,7 +15,7 @@ build_failure=$exit_environment
 # tree has not moved since (library paths) nor the processor changed (whose instructions are used).
 build_is_current() {
     local record_file=$root/build/$1/built-$2 record='' place strictness also=()
-    if [[ $2 != "$solver_target" ]]; then
+    if [[ $2 != "$solver_target" && $2 != "$ranks_target" ]]; then
         also=("$root/verification/CMakeLists.txt" "$root/verification/programs")
     fi
     if [[ ! -r $record_file ]]; then return 1; fi

@@ -1,11 +1,11 @@
 # What the launcher hands over to: the solver and the Python packages. Sourced by the launcher.
 # shellcheck shell=bash
 
-# solve THREADS ARGUMENT...: call the solver, with as many threads of its loops and of the dense
-# linear algebra.
+# solve THREADS ARGUMENT...: call the solver, with as many threads, which do not keep a core busy
+# while they wait.
 solve() {
     local status lacking
-    OPENBLAS_NUM_THREADS=$1 OMP_NUM_THREADS=$1 supervise "$solver" "${@:2}"
+    OPENBLAS_NUM_THREADS=$1 OMP_NUM_THREADS=$1 OMP_WAIT_POLICY=passive supervise "$solver" "${@:2}"
     status=$?
     if ((status == 127)); then
         lacking=$(ldd "$solver" 2>/dev/null | sed -n 's/^[[:space:]]*\(.*\) => not found$/\1/p')
@@ -15,6 +15,33 @@ solve() {
         fail "$exit_environment" "the solver cannot start without ${lacking//$'\n'/, };" \
             "remove the folders $venv and $root/build and call again, which installs and builds anew"
     fi
+    return "$status"
+}
+
+# solve_on RANKS THREADS ARGUMENT...: the same with so many processes that share large matrices.
+solve_on() {
+    if (($1 == 1)); then
+        solve "${@:2}"
+        return
+    fi
+    # A session of their own: of signals, mpiexec takes SIGINT and SIGTERM for its own business, and
+    # hands on two others (algebra_ranks.c).
+    local mpiexec=(setsid mpiexec.openmpi --quiet --oversubscribe --bind-to none
+        --mca mpi_yield_when_idle 1 --mca btl_vader_single_copy_mechanism none)
+    local status sent_for_int=USR1 sent_for_term=USR2
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # as everything else here
+    OPENBLAS_NUM_THREADS=$2 OMP_NUM_THREADS=$2 OMP_WAIT_POLICY=passive \
+        supervise "${mpiexec[@]}" -n "$1" "$ranks_solver" "${@:3}" </dev/null
+    status=$?
+    case $status in
+        $((128 + $(kill -l USR1)))) return 130 ;; # before the ranks knew of them
+        $((128 + $(kill -l USR2)))) return 143 ;;
+        130 | 143) ;;
+        1[3-9][0-9])
+            say "signal $((status - 128)) has ended a rank, which may be for want of memory;" \
+                'the last state written before that is on disk'
+            ;;
+    esac
     return "$status"
 }
 
@@ -72,6 +99,11 @@ supervise() {
 
 # forward SIGNAL: hand a signal on to the command that `supervise` runs.
 forward() {
+    local sent=$1
     signalled=$1
-    if [[ -n $child ]]; then kill "-$1" "$child" 2>/dev/null; fi
+    case $1 in
+        INT) sent=${sent_for_int:-INT} ;;
+        TERM) sent=${sent_for_term:-TERM} ;;
+    esac
+    if [[ -n $child ]]; then kill "-$sent" "$child" 2>/dev/null; fi
 }

@@ -8,7 +8,8 @@ readonly venv_python=$venv/bin/python
 readonly venv_record=$venv/wingcrack-requirements
 readonly setup_log=$root/build/setup.log
 
-# The lists of Python packages that the command takes.
+# The lists of packages that the command takes.
+package_lists=("$root/tools/system_packages.txt")
 requirement_lists=("$root/requirements.txt")
 
 # prepare [TARGET]: see to the environment and, if a build target is named, to the release build.
@@ -26,6 +27,12 @@ prepare() {
 prepare_developer() {
     requirement_lists+=("$root/requirements_developer.txt")
     prepare
+}
+
+# prepare_ranks: see to what takes MPI, beside the rest.
+prepare_ranks() {
+    package_lists+=("$root/tools/system_packages_ranks.txt")
+    prepare "$ranks_target"
 }
 
 # with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.
@@ -54,17 +61,19 @@ set_up() {
 
 # System packages --------------------------------------------------------------------------------
 
-# Fill missing_packages with the lines of system_packages.txt whose probe fails, as "package|why".
+# Fill missing_packages with the lines of the lists whose probe fails, as "package|why".
 find_missing_packages() {
-    local package how why
+    local list package how why
     missing_packages=()
-    while IFS='|' read -r package how why; do
-        if [[ -z $package || $package == '#'* ]]; then continue; fi
-        # Unquoted on purpose: the words of `how` are the probe and what it looks for.
-        # shellcheck disable=SC2086
-        set -f && set -- $how && set +f
-        if ! "has_$1" "$2"; then missing_packages+=("${package%% *}|${why# }"); fi
-    done <"$root/tools/system_packages.txt"
+    for list in "${package_lists[@]}"; do
+        while IFS='|' read -r package how why; do
+            if [[ -z $package || $package == '#'* ]]; then continue; fi
+            # Unquoted on purpose: the words of `how` are the probe and what it looks for.
+            # shellcheck disable=SC2086
+            set -f && set -- $how && set +f
+            if ! "has_$1" "$2"; then missing_packages+=("${package%% *}|${why# }"); fi
+        done <"$list"
+    done
 }
 
 has_command() { command -v "$1" >/dev/null; }

@@ -6,6 +6,7 @@
 !! an exactly singular matrix only with null-pivot detection, which is therefore on.
 module algebra_mumps
    use, intrinsic :: iso_fortran_env, only: int64
+   use algebra_ranks, only: announce, communicator_of, new_share
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -24,6 +25,10 @@ module algebra_mumps
    integer(ik), parameter :: mumps_minimum_degree = 0  !< approximate minimum degree
    integer(ik), parameter :: mumps_pord = 4  !< a mixture of both kinds of bisection; repeatable
 
+   ! JOB
+   integer(ik), parameter :: job_begin = -1, job_analyse = 1, job_factorize = 2, job_solve = 3, &
+                             job_end = -2
+
    interface
       subroutine dmumps(id)
          import :: dmumps_struc
@@ -37,6 +42,7 @@ module algebra_mumps
       private
       type(dmumps_struc) :: id
       logical :: active = .false.
+      integer(ik) :: share = 0  !< its number among those that ranks share; 0: it is not shared
       integer(ik) :: n_schur = 0
    contains
       procedure :: analyse
@@ -68,11 +74,11 @@ contains
       integer(ik), intent(in), optional :: place(:)
 
       call self%release()
-      self%id%comm = 0
+      self%share = new_share(n)
+      self%id%comm = communicator_of(self%share)
       self%id%par = 1
       self%id%sym = kind
-      self%id%job = -1
-      call dmumps(self%id)
+      call perform(self, job_begin)
       self%active = .true.
       self%id%icntl(1:3) = -1  ! no printing
       self%id%icntl(4) = 0
@@ -105,8 +111,7 @@ contains
             allocate (self%id%redrhs(self%n_schur))
          end if
       end if
-      self%id%job = 1
-      call dmumps(self%id)
+      call perform(self, job_analyse)
       if (associated(self%id%perm_in)) deallocate (self%id%perm_in)
       call check_status(self, "analysis", error)
    end subroutine analyse
@@ -141,8 +146,7 @@ contains
       end if
       do attempt = 1, 3
          self%id%a = values
-         self%id%job = 2
-         call dmumps(self%id)
+         call perform(self, job_factorize)
          if (self%id%infog(1) /= -9) exit
          self%id%icntl(14) = 2*self%id%icntl(14)  ! more delayed pivots than foreseen
       end do
@@ -168,8 +172,7 @@ contains
       self%id%icntl(26) = 0
       self%id%icntl(9) = 1
       if (present(transposed)) self%id%icntl(9) = merge(0, 1, transposed)
-      self%id%job = 3
-      call dmumps(self%id)
+      call perform(self, job_solve)
       nullify (self%id%rhs)
       call check_status(self, "solution", error)
    end subroutine solve
@@ -213,8 +216,7 @@ contains
       self%id%lredrhs = self%n_schur
       self%id%rhs => rhs
       self%id%icntl(26) = 1
-      self%id%job = 3
-      call dmumps(self%id)
+      call perform(self, job_solve)
       nullify (self%id%rhs)
       call check_status(self, "condensation", error)
       reduced = self%id%redrhs
@@ -230,8 +232,7 @@ contains
       self%id%redrhs = condensed
       self%id%rhs => x
       self%id%icntl(26) = 2
-      self%id%job = 3
-      call dmumps(self%id)
+      call perform(self, job_solve)
       nullify (self%id%rhs)
       call check_status(self, "expansion", error)
    end subroutine expand
@@ -241,13 +242,12 @@ contains
       class(mumps_t), intent(inout) :: self
 
       if (.not. self%active) return
-      self%id%job = -2
       if (associated(self%id%irn)) deallocate (self%id%irn, self%id%jcn, self%id%a)
       if (associated(self%id%listvar_schur)) then
          deallocate (self%id%listvar_schur, self%id%redrhs)
          if (associated(self%id%schur)) deallocate (self%id%schur)
       end if
-      call dmumps(self%id)
+      call perform(self, job_end)
       self%active = .false.
       self%n_schur = 0
    end subroutine release
@@ -257,6 +257,16 @@ contains
 
       call self%release()
    end subroutine finalize
+
+   !> Call MUMPS, with the other ranks if the matrix is shared.
+   subroutine perform(self, job)
+      class(mumps_t), intent(inout) :: self
+      integer(ik), intent(in) :: job
+
+      call announce(self%share, self%id%sym, job)
+      self%id%job = job
+      call dmumps(self%id)
+   end subroutine perform
 
    !> MUMPS gives the lower triangle of a Schur complement by rows, that is, the upper one by
    !! columns.

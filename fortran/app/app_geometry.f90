@@ -1,20 +1,18 @@
 !> Whether the geometry of a scene can be simulated, before anything is meshed or written. The mesh
 !! library judges; here its verdict becomes a sentence about the scene file.
 module app_geometry
+   use app_simulations, only: first_mesh
    use base_errors, only: error_t
    use base_kinds, only: ik
    use base_number, only: integer_text
    use growth_network, only: network_of_scene
-   use mechanics_body, only: body_spec
    use scene_outline, only: scene_corner, scene_edge
-   use mesh_builder, only: mesh_spec_t
    use mesh_check, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
                           culprit_t, fault_t, with_name
    use mesh_types, only: network_t
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t
-   use twolevel_state, only: coarse_spec
    implicit none(type, external)
    private
 
@@ -28,17 +26,11 @@ contains
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       type(network_t) :: network
-      type(mesh_spec_t) :: spec
       type(joint_t), allocatable :: joints(:)
       type(fault_t), allocatable :: fault
 
       network = network_of_scene(scene)
-      if (scene%has_fluid()) then
-         spec = coarse_spec(scene)
-      else
-         spec = body_spec(scene, network)
-      end if
-      call check_mesh_input(spec, network, joints, fault)
+      call check_mesh_input(first_mesh(scene, network), network, joints, fault)
       if (allocated(fault)) call blame(sheet, scene, fault, error)
    end subroutine check_geometry
 

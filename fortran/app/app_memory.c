@@ -29,6 +29,9 @@ double app_machine_memory(void) { return (double)sysconf(_SC_PHYS_PAGES) * (doub
 // OpenBLAS' own; absent where another BLAS is linked.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
+// Of OpenMP's library; absent where no room has loops on threads.
+extern void omp_set_num_threads(int n) __attribute__((weak));
+
 // LAPACK. Called once, so that OpenBLAS takes the buffer that it keeps and uses from then on.
 extern void dgesv_(const int* n, const int* n_rhs, double* a, const int* lda, int* pivots, double* b, const int* ldb,
                    int* info);
@@ -50,7 +53,10 @@ void app_prepare_memory(void) {
     double matrix = 1.0, solution = 1.0;
     int pivot, info;
     require_address_space(bytes_of_run + bytes_per_thread * (wanted_threads - 1));
-    if (openblas_set_num_threads) openblas_set_num_threads(wanted_threads);
+    // Threads are for loops (add_room THREADS). Fronts are too small for those of OpenBLAS: measured, they
+    // double the CPU time of factorizations and shorten nothing.
+    if (openblas_set_num_threads) openblas_set_num_threads(1);
+    if (omp_set_num_threads && getenv("OMP_NUM_THREADS") == NULL) omp_set_num_threads(wanted_threads);
     dgesv_(&n, &n, &matrix, &n, &pivot, &solution, &n, &info);
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, -1);

@@ -2,18 +2,17 @@
 module app_run
    use app_journal, only: journal_t
    use app_interrupts, only: interrupted
+   use app_simulations, only: allocate_simulation
    use app_warnings, only: show_warnings
    use base_errors, only: error_t, keep_first
    use base_kinds, only: rk
    use base_texts, only: text_t
    use base_timers, only: phase_output, timers_t
    use growth_network, only: total_length
-   use mechanics_simulation, only: mechanics_simulation_t
    use output_closing, only: closing_lines
    use output_record, only: run_record_t, status_failed, status_finished, status_stopped
    use scene_types, only: scene_t
    use simulation_types, only: simulation_t
-   use twolevel_simulation, only: twolevel_simulation_t
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none(type, external)
    private
@@ -38,11 +37,7 @@ contains
       logical :: is_meshed
 
       was_interrupted = .false.
-      if (scene%has_fluid()) then
-         allocate (twolevel_simulation_t :: simulation)
-      else
-         allocate (mechanics_simulation_t :: simulation)
-      end if
+      call allocate_simulation(scene, simulation)
       call timers%begin()
       call journal%files%open(directory, source, refused, error)
       if (allocated(error)) return

@@ -1,10 +1,12 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
+   use algebra_ranks, only: begin_ranks
    use app_check, only: describe_scene
    use app_geometry, only: check_geometry
    use app_interrupts, only: catch_interrupts, interrupt_status
    use app_memory, only: machine_memory, prepare_memory
    use app_run, only: run_scene
+   use app_simulations, only: simulates_fluids
    use app_size, only: check_size
    use app_version, only: version
    use base_errors, only: error_t
@@ -17,9 +19,10 @@ program wingcrack_solver
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    implicit none(type, external)
 
-   integer, parameter :: exit_failed = 1, exit_usage = 2
+   integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
+                                  "ranks SCENE.nml | "// &
                                   "--describe-input | --describe-output | "// &
                                   "--describe-limits | --version"
 
@@ -30,6 +33,8 @@ program wingcrack_solver
       call check()
    case ("name")
       call print_name()
+   case ("ranks")
+      call check_ranks()
    case ("--describe-input")
       call describe_input(output_unit)
    case ("--describe-output")
@@ -71,6 +76,7 @@ contains
       end do
       call catch_interrupts()
       call prepare_memory()
+      call begin_ranks()
       call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
       call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
@@ -98,6 +104,11 @@ contains
       type(error_t), allocatable :: error
 
       call read_scene(argument(2), scene, error, sheet)
+      if (.not. (allocated(error) .or. simulates_fluids())) then
+         if (scene%has_fluid()) call leave("the scene has a fluid, and this program was built "// &
+                                           "without the coarse level, which that takes", &
+                                           exit_environment)
+      end if
       if (.not. allocated(error)) call check_size(sheet, scene, machine_memory(), error)
       if (.not. allocated(error)) call check_geometry(sheet, scene, error)
       if (allocated(error)) call leave(error%message, exit_usage)
@@ -112,6 +123,19 @@ contains
       if (allocated(error)) call leave(error%message, exit_usage)
       write (output_unit, "(a)") trim(scene%name)
    end subroutine print_name
+
+   !> Whether ranks have anything to share: the matrix of a body with a fluid.
+   subroutine check_ranks()
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call read_scene(argument(2), scene, error)
+      if (allocated(error)) call leave(error%message, exit_usage)
+      if (.not. scene%has_fluid()) then
+         call leave("ranks share the matrices of a body with a fluid, and "//argument(2)// &
+                    " has none: leave --ranks out", exit_usage)
+      end if
+   end subroutine check_ranks
 
    !> A command-line argument; empty where there is none.
    function argument(i) result(text)

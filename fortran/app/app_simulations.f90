@@ -1,0 +1,35 @@
+!> The ways in which a program simulates scenes. Which of them it has is chosen when it is linked:
+!! one of the submodules in `simulations` belongs to each program.
+module app_simulations
+   use mesh_builder, only: mesh_spec_t
+   use mesh_types, only: network_t
+   use scene_types, only: scene_t
+   use simulation_types, only: simulation_t
+   implicit none(type, external)
+   private
+
+   public :: allocate_simulation, first_mesh, simulates_fluids
+
+   interface
+      !> This program has a way to simulate scenes with a fluid.
+      pure module logical function simulates_fluids()
+         implicit none(type, external)
+      end function simulates_fluids
+
+      !> What is meshed first of the scene.
+      module function first_mesh(scene, network) result(spec)
+         implicit none(type, external)
+         type(scene_t), intent(in) :: scene
+         type(network_t), intent(in) :: network  !< its own
+         type(mesh_spec_t) :: spec
+      end function first_mesh
+
+      !> What simulates the scene; nothing if this program cannot.
+      module subroutine allocate_simulation(scene, simulation)
+         implicit none(type, external)
+         type(scene_t), intent(in) :: scene
+         class(simulation_t), allocatable, intent(out) :: simulation
+      end subroutine allocate_simulation
+   end interface
+
+end module app_simulations

@@ -1,0 +1,44 @@
+!> All ways: both levels with a fluid, finite elements without.
+submodule(app_simulations) app_simulations_all
+   use mechanics_body, only: body_spec
+   use mechanics_simulation, only: mechanics_simulation_t
+   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: coarse_spec
+   implicit none(type, external)
+
+contains
+
+   pure module logical function simulates_fluids()
+      simulates_fluids = .true.
+   end function simulates_fluids
+
+   module function first_mesh(scene, network) result(spec)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(mesh_spec_t) :: spec
+
+      if (scene%has_fluid()) then
+         spec = coarse_spec(scene)
+      else
+         spec = body_spec(scene, network)
+      end if
+   end function first_mesh
+
+   module subroutine allocate_simulation(scene, simulation)
+      type(scene_t), intent(in) :: scene
+      class(simulation_t), allocatable, intent(out) :: simulation
+
+      type(twolevel_simulation_t), allocatable :: levels
+      type(mechanics_simulation_t), allocatable :: body
+
+      ! Moved: where it allocates `simulation` itself, gfortran 12 copies what nobody has set.
+      if (scene%has_fluid()) then
+         allocate (levels)
+         call move_alloc(levels, simulation)
+      else
+         allocate (body)
+         call move_alloc(body, simulation)
+      end if
+   end subroutine allocate_simulation
+
+end submodule app_simulations_all

@@ -1,0 +1,78 @@
+"""The program without the coarse level: what it links and refuses, what the other costs more."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from system_scene import SCENE, SOLVER
+
+from wingcrack_bench.catalogue import read_benchmarks
+from wingcrack_bench.measure import count
+
+WITHOUT = SOLVER.with_name("wingcrack-mechanics")
+
+pytestmark = [
+    pytest.mark.usefixtures("program"),
+    pytest.mark.skipif(
+        not WITHOUT.exists(), reason="wingcrack-mechanics is not built; ./wingcrack test builds all"
+    ),
+]
+needs_valgrind = pytest.mark.skipif(
+    shutil.which("valgrind") is None, reason="valgrind is not installed"
+)
+
+
+def test_it_holds_nothing_of_the_fluid() -> None:
+    names = shutil.which("nm")
+    assert names is not None  # comes with the compiler
+    for program, holds_fluid in ((WITHOUT, False), (SOLVER, True)):
+        done = subprocess.run([names, program], capture_output=True, text=True, check=True)
+        assert "__mechanics_simulation_MOD_" in done.stdout
+        assert ("__coarse_" in done.stdout) == holds_fluid
+        assert ("__twolevel_" in done.stdout) == holds_fluid
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_it_refuses_a_fluid(command: str, tmp_path: Path) -> None:
+    (tmp_path / "scene.nml").write_text(SCENE)
+    done = subprocess.run(
+        [WITHOUT, command, "scene.nml"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == (
+        "wingcrack: the scene has a fluid, and this program was built without the coarse level,"
+        " which that takes\n"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.nml"]
+
+
+def test_what_is_wrong_with_a_scene_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "scene.nml").write_text(SCENE.replace("young = 40.0e9", "young = -1.0"))
+    done = subprocess.run(
+        [WITHOUT, "check", "scene.nml"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "young" in done.stderr
+
+
+@needs_valgrind
+def test_the_coarse_level_costs_mechanics_nothing() -> None:
+    """Instructions of whole runs; the same program gives the same count within a thousandth."""
+    known, _ = read_benchmarks()
+    pairs = [
+        (known[name], program) for name in ("b1", "quick_growth") for program in (SOLVER, WITHOUT)
+    ]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(lambda pair: count(*pair), pairs))
+    why_not = next((reason for _, reason in found if reason), "")
+    if why_not:
+        pytest.skip(why_not)
+    counts = [number or 0 for number, _ in found]
+    for with_it, without in zip(counts[::2], counts[1::2], strict=True):
+        assert without > 1e8
+        assert with_it == pytest.approx(without, rel=0.01)
