@@ -20,7 +20,6 @@ from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 
 from wingcrack_post.fonts import letters_alone
 from wingcrack_post.png import write_png
-from wingcrack_post.still import keep_still
 from wingcrack_post.texts import FormulasInPoints, texts
 
 # matplotlib gives these no types
@@ -61,7 +60,6 @@ def draw_twins(figure: Figure, png: Path, pdf: Path, dpi: float) -> None:
         file.newPage(width, height)
         vectors = _Vectors(file, dpi, height, width)
         renderer = TwinRenderer(pixels, vectors)
-        keep_still(figure)
         _lay_out(figure, renderer)
         figure.draw(renderer)
         vectors.finalize()
