@@ -135,8 +135,7 @@ def draw_figures(
 
 def _load_quickly() -> None:
     """Keep matplotlib from writing help for each class that it loads, by asking all its methods."""
-    from matplotlib import artist
-
+    artist: Any = import_module("matplotlib.artist")
     artist.kwdoc = _no_help
 
 

@@ -43,7 +43,7 @@ def write_png(picture: Pixels, target: Path, dpi: float) -> None:
         for name, content in (
             (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0)),
             (b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-            (b"IDAT", zlib.compress(_rows(shown), _EFFORT)),
+            (b"IDAT", zlib.compress(_rows(shown).data, _EFFORT)),
             (b"IEND", b""),
         ):
             file.write(struct.pack(">I", len(content)) + name + content)

@@ -7,6 +7,7 @@ it lets each new tick look like the first one of its axis, whatever has been don
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from matplotlib.artist import Artist
@@ -36,7 +37,9 @@ class _Still:
 
     def __init__(self, axis: Any) -> None:
         self._axis = axis
-        self._find_ticks, self._find_boxes = axis._update_ticks, axis._get_ticklabel_bboxes
+        self._find_ticks: Callable[[], list[Any]] = axis._update_ticks
+        self._find_boxes: Callable[[Any, Any], tuple[list[Any], list[Any]]]
+        self._find_boxes = axis._get_ticklabel_bboxes
         self._place: tuple[float, ...] = ()
         self._ticks: list[Any] = []
         self._boxes: tuple[list[Any], list[Any]] | None = None

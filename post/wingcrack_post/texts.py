@@ -13,6 +13,7 @@ from matplotlib.backends import backend_agg
 from matplotlib.font_manager import FontProperties, fontManager, get_font
 from matplotlib.mathtext import MathTextParser
 
+_Pen: Any = backend_agg.RendererAgg  # matplotlib gives it no types
 _POINTS_PER_INCH = 72.0
 
 
@@ -27,9 +28,9 @@ class Texts:
 
     def __init__(self, dpi: float) -> None:
         self._dpi = dpi
-        self._pen: Any = backend_agg.RendererAgg(1, 1, dpi)
-        self._pen.mathtext_parser = Formulas()
-        self.formulas = self._pen.mathtext_parser
+        self._pen = _Pen(1, 1, dpi)
+        self.formulas = Formulas()
+        self._pen.mathtext_parser = self.formulas
         self._sizes: dict[Any, tuple[float, float, float]] = {}
         self._lines: dict[Any, tuple[float | None, float | None, float | None]] = {}
 
@@ -49,7 +50,7 @@ class Texts:
         """
         found = self._lines.get(look)
         if found is None:
-            font: Any = get_font(fontManager._find_fonts_by_props(look))  # type: ignore[attr-defined]
+            font: Any = get_font(fontManager._find_fonts_by_props(look))
             table = font.get_sfnt_table("OS/2")
             if table is None:
                 found = None, None, None

@@ -29,7 +29,10 @@ _Vectors: Any = backend_pdf.RendererPdf
 _POINTS_PER_INCH = 72.0
 
 
-class _File(backend_pdf.PdfFile):  # type: ignore[misc]
+_PdfFile: Any = backend_pdf.PdfFile
+
+
+class _File(_PdfFile):  # type: ignore[misc]
     """A PDF that takes its letters from the smallest fonts there are."""
 
     def embedTTF(self, filename: Any, subset_index: int, charmap: Any) -> Any:  # noqa: N802

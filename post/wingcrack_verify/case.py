@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -326,7 +327,7 @@ def _check_kind(metric: str, reference: Reference, place: str) -> None:
 
 
 def _read_front(fields: Fields, runs: Sequence[Run], measured: Sequence[str]) -> float | None:
-    share = fields.positive("front", None)
+    share: float | None = fields.positive("front", None)
     if share is None:
         return None
     if not share < 1.0:
