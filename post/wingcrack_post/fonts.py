@@ -2,7 +2,7 @@
 
 A PDF holds the letters that it uses. To take them out of a font, all of it has to be read; with the
 few hundred letters that figures have, that takes a quarter of the time, and again a quarter without
-the rules for setting letters side by side, which a PDF does not need: its letters have their places.
+the rules for setting letters side by side, which a PDF does not need: letters have their places.
 The pictures stay the same.
 """
 
