@@ -68,6 +68,7 @@ class _Figures:
     def draw(self, run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
         """Give each figure with its label."""
         module, _, function = self.maker.partition(":")
+        _load_quickly()
         make: Callable[..., Any] = getattr(import_module(f"wingcrack_post.{module}"), function)
         if self.several:
             yield from make(run, times_s)
@@ -130,6 +131,16 @@ def draw_figures(
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
+
+
+def _load_quickly() -> None:
+    """Keep matplotlib from writing help for each class that it loads, by asking all its methods."""
+    artist: Any = import_module("matplotlib.artist")
+    artist.kwdoc = _no_help
+
+
+def _no_help(_artist: object) -> str:
+    return ""
 
 
 def _drawn(

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from wingcrack_post.fonts import fall_back, small_fonts
+from wingcrack_post.still import keep_still
 from wingcrack_post.twin import draw_twins
 
 P = ParamSpec("P")
@@ -165,6 +166,7 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     aside = {form: stem.with_name(f".{stem.name}.{os.getpid()}.{form}") for form in FORMATS}
+    keep_still(figure)
     fall_back(figure)
     written = []
     try:

@@ -12,20 +12,35 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+import numpy.typing as npt
 from matplotlib.backend_bases import FigureCanvasBase, RendererBase
 from matplotlib.backends import backend_agg, backend_pdf
 from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 
+from wingcrack_post.fonts import letters_alone
 from wingcrack_post.png import write_png
+from wingcrack_post.texts import FormulasInPoints, texts
 
 # matplotlib gives these no types
 _Pixels: Any = backend_agg.RendererAgg
 _Vectors: Any = backend_pdf.RendererPdf
-_File: Any = backend_pdf.PdfFile
 
 _POINTS_PER_INCH = 72.0
-_CLEAR = np.array([255, 255, 255, 0], dtype=np.uint8).view(np.uint32)[0]  # where nothing is drawn
+
+
+_PdfFile: Any = backend_pdf.PdfFile
+
+
+class _File(_PdfFile):  # type: ignore[misc]
+    """A PDF that takes its letters from the smallest fonts there are."""
+
+    def embedTTF(self, filename: Any, subset_index: int, charmap: Any) -> Any:  # noqa: N802
+        """Write what is used of a font; matplotlib's name for it."""
+        letters = letters_alone(filename)
+        numbers = self._character_tracker.glyph_maps
+        numbers[letters] = numbers[filename]
+        return super().embedTTF(letters, subset_index, charmap)
 
 
 def draw_twins(figure: Figure, png: Path, pdf: Path, dpi: float) -> None:
@@ -96,7 +111,10 @@ class TwinRenderer(RendererBase):
         super().__init__()
         self._pixels = pixels
         self._vectors = vectors
-        self._onto = pixels  # a layer of its own while something is rasterized
+        self._texts = texts(pixels.dpi)
+        pixels.mathtext_parser = self._texts.formulas
+        vectors._text2path.mathtext_parser = FormulasInPoints(self._texts.formulas, pixels.dpi)
+        self._covered: list[npt.NDArray[np.float64]] | None = None  # while something is rasterized
         self._factor = _POINTS_PER_INCH / pixels.dpi
         self._scale = Affine2D().scale(self._factor)
         self._clips: dict[int, tuple[Any, Bbox]] = {}  # of the figure, and as the PDF has them
@@ -124,41 +142,56 @@ class TwinRenderer(RendererBase):
         self, s: str, prop: Any, ismath: Any
     ) -> tuple[float, float, float]:
         """Size of a text, and how far it goes below its line [pixel]."""
-        width, height, descent = self._pixels.get_text_width_height_descent(s, prop, ismath)
-        return float(width), float(height), float(descent)
+        return self._texts.size(s, prop, ismath)
+
+    def _get_font_height_metrics(
+        self, prop: Any
+    ) -> tuple[float | None, float | None, float | None]:
+        """What matplotlib asks a renderer for that knows it better [pixel]."""
+        return self._texts.line(prop)
 
     def points_to_pixels(self, points: Any) -> Any:
         """Turn points into pixels."""
         return self._pixels.points_to_pixels(points)
 
-    @property
-    def _rasterizes(self) -> bool:
-        return self._onto is not self._pixels
-
     def start_rasterizing(self) -> None:
-        """What follows becomes an image, in both pictures the same."""
-        self._onto = _Pixels(self.width, self.height, self._pixels.dpi)
+        """What follows becomes an image in the PDF: a part of the pixels."""
+        self._covered = []
 
     def stop_rasterizing(self) -> None:
-        """Put the image of what was drawn since `start_rasterizing` into both pictures."""
-        image = np.asarray(self._onto.buffer_rgba())
-        self._onto = self._pixels
-        # each pixel as one number, which is compared faster than its opacity
-        shown = image.view(np.uint32)[:, :, 0] != _CLEAR
-        rows, columns = np.flatnonzero(shown.any(axis=1)), np.flatnonzero(shown.any(axis=0))
-        if rows.size == 0:
+        """Put the pixels where something was drawn since `start_rasterizing` into the PDF.
+
+        What lies below it there is part of the image, as it was drawn before.
+        """
+        covered, self._covered = self._covered, None
+        if not covered:
             return
-        top, bottom = int(rows[0]), int(rows[-1]) + 1
-        left, right = int(columns[0]), int(columns[-1]) + 1
-        part = np.ascontiguousarray(image[top:bottom, left:right][::-1])
-        x, y = left, image.shape[0] - bottom
-        self._pixels.draw_image(self._pixels.new_gc(), x, y, part)
-        self._vectors.draw_image(self._vectors.new_gc(), x * self._factor, y * self._factor, part)
+        image = np.asarray(self._pixels.buffer_rgba())
+        corners = np.concatenate(covered)
+        limits = (self.width, self.height)
+        left, bottom = (int(x) for x in np.clip(np.floor(corners.min(axis=0)), 0, limits))
+        right, top = (int(x) for x in np.clip(np.ceil(corners.max(axis=0)), 0, limits))
+        if left == right or bottom == top:
+            return
+        height = image.shape[0]
+        # what comes later is drawn into the same pixels
+        part = image[height - top : height - bottom, left:right][::-1].copy()
+        x, y = left * self._factor, bottom * self._factor
+        self._vectors.draw_image(self._vectors.new_gc(), x, y, part)
+
+    def _rasterized(self, gc: Any) -> bool:
+        """Whether what is drawn with this pen has to be in pixels; where is noted."""
+        if self._covered is None:
+            return False
+        clip = gc.get_clip_rectangle()
+        page = np.array([[0.0, 0.0], [self.width, self.height]])
+        self._covered.append(page if clip is None else np.asarray(clip.get_points()))
+        return True
 
     def draw_path(self, gc: Any, path: Any, transform: Transform, rgbFace: Any = None) -> None:  # noqa: N803
         """Draw a path; `RendererBase.draw_path` has the arguments, and so on for those below."""
-        self._onto.draw_path(gc, path, transform, rgbFace)
-        if not self._rasterizes:
+        self._pixels.draw_path(gc, path, transform, rgbFace)
+        if not self._rasterized(gc):
             self._vectors.draw_path(self._context(gc), path, transform + self._scale, rgbFace)
 
     def draw_markers(
@@ -171,8 +204,8 @@ class TwinRenderer(RendererBase):
         rgbFace: Any = None,  # noqa: N803
     ) -> None:
         """Draw a marker at each point of a path."""
-        self._onto.draw_markers(gc, marker_path, marker_trans, path, trans, rgbFace)
-        if self._rasterizes:
+        self._pixels.draw_markers(gc, marker_path, marker_trans, path, trans, rgbFace)
+        if self._rasterized(gc):
             return
         self._vectors.draw_markers(
             self._context(gc),
@@ -195,10 +228,10 @@ class TwinRenderer(RendererBase):
         **named: Any,
     ) -> None:
         """Draw paths, each with a look of its own."""
-        self._onto.draw_path_collection(
+        self._pixels.draw_path_collection(
             gc, master_transform, paths, all_transforms, offsets, offset_trans, *rest, **named
         )
-        if self._rasterizes:
+        if self._rasterized(gc):
             return
         self._vectors.draw_path_collection(
             self._context(gc),
@@ -223,10 +256,10 @@ class TwinRenderer(RendererBase):
         *rest: Any,
     ) -> None:
         """Draw a mesh of quadrilaterals."""
-        self._onto.draw_quad_mesh(
+        self._pixels.draw_quad_mesh(
             gc, master_transform, mesh_width, mesh_height, coordinates, offsets, offset_trans, *rest
         )
-        if self._rasterizes:
+        if self._rasterized(gc):
             return
         self._vectors.draw_quad_mesh(
             self._context(gc),
@@ -241,8 +274,8 @@ class TwinRenderer(RendererBase):
 
     def draw_image(self, gc: Any, x: float, y: float, im: Any, transform: Any = None) -> None:
         """Draw an image that has the size of its pixels."""
-        self._onto.draw_image(gc, x, y, im, transform)
-        if self._rasterizes:
+        self._pixels.draw_image(gc, x, y, im, transform)
+        if self._rasterized(gc):
             return
         scaled = None if transform is None else transform + self._scale
         self._vectors.draw_image(self._context(gc), x * self._factor, y * self._factor, im, scaled)
@@ -259,8 +292,8 @@ class TwinRenderer(RendererBase):
         mtext: Any = None,
     ) -> None:
         """Draw text; pixels count `y` from above, points from below."""
-        self._onto.draw_text(gc, x, y, s, prop, angle, ismath, mtext)
-        if self._rasterizes:
+        self._pixels.draw_text(gc, x, y, s, prop, angle, ismath, mtext)
+        if self._rasterized(gc):
             return
         place = x * self._factor, (self.height - y) * self._factor
         self._vectors.draw_text(self._context(gc), *place, s, prop, angle, ismath, mtext)

@@ -190,6 +190,8 @@ def _check(book: _Book, check: dict[str, Any]) -> None:
         _words(book, f"Rates (error over unknowns): {', '.join(rates)}.", 3.5)
     if check["saving"]:
         _words(book, f"{check['saving']}.", 3.5)
+    if check["front"]:
+        _words(book, f"{check['front']}.", 3.5)
 
 
 def _trials(book: _Book, item: dict[str, Any]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -74,6 +75,7 @@ class Check:
     scale: float | None
     order: Order | None
     economy: Economy | None
+    front: float | None
     work_precision: bool
     known_gap: str | None
     x_label: str
@@ -238,6 +240,7 @@ def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | No
         scale=fields.positive("scale", None),
         order=order,
         economy=economy,
+        front=_read_front(fields, runs, measured),
         work_precision=fields.flag("work_precision"),
         known_gap=fields.text("known_gap", case_gap),
         x_label=fields.text("x_label", result.x or ""),
@@ -321,6 +324,17 @@ def _check_kind(metric: str, reference: Reference, place: str) -> None:
         raise CaseError(f"{place}: the metric {metric} takes a selection with 'x'")
     if (metric == "monotonic") != (reference.direction is not None):
         raise CaseError(f"{place}: the metric monotonic and 'rising' or 'falling' go together")
+
+
+def _read_front(fields: Fields, runs: Sequence[Run], measured: Sequence[str]) -> float | None:
+    share: float | None = fields.positive("front", None)
+    if share is None:
+        return None
+    if not share < 1.0:
+        raise CaseError(f"{fields.place}: 'front' must be less than 1")
+    if sum(run.default for run in runs if run.name in measured) != 1:
+        raise CaseError(f"{fields.place}: 'front' needs exactly one default run")
+    return share
 
 
 def _read_order(data: Any, place: str) -> Order:

@@ -13,6 +13,7 @@ from wingcrack_verify.economy import Saving, saving, unknowns_of
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.expressions import Array, evaluate
+from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
 from wingcrack_verify.paths import NETWORK, network_table
@@ -66,6 +67,7 @@ class CheckReport:
     points: tuple[Point, ...]
     advice: tuple[Advice, ...]
     saving: Saving | None = None
+    front: Front | None = None
 
     @property
     def worst(self) -> Measured | None:
@@ -143,7 +145,9 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     orders = _orders(check, measured)
     reasons = [f"{item.run.name}: {item.broken}" for item in measured if item.broken]
     broken = bool(reasons) or any(order.broken for order in orders)
-    needed = [item for item in measured if item.judged or check.order or check.economy]
+    needed = [
+        item for item in measured if item.judged or check.order or check.economy or check.front
+    ]
     for item in needed:
         if not item.ran and not item.broken:
             status = item.outcome.status
@@ -156,6 +160,9 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     saved = None if check.economy is None else saving(check.economy, points)
     if saved is not None and not saved.good:
         reasons.append(saved.reason)
+    place = None if check.front is None else front(points, check.front)
+    if place is not None and not place.good:
+        reasons.append(place.reason)
     good = not reasons and all(item.good for item in measured if item.judged)
     if broken:
         verdict = ERROR
@@ -166,7 +173,9 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     else:
         verdict = PASSED if good else FAILED
     advice = tuple(advise(points)) if check.work_precision else ()
-    return CheckReport(check, verdict, tuple(reasons), measured, orders, points, advice, saved)
+    return CheckReport(
+        check, verdict, tuple(reasons), measured, orders, points, advice, saved, place
+    )
 
 
 def _points(measured: tuple[Measured, ...]) -> tuple[Point, ...]:
@@ -178,6 +187,7 @@ def _points(measured: tuple[Measured, ...]) -> tuple[Point, ...]:
             item.error / item.signal,
             item.run.default,
             unknowns_of(Path(item.outcome.folder) / "output"),
+            work_of(Path(item.outcome.folder) / "output"),
         )
         for item in measured
         if item.ran and item.error is not None and item.signal

@@ -65,6 +65,8 @@ class Point:
         Whether the run has the program's default settings.
     unknowns : float or None
         Unknowns of all kinds; None where the run does not tell.
+    work : float or None
+        Unknowns times states; None where the run does not tell.
     """
 
     run: str
@@ -73,6 +75,7 @@ class Point:
     error: float
     default: bool
     unknowns: float | None = None
+    work: float | None = None
 
 
 @dataclass(frozen=True)

@@ -214,6 +214,7 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
         ],
         "rates": _rates(report) if check.work_precision or check.economy else [],
         "saving": "" if report.saving is None else report.saving.reason,
+        "front": "" if report.front is None else report.front.reason,
     }
 
 

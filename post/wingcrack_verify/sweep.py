@@ -24,7 +24,7 @@ _RUN = {
 }
 _CHECK = {
     *("quantity", "unit", "runs", "judged", "result", "reference", "metric", "normalise"),
-    *("tolerance", "scale", "order", "economy", "work_precision", "known_gap", "x_label"),
+    *("tolerance", "scale", "order", "economy", "front", "work_precision", "known_gap", "x_label"),
 }
 _FIGURE = {
     *("title", "caption", "x_label", "y_label", "x_log", "y_log", "equal_axes", "lines", "network"),
