@@ -1,13 +1,14 @@
 !> The linear step of contact systems whose derivatives are a full matrix, as they are for a body
-!! that is condensed onto its fractures: by Gauss elimination.
+!! that is condensed onto its fractures: by Gauss elimination, or where most equations are those of
+!! an elastic body, by Cholesky's, which takes half as long.
 module contact_dense
-   use algebra_lapack, only: dgetrf, dgetrs, dlacn2
+   use algebra_lapack, only: dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
    use base_kinds, only: ik, rk
    use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
 
-   public :: factorize_full, solve_factorized, solve_full
+   public :: factorize_full, solve_by_parts, solve_factorized, solve_full
 
 contains
 
@@ -25,6 +26,45 @@ contains
       call factorize_full(jacobian, with_condition, scale, pivots, quality, left_out)
       if (.not. quality%is_singular) call solve_factorized(jacobian, scale, pivots, residual, step)
    end subroutine solve_full
+
+   !> Solve for the step, where some equations times a factor are those of a symmetric positive
+   !! definite matrix: these first, then what they leave of the others. Where that matrix is not
+   !! definite after all, nothing is solved.
+   subroutine solve_by_parts(jacobian, residual, factor, step, quality, is_solved)
+      real(rk), intent(in) :: jacobian(:, :)  !< (n, n) an equation per column [-]
+      real(rk), intent(in) :: residual(:)  !< (n) [Pa]
+      real(rk), intent(in) :: factor(:)  !< (n) of each equation; 0: it is not one of these
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      type(step_quality_t), intent(out) :: quality
+      logical, intent(out) :: is_solved
+      real(rk), allocatable :: matrix(:, :), others(:, :), rest(:), x(:, :)
+      integer(ik), allocatable :: a(:), b(:)
+      integer(ik) :: i, info, k, m, n_others
+
+      a = pack([(i, i=1, size(factor, kind=ik))], abs(factor) > 0.0_rk)
+      b = pack([(i, i=1, size(factor, kind=ik))],.not. abs(factor) > 0.0_rk)
+      m = size(a, kind=ik)
+      n_others = size(b, kind=ik)
+      allocate (matrix(m, m), x(m, n_others + 1), others(n_others, n_others), rest(n_others))
+      do i = 1, m
+         matrix(i:, i) = factor(a(i))*jacobian(a(i:), a(i))
+         x(i, :n_others) = factor(a(i))*jacobian(b, a(i))
+         x(i, n_others + 1) = -factor(a(i))*residual(a(i))
+      end do
+      call dpotrf("L", m, matrix, m, info)
+      is_solved = info == 0
+      if (.not. is_solved) return
+      call dpotrs("L", m, n_others + 1_ik, matrix, m, x, m, info)
+      do k = 1, n_others
+         rest(k) = residual(b(k)) + dot_product(jacobian(a, b(k)), x(:, n_others + 1))
+         others(:, k) = jacobian(b, b(k)) - matmul(jacobian(a, b(k)), x(:, :n_others))
+      end do
+      call solve_full(others, rest, .false., step(:n_others), quality)
+      if (quality%is_singular) return
+      rest = step(:n_others)
+      step(a) = x(:, n_others + 1) - matmul(x(:, :n_others), rest)
+      step(b) = rest
+   end subroutine solve_by_parts
 
    !> Factorize; equations are scaled to a largest coefficient of one. The condition is that of the
    !! scaled matrix in the 1-norm of its transpose: what a relative error of an equation makes of

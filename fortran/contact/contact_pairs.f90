@@ -19,6 +19,7 @@ module contact_pairs
       integer(ik) :: n = 0  !< pairs in contact
       real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
       real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
+      logical, allocatable :: is_symmetric(:)  !< (2 n) equations of S: among them it is symmetric
       real(rk), allocatable :: length(:)  !< L (n) [m]
       type(contact_law_t), allocatable :: law(:)  !< (n)
       logical, allocatable :: slip_given(:)  !< (n) [u]_tau is given; friction plays no part
@@ -89,7 +90,7 @@ contains
       type(step_quality_t), intent(out) :: quality
       type(ties_t) :: ties
       integer(ik), allocatable :: kept(:)
-      real(rk), allocatable :: matrix(:, :), rest(:)
+      real(rk), allocatable :: factor(:), matrix(:, :), rest(:)
       real(rk) :: slope(2*self%n)
       integer(ik) :: i, k
 
@@ -100,15 +101,37 @@ contains
                        self%residual(2*i - 1:2*i))
       end do
       kept = ties%kept()
-      allocate (matrix(size(kept), size(kept)), rest(size(kept)))
+      allocate (matrix(size(kept), size(kept)), rest(size(kept)), factor(size(kept)))
       do k = 1, size(kept, kind=ik)
          call fill_row(self, kept(k), slope)
          rest(k) = self%residual(kept(k))
          call ties%reduce(slope, rest(k))
          matrix(:, k) = slope(kept)
+         factor(k) = factor_of(self, kept(k))
       end do
-      call ties%find_step(matrix, rest, with_condition, step, quality)
+      do i = 1, size(ties%partner, kind=ik)  ! another unknown moves with it: not symmetric
+         if (ties%partner(i) > 0 .and. abs(ties%share(i)) > 0.0_rk) then
+            where (kept == ties%partner(i)) factor = 0.0_rk
+         end if
+      end do
+      call ties%find_step(matrix, rest, with_condition, step, quality, factor=factor)
    end subroutine find_step
+
+   !> What makes an equation that one traction alone decides that of the symmetric S; otherwise 0.
+   pure real(rk) function factor_of(self, equation)
+      class(contact_pairs_t), intent(in) :: self
+      integer(ik), intent(in) :: equation  !< n, tau pair by pair
+      integer(ik) :: i, k
+
+      i = (equation + 1)/2
+      k = equation - 2*i + 2
+      factor_of = 0.0_rk
+      if (.not. allocated(self%is_symmetric)) return
+      if (.not. self%is_symmetric(equation) .or. any(abs(self%by_jump(k, :, i)) > 0.0_rk) &
+          .or. abs(self%by_traction(k, 3 - k, i)) > 0.0_rk &
+          .or. .not. abs(self%by_traction(k, k, i)) > 0.0_rk) return
+      factor_of = -self%length(i)*self%stiffness/self%by_traction(k, k, i)
+   end function factor_of
 
    !> The derivatives of an equation, where last evaluated.
    pure subroutine fill_row(self, equation, slope)

@@ -6,7 +6,7 @@
 !! stick, that matrix is small.
 module contact_ties
    use base_kinds, only: ik, rk
-   use contact_dense, only: solve_full
+   use contact_dense, only: solve_by_parts, solve_full
    use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
@@ -88,7 +88,7 @@ contains
    end subroutine reduce
 
    !> The step of all unknowns from the equations of those that are kept, which are used up.
-   subroutine find_step(self, matrix, residual, with_condition, step, quality, left_out)
+   subroutine find_step(self, matrix, residual, with_condition, step, quality, left_out, factor)
       class(ties_t), intent(in) :: self
       real(rk), intent(inout), contiguous :: matrix(:, :)  !< an equation per column [-]
       real(rk), intent(inout) :: residual(:)  !< (kept) [Pa]
@@ -96,11 +96,22 @@ contains
       real(rk), intent(out) :: step(:)  !< (all) [Pa]
       type(step_quality_t), intent(out) :: quality
       logical, intent(in), optional :: left_out(:)  !< (all) of the condition, see solve_full
+      !> (kept) where the condition is not asked for: see solve_by_parts
+      real(rk), intent(in), optional :: factor(:)
       real(rk) :: solution(size(residual))
       integer(ik) :: i, kept(size(residual))
+      logical :: is_solved
 
       kept = self%kept()
-      if (present(left_out)) then
+      is_solved = .false.
+      if (present(factor) .and. .not. with_condition) then
+         if (is_worth(factor)) then
+            call solve_by_parts(matrix, residual, factor, solution, quality, is_solved)
+         end if
+      end if
+      if (is_solved) then
+         continue
+      else if (present(left_out)) then
          call solve_full(matrix, residual, with_condition, solution, quality, left_out(kept))
       else
          call solve_full(matrix, residual, with_condition, solution, quality)
@@ -112,5 +123,15 @@ contains
          if (self%partner(i) > 0) step(i) = step(i) + self%share(i)*step(self%partner(i))
       end do
    end subroutine find_step
+
+   !> Whether enough equations have a factor for being solved apart.
+   pure logical function is_worth(factor)
+      real(rk), intent(in) :: factor(:)  !< see solve_by_parts
+      integer(ik), parameter :: many = 32
+      integer(ik) :: n
+
+      n = count(abs(factor) > 0.0_rk, kind=ik)
+      is_worth = n >= many .and. 2*n >= size(factor)
+   end function is_worth
 
 end module contact_ties

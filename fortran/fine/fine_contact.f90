@@ -153,6 +153,7 @@ contains
       integer(ik) :: column, i, j, node, side, row
 
       allocate (problem%closing(size(constraints%closing, 2)))
+      allocate (problem%is_symmetric(2*problem%n), source=.true.)
       do i = 1, size(problem%closing)
          associate (link => problem%closing(i))
             link%cell = constraints%closing(1, i)
@@ -175,6 +176,8 @@ contains
                   end do
                end do
             end do
+            ! Rows of S that close_joints combines.
+            where (any(abs(link%jump_of) > 0.0_rk, dim=1)) problem%is_symmetric = .false.
          end associate
       end do
    end subroutine find_closing

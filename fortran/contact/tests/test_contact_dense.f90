@@ -4,7 +4,7 @@
 program test_contact_dense
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_dense, only: solve_full
+   use contact_dense, only: solve_by_parts, solve_full
    use contact_newton, only: step_quality_t
    use contact_ties, only: new_ties, ties_t
    implicit none(type, external)
@@ -16,6 +16,7 @@ program test_contact_dense
    call has_nothing_to_solve()
    call leaves_flows_out_of_condition()
    call leaves_out_ties()
+   call solves_by_parts()
    call checks%finish()
 
 contains
@@ -41,6 +42,30 @@ contains
       call checks%is_close(step(1), -5.0_rk, 1.0e-14_rk, "the same step with the condition")
       call checks%is_close(quality%condition, 3.0_rk, 1.0e-14_rk, "condition of two equations")
    end subroutine finds_step
+
+   !> Equations 1 and 3, times -2 and -4, are (2 1; 1 3) in unknowns 1 and 3; 2 is any. The step is
+   !! (1 2 3) by choice of the residual. Without equation 2; and where the part is not definite.
+   subroutine solves_by_parts()
+      real(rk), parameter :: factor(3) = [-2.0_rk, 0.0_rk, -4.0_rk], wanted(3) = [1.0_rk, 2.0_rk, 3.0_rk]
+      real(rk), parameter :: equations(3, 3) = reshape([2.0_rk/factor(1), 7.0_rk, 1.0_rk/factor(1), &
+                                                        5.0_rk, 1.0_rk, -6.0_rk, &
+                                                        1.0_rk/factor(3), 4.0_rk, &
+                                                        3.0_rk/factor(3)], [3, 3])
+      type(step_quality_t) :: quality
+      real(rk) :: step(3)
+      logical :: is_solved
+
+      call solve_by_parts(equations, -matmul(wanted, equations), factor, step, quality, is_solved)
+      call checks%is_true(is_solved .and. .not. quality%is_singular, "solved by parts")
+      call checks%is_close(maxval(abs(step - wanted)), 0.0_rk, 1.0e-13_rk, "step by parts")
+      associate (part => equations([1, 3], [1, 3]))
+         call solve_by_parts(part, -matmul(wanted(:2), part), factor([1, 3]), step(:2), quality, &
+                             is_solved)
+         call checks%is_close(maxval(abs(step(:2) - wanted(:2))), 0.0_rk, 1.0e-14_rk, "one part")
+      end associate
+      call solve_by_parts(equations, wanted, -factor, step, quality, is_solved)
+      call checks%is_true(.not. is_solved, "a part that is not definite")
+   end subroutine solves_by_parts
 
    subroutine notices_singular_matrix()
       type(step_quality_t) :: quality
