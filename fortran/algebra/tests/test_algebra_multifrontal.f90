@@ -124,7 +124,8 @@ contains
          call solve_dense(m, size(kept, kind=ik), inner, free, info)
       end associate
       free = dense(kept, kept) - matmul(dense(kept, others), free)
-      call checks%is_close(maxval(abs(s - free)), 0.0_rk, 1.0e-12_rk*maxval(dense), "Schur complement of blocks")
+      call checks%is_close(maxval(abs(s - free)), 0.0_rk, 1.0e-12_rk*maxval(dense), &
+                           "Schur complement of blocks")
       allocate (reduced(size(kept)))
       call solver%condense(load, reduced, error)
       x(kept) = reduced
