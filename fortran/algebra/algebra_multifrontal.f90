@@ -1,5 +1,6 @@
-!> Symmetric positive definite systems that are sums of small dense matrices, such as those of finite
-!! elements, by the multifrontal method (Duff and Reid 1983): the matrix as a whole is never formed.
+!> Symmetric positive definite systems that are sums of small dense matrices, such as those of
+!! finite elements, by the multifrontal method (Duff and Reid 1983): the matrix as a whole is never
+!! formed.
 !! On request condensed onto a few unknowns, which need not be definite.
 !!
 !! A front is a small dense matrix: its elements and what its children have left are added up, its

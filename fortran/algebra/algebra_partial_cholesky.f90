@@ -14,8 +14,9 @@ module algebra_partial_cholesky
 
 contains
 
-   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what is
-   !! left of the matrix without these unknowns (its Schur complement). The upper triangle is lost.
+   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what
+   !! is left of the matrix without these unknowns (its Schur complement). The upper triangle is
+   !! lost.
    subroutine eliminate(matrix, n, n_pivots, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)

@@ -1,5 +1,5 @@
-!> The elements as the solver takes them: which unknowns each one has, and its matrix T' K T, where T
-!! says how the nodes move with the unknowns (fine_faces).
+!> The elements as the solver takes them: which unknowns each one has, and its matrix T' K T, where
+!! T says how the nodes move with the unknowns (fine_faces).
 module fine_assembly
    use algebra_multifrontal, only: element_matrices_t
    use base_kinds, only: ik, rk

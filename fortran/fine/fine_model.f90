@@ -142,8 +142,9 @@ contains
 
    !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
    !!
-   !! The Schur complement that the elimination leaves costs no more than solving for one right-hand side per
-   !! jump: it is what those solutions would compute, restricted to the fronts that hold the jumps.
+   !! The Schur complement that the elimination leaves costs no more than solving for one right-hand
+   !! side per jump: it is what those solutions would compute, restricted to the fronts that hold
+   !! the jumps.
    subroutine condense_contact(self)
       class(fine_model_t), intent(inout) :: self
 

@@ -46,11 +46,12 @@ contains
    !> Equations 1 and 3, times -2 and -4, are (2 1; 1 3) in unknowns 1 and 3; 2 is any. The step is
    !! (1 2 3) by choice of the residual. Without equation 2; and where the part is not definite.
    subroutine solves_by_parts()
-      real(rk), parameter :: factor(3) = [-2.0_rk, 0.0_rk, -4.0_rk], wanted(3) = [1.0_rk, 2.0_rk, 3.0_rk]
-      real(rk), parameter :: equations(3, 3) = reshape([2.0_rk/factor(1), 7.0_rk, 1.0_rk/factor(1), &
-                                                        5.0_rk, 1.0_rk, -6.0_rk, &
-                                                        1.0_rk/factor(3), 4.0_rk, &
-                                                        3.0_rk/factor(3)], [3, 3])
+      real(rk), parameter :: factor(3) = [-2.0_rk, 0.0_rk, -4.0_rk]
+      real(rk), parameter :: wanted(3) = [1.0_rk, 2.0_rk, 3.0_rk]
+      real(rk), parameter :: equations(3, 3) = &
+                             reshape([2.0_rk/factor(1), 7.0_rk, 1.0_rk/factor(1), &
+                                      5.0_rk, 1.0_rk, -6.0_rk, &
+                                      1.0_rk/factor(3), 4.0_rk, 3.0_rk/factor(3)], [3, 3])
       type(step_quality_t) :: quality
       real(rk) :: step(3)
       logical :: is_solved
