@@ -49,7 +49,9 @@ if [[ $1 == ranks ]]; then
 fi
 printf 'solver %s\\n' "$*"
 printf 'threads %s\\n' "$OPENBLAS_NUM_THREADS"
-if [[ $OMP_NUM_THREADS != "$OPENBLAS_NUM_THREADS" ]]; then printf 'loops on %s\\n' "$OMP_NUM_THREADS"; fi
+if [[ $OMP_NUM_THREADS != "$OPENBLAS_NUM_THREADS" ]]; then
+    printf 'loops on %s\\n' "$OMP_NUM_THREADS"
+fi
 source "$2"
 """
 

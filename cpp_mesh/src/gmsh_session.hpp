@@ -33,8 +33,9 @@ public:
     GmshSession(const GmshSession&) = delete;
     GmshSession& operator=(const GmshSession&) = delete;
 
-    // One thread at a time; others wait. Triangles of the region; nodes that gmsh adds are appended to xy. Fails where gmsh would
-    // cover the region more often than `coverage` times (work_limit.hpp).
+    // One thread at a time; others wait. Triangles of the region; nodes that gmsh adds are appended
+    // to xy. Fails where gmsh would cover the region more often than `coverage` times
+    // (work_limit.hpp).
     std::vector<Triangle> triangulate(const Region& region, const SizeField& size,
                                       std::vector<Vec2>& xy,
                                       double coverage = WorkLimit::usual_coverage);

@@ -56,8 +56,7 @@ std::vector<Move> moves_between(const Network& before, const Network& after) {
             if (last == first + 1)
                 throw MeshError("a fracture of one piece is not moved");
             const int next = v == first ? v + 1 : v - 1;
-            moves.push_back(
-                {f, v == first ? 1 : 2, before.xy[next], before.xy[v], after.xy[v]});
+            moves.push_back({f, v == first ? 1 : 2, before.xy[next], before.xy[v], after.xy[v]});
         }
     }
     return moves;

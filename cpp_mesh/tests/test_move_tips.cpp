@@ -16,8 +16,8 @@ TestNetwork path(double share, double direction) {
         y -= 0.0002 + 0.00002 * std::sin(40.0 * x);
     }
     line.push_back({x, y});
-    line.push_back({x + share * piece * std::cos(direction),
-                    y + share * piece * std::sin(direction)});
+    line.push_back(
+        {x + share * piece * std::cos(direction), y + share * piece * std::sin(direction)});
     return TestNetwork({line, {{0.1, 0.4}, {0.4, 0.4}}});
 }
 

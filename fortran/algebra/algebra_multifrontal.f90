@@ -78,7 +78,7 @@ contains
       type(lists_t), intent(in) :: elements  !< the blocks of each
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: kept(:)  !< unknowns to condense onto: whole blocks
-      integer(ik), parameter :: none(0) = [integer(ik)::]
+      integer(ik), parameter :: none(0) = [integer(ik) ::]
       integer(ik) :: b, e, i, k, n, u
 
       self%is_factorized = .false.

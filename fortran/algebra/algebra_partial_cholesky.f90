@@ -9,7 +9,7 @@ module algebra_partial_cholesky
 
    integer(ik), parameter :: panel = 4  !< pivots that are taken together
 
-   !> With fewer pivots or rows than these the plain loops are faster than the calls (measured).
+   !> With fewer pivots or rows than these the plain loops are faster than the calls.
    integer(ik), parameter :: pivots_for_blas = 16, rows_for_blas = 160
 
 contains

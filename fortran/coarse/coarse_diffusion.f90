@@ -73,7 +73,7 @@ contains
          do j = 1, 2
             do i = 1, 2
                local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
-                                            + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
+                                              + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
                                                                    matmul(resistivity(:, :, kind), &
                                                                                        lever(:, j)))
             end do

@@ -68,7 +68,7 @@ contains
       call checks%no_error(error, "what is kept may float")
       call solver%get_schur(s)
       call checks%is_close(maxval(abs(s - 0.75_rk*reshape([1.0_rk, -1.0_rk, -1.0_rk, 1.0_rk], &
-                                                         [2, 2]))), 0.0_rk, 1.0e-14_rk, "springs")
+                                                          [2, 2]))), 0.0_rk, 1.0e-14_rk, "springs")
       load = 0.0_rk
       load(7) = 6.0_rk
       call solver%condense(load, reduced, error)

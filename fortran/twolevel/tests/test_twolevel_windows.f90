@@ -83,7 +83,7 @@ contains
             call add_fracture(scene, "f", x, x, 0.1_rk, 0.0_rk)
          end associate
       else
-        call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
+         call add_fracture(scene, "f", 1.0_rk + [-along, along], 1.0_rk + [-along, along], 0.1_rk, &
                            0.0_rk)
       end if
       call evaluate_initial_state(scene, simulation, timers, error)
