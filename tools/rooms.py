@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 USE = re.compile(r"^\s*use\s+(?:,\s*non_intrinsic\s*::\s*)?([a-z0-9_]+)", re.MULTILINE)
-ROOM = re.compile(r"add_room\((\w+)(?:\s+USES\s+([^)]*))?\)")
+ROOM = re.compile(r"add_room\((\w+)(?:\s+THREADS)?(?:\s+USES\s+([^)]*))?\)")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 

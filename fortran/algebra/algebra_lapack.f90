@@ -86,8 +86,8 @@ module algebra_lapack
          character, intent(in) :: trans  !< "N" for A A', "T" for A' A
          integer(ik), intent(in) :: n, k, lda, ldc
          real(rk), intent(in) :: alpha, beta
-         real(rk), intent(in) :: a(lda, *)
-         real(rk), intent(inout) :: c(ldc, *)
+         real(rk), intent(in) :: a(lda, merge(k, n, trans == "N"))
+         real(rk), intent(inout) :: c(ldc, n)
       end subroutine dsyrk
 
       !> Solve A X = alpha B or, from the right, X A = alpha B with a triangular A.
@@ -100,8 +100,8 @@ module algebra_lapack
          character, intent(in) :: diag  !< "U": ones on the diagonal, "N": what stands there
          integer(ik), intent(in) :: m, n, lda, ldb
          real(rk), intent(in) :: alpha
-         real(rk), intent(in) :: a(lda, *)
-         real(rk), intent(inout) :: b(ldb, *)
+         real(rk), intent(in) :: a(lda, merge(m, n, side == "L"))
+         real(rk), intent(inout) :: b(ldb, n)
       end subroutine dtrsm
    end interface
 
