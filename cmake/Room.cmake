@@ -22,7 +22,8 @@ endfunction()
 # each turn writes what is its own, and sums are taken outside. Rooms without this take the marks
 # for comments.
 function(room_threads name)
-  target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS})
+  # With threads the false alarms of room_compile_options come in the debug build too.
+  target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS} -Wno-uninitialized)
   target_link_libraries(${name} PRIVATE OpenMP::OpenMP_Fortran)
 endfunction()
 
@@ -55,8 +56,8 @@ endfunction()
 
 # gfortran 12 takes the descriptors of allocatable arrays (their `offset` and `dim` before the first
 # allocation) for uninitialized: -Wmaybe-uninitialized in either build, -Wuninitialized where it
-# optimizes. In the debug build the latter is right, and stays. No local array is static: procedures
-# may run on several threads at once.
+# optimizes. In the debug build the latter is right, and stays. Where it optimizes no local array is
+# static, whatever its size: procedures may run on several threads at once.
 function(room_compile_options name)
   target_compile_options(
     ${name}
@@ -67,8 +68,8 @@ function(room_compile_options name)
       $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wimplicit-interface
       -fimplicit-none
-      -frecursive
       $<$<CONFIG:Release>:-O3
+      -frecursive
       ${WINGCRACK_PROCESSOR}
       -Wno-uninitialized
       -Wno-maybe-uninitialized>
