@@ -48,7 +48,7 @@ check_shell() { "$venv/bin/shellcheck" --external-sources wingcrack .ci/run; }
 # Settings: .fprettify.rc.
 format_fortran() {
     find "${fortran_folders[@]}" -name '*.f90' -print0 | sort -z |
-        xargs -0 -n 8 -P "$(nproc)" "$venv_python" "$venv/bin/fprettify" "$@" 2>/dev/null
+        xargs -0 -n 8 -P "$processors" "$venv_python" "$venv/bin/fprettify" "$@" 2>/dev/null
 }
 
 # fprettify exits with 0 whatever it finds: the difference that it prints is what counts.
@@ -80,7 +80,7 @@ format_cpp() {
 check_cpp() {
     with_lock configure release
     find "${cpp_folders[@]}" -path '*/tests/*' -prune -o -name '*.cpp' -print0 |
-        xargs -0 -n 1 -P "$(nproc)" "$venv_python" "$venv/bin/clang-tidy" --quiet -p build/release
+        xargs -0 -n 1 -P "$processors" "$venv_python" "$venv/bin/clang-tidy" --quiet -p build/release
 }
 
 # Python, settings: pyproject.toml ---------------------------------------------------------------

@@ -6,6 +6,7 @@ begin_steps() {
     failed_steps=()
     steps_tried=0
     cd "$root" || fail 1 "$root cannot be entered"
+    processors=$(nproc) # asked before: it answers with OMP_NUM_THREADS where that is set
     # As in a run; and the compiled tests take no more of a processor than they are given.
     export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 }

@@ -7,9 +7,9 @@ run_all_tests() {
     # The builds end the run when they fail: there is nothing to test then.
     with_lock build debug all
     with_lock build release all
-    step 'CTest, debug build' ctest --preset debug -j "$(nproc)"
-    step 'CTest, release build' ctest --preset release -j "$(nproc)"
-    step 'pytest' run_pytest --numprocesses "$(nproc)" --dist loadfile
+    step 'CTest, debug build' ctest --preset debug -j "$processors"
+    step 'CTest, release build' ctest --preset release -j "$processors"
+    step 'pytest' run_pytest --numprocesses "$processors" --dist loadfile
     # counts, which do not depend on what else the machine does
     step 'bench, the short form' run_quick_bench
     end_steps
@@ -38,7 +38,7 @@ run_named_ctests() {
     if ((${#tests[@]} == 0)); then return; fi
     with_lock compile "$preset" "${tests[@]}"
     step "CTest, $preset build" \
-        ctest --preset "$preset" -j "$(nproc)" --tests-regex "$pattern"
+        ctest --preset "$preset" -j "$processors" --tests-regex "$pattern"
 }
 
 run_named_pytests() {
