@@ -24,7 +24,7 @@ module mechanics_body
    use simulation_rocks, only: follow_outlines, interface_distance, keep_off, place_rocks, &
                                regions_of_other_rock
    use tips_dual, only: correct_intensity, has_dual
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use tips_types, only: intensity_t
    implicit none(type, external)
    private
@@ -49,6 +49,7 @@ module mechanics_body
       !> (tau n, start end mid, fracture cell) jump that the scene gives at load factor 1 [m]
       real(rk), allocatable :: given_jump(:, :, :)
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
+      type(tip_probe_t), allocatable :: probe(:)  !< (free tips of the mesh) what finds these
       type(energy_error_t) :: estimate  !< of the error; on adaptive meshes only
       real(rk) :: smallest_angle = 0.0_rk  !< of the mesh [rad]
       type(before_t) :: before
@@ -190,6 +191,7 @@ contains
       call mesh_quality(self%mesher, self%smallest_angle, worst, error)
       if (allocated(error)) return
       if (allocated(self%displacement)) deallocate (self%displacement)
+      if (allocated(self%probe)) deallocate (self%probe)
       call timers%start(phase_assemble)
       if (allocated(scene%regions)) then
          associate (all => [elasticity(scene%material), elasticity(scene%regions%material)])
@@ -357,15 +359,29 @@ contains
       call timers%start(phase_tips)
       if (allocated(self%intensity)) deallocate (self%intensity)
       allocate (self%intensity(self%mesh%fracture%n_tips))
+      if (.not. allocated(self%probe)) call find_probes(self, scene, error)
       do tip = 1, self%mesh%fracture%n_tips
-         call refuse_interface(self, scene, tip, error)
          if (allocated(error)) exit
-         call tip_intensity(self%model, self%loads, self%displacement, tip, self%intensity(tip), &
-                            error)
-         if (allocated(error)) exit
+         call tip_intensity(self%model, self%loads, self%displacement, self%probe(tip), &
+                            self%intensity(tip), error)
       end do
       call timers%stop(phase_tips)
    end subroutine respond
+
+   !> What finds the intensities of the tips of the mesh.
+   subroutine find_probes(self, scene, error)
+      class(body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: tip
+
+      allocate (self%probe(self%mesh%fracture%n_tips))
+      do tip = 1, self%mesh%fracture%n_tips
+         call refuse_interface(self, scene, tip, error)
+         if (.not. allocated(error)) call probe_of_tip(self%model, tip, self%probe(tip), error)
+         if (allocated(error)) return
+      end do
+   end subroutine find_probes
 
    !> Errors of the intensities from that of the whole solution, where no faces touch.
    subroutine correct_intensities(self, timers, error)
@@ -379,8 +395,8 @@ contains
       call timers%start(phase_tips)
       call recover_by_patches(self%model, self%displacement, recovery)
       do tip = 1, self%mesh%fracture%n_tips
-         call correct_intensity(self%model, self%displacement, recovery, tip, &
-                                self%intensity(tip), error)
+         call correct_intensity(self%model, self%displacement, recovery, &
+                                self%probe(tip), self%intensity(tip), error)
          if (allocated(error)) exit
       end do
       call timers%stop(phase_tips)

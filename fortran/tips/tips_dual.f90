@@ -1,6 +1,6 @@
 !> The error of stress intensity factors from that of the whole solution.
 !!
-!! K is a linear function of the displacement (tips_extraction), and z the displacement that its
+!! K is a linear function of the displacement (tips_interaction), and z the displacement that its
 !! nodal forces cause in the same body. The error of K is then a(e_u, e_z), the energy of the error
 !! of the solution in the strain of that of z (Becker and Rannacher 2001); both are estimated by
 !! recovered stresses.
@@ -11,9 +11,8 @@ module tips_dual
    use fine_faces, only: face_loaded
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use tips_extraction, only: extraction_forces
-   use tips_intensity, only: complete_errors, plateau
-   use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
+   use tips_intensity, only: complete_errors, tip_probe_t
+   use tips_types, only: intensity_t
    implicit none(type, external)
    private
 
@@ -29,21 +28,19 @@ contains
    end function has_dual
 
    !> Add what K_I and K_II lack to their corrected values, and its magnitude to their errors.
-   subroutine correct_intensity(model, displacement, recovery, tip, intensity, error)
+   subroutine correct_intensity(model, displacement, recovery, probe, intensity, error)
       type(fine_model_t), intent(inout) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(recovery_t), intent(in) :: recovery  !< of its stresses
-      integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
+      type(tip_probe_t), intent(in) :: probe  !< of the tip
       type(intensity_t), intent(inout) :: intensity  !< from tip_intensity
       type(error_t), allocatable, intent(out) :: error
       type(recovery_t) :: dual_recovery
       real(rk), allocatable :: force(:, :, :), dual(:, :)
-      type(tip_frame_t) :: frame
       real(rk) :: missing(2)
       integer(ik) :: mode
 
-      frame = frame_of_tip(model, tip)
-      force = extraction_forces(model, frame, intensity%radius, plateau)
+      force = probe%interactions%extraction_forces(1_ik, model%mesh%n_nodes)
       do mode = 1, 2
          call model%influence(force(:, :, mode), dual, error)
          if (allocated(error)) return
@@ -54,7 +51,7 @@ contains
       intensity%k2_corrected = intensity%k2 + missing(2)
       intensity%k1_error = intensity%k1_error + abs(missing(1))
       intensity%k2_error = intensity%k2_error + abs(missing(2))
-      call complete_errors(frame%rock%crack_modulus(), intensity)
+      call complete_errors(probe%frame%rock%crack_modulus(), intensity)
    end subroutine correct_intensity
 
 end module tips_dual

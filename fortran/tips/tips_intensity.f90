@@ -9,12 +9,12 @@ module tips_intensity
    use tips_displacement, only: displacement_correlation
    use tips_domain, only: largest_radius, rosette_size
    use tips_energy, only: release_rate
-   use tips_interaction, only: interaction_integral
+   use tips_interaction, only: interaction_integrals, interactions_t
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
    private
 
-   public :: complete_errors, plateau, tip_intensity
+   public :: complete_errors, probe_of_tip, tip_intensity, tip_probe_t
 
    ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
    ! of the room where the rosette is small. A domain that shrank with the rosette would look the
@@ -24,7 +24,42 @@ module tips_intensity
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
 
+   !> What the intensities of a tip are found by on one mesh, whatever its loads and solution.
+   type :: tip_probe_t
+      type(tip_frame_t) :: frame
+      real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
+      type(interactions_t) :: interactions  !< on these
+   end type tip_probe_t
+
+   !> From a probe, or, to be used once, for the number of the tip.
+   interface tip_intensity
+      module procedure intensity_of_probe, intensity_of_tip
+   end interface tip_intensity
+
 contains
+
+   !> What finds the intensities of a free tip of the model's mesh.
+   subroutine probe_of_tip(model, tip, probe, error)
+      type(fine_model_t), intent(in) :: model
+      integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
+      type(tip_probe_t), intent(out) :: probe
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: room
+      character(len=16) :: number
+
+      if (tip < 1 .or. tip > model%mesh%fracture%n_tips) then
+         write (number, "(i0)") tip
+         call raise_error(error, "tip_intensity", "the window has no tip number "//trim(number))
+         return
+      end if
+      probe%frame = frame_of_tip(model, tip)
+      room = largest_radius(model%mesh, probe%frame, model%rocks)
+      probe%radius = min(room, max(share_of_room*room, &
+                                   reach*rosette_size(model%mesh, probe%frame)))
+      probe%radius_inner = inner_share*probe%radius
+      probe%interactions = interaction_integrals(model, probe%frame, &
+                                                 [probe%radius, probe%radius_inner], plateau)
+   end subroutine probe_of_tip
 
    !> Displacement correlation, the interaction integral on two domains, and the energy release
    !! rate.
@@ -32,38 +67,30 @@ contains
    !! The estimated error of an intensity is the difference between the domains, plus that between
    !! the magnitude of both intensities and the one that the energy release rate gives. These share
    !! the tractions on the faces, whose errors they do not see (take_given_slip).
-   subroutine tip_intensity(model, loads, displacement, tip, intensity, error, quickly)
+   subroutine intensity_of_probe(model, loads, displacement, probe, intensity, error, quickly)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads  !< those of the solution
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
-      integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
+      type(tip_probe_t), intent(in) :: probe
       type(intensity_t), intent(out) :: intensity
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: quickly  !< K_I and K_II alone, without errors
-      type(tip_frame_t) :: frame
-      real(rk) :: mismatch, of_energy, room, size_of_all
-      character(len=16) :: number
+      real(rk) :: k(2, 2), mismatch, of_energy, size_of_all
       logical :: is_complete
 
-      if (tip < 1 .or. tip > model%mesh%fracture%n_tips) then
-         write (number, "(i0)") tip
-         call raise_error(error, "tip_intensity", "the window has no tip number "//trim(number))
-         return
-      end if
       is_complete = .true.
       if (present(quickly)) is_complete = .not. quickly
-      frame = frame_of_tip(model, tip)
-      room = largest_radius(model%mesh, frame, model%rocks)
-      intensity%radius = min(room, max(share_of_room*room, reach*rosette_size(model%mesh, frame)))
-      intensity%radius_inner = inner_share*intensity%radius
-      associate (result => intensity)
+      associate (result => intensity, frame => probe%frame)
+         result%radius = probe%radius
+         result%radius_inner = probe%radius_inner
          call displacement_correlation(model%mesh, frame%rock, displacement, frame, &
                                        result%k1_dc, result%k2_dc)
-         call interaction_integral(model, loads, displacement, frame, result%radius, plateau, &
-                                   result%k1, result%k2)
+         k = probe%interactions%intensities(model, loads, displacement)
+         result%k1 = k(1, 1)
+         result%k2 = k(2, 1)
          if (is_complete) then
-            call interaction_integral(model, loads, displacement, frame, result%radius_inner, &
-                                      plateau, result%k1_inner, result%k2_inner)
+            result%k1_inner = k(1, 2)
+            result%k2_inner = k(2, 2)
             result%g_domain = release_rate(model, loads, displacement, frame, result%radius, &
                                            plateau)
             of_energy = sqrt(frame%rock%crack_modulus()*max(result%g_domain, 0.0_rk))
@@ -75,13 +102,28 @@ contains
          result%k2_corrected = result%k2
          size_of_all = sum(abs([result%k1, result%k2, result%k1_inner, result%k2_inner, &
                                 result%k1_dc, result%k2_dc, result%g_domain]))
+         call respect_contact(model, displacement, frame, intensity)
+         call complete_errors(frame%rock%crack_modulus(), intensity)
       end associate
-      call respect_contact(model, displacement, frame, intensity)
-      call complete_errors(frame%rock%crack_modulus(), intensity)
       if (.not. size_of_all <= huge(1.0_rk)) then
          call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if
-   end subroutine tip_intensity
+   end subroutine intensity_of_probe
+
+   !> The same for a tip by its number.
+   subroutine intensity_of_tip(model, loads, displacement, tip, intensity, error)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads  !< those of the solution
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
+      type(intensity_t), intent(out) :: intensity
+      type(error_t), allocatable, intent(out) :: error
+      type(tip_probe_t) :: probe
+
+      call probe_of_tip(model, tip, probe, error)
+      if (allocated(error)) return
+      call tip_intensity(model, loads, displacement, probe, intensity, error)
+   end subroutine intensity_of_tip
 
    !> Errors of the other two methods, by their distance from the first and its error.
    elemental subroutine complete_errors(crack_modulus, intensity)

@@ -26,7 +26,7 @@ module twolevel_window
    use scene_types, only: material_t, scene_t
    use simulation_body, only: shape_body
    use simulation_rocks, only: follow_outlines, keep_off, place_rocks, regions_of_other_rock
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
@@ -79,6 +79,8 @@ module twolevel_window
       integer(ik), allocatable :: kept(:)  !< its vertices that the mesh has
       logical :: has_moved = .false.  !< the mesh is another one than was made
       type(fine_model_t) :: model
+      !> (tips served) what finds their intensities, as long as the model stays the same
+      type(tip_probe_t), allocatable :: probe(:)
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
       !> (2, n_nodes) loads beside those of sides, where these change with time [N/m]
@@ -321,6 +323,7 @@ contains
       type(elasticity_t), allocatable :: elasticity(:)
       integer :: i
 
+      if (allocated(self%probe)) deallocate (self%probe)
       elasticity = [constants(scene%material, scene, undrained)]
       if (allocated(scene%regions)) then
          elasticity = [elasticity, (constants(scene%regions(i)%material, scene, undrained), &
@@ -429,14 +432,32 @@ contains
       end if
       call self%model%solve(self%loads, self%displacement, error, self%contact)
       if (allocated(error)) return
+      if (.not. allocated(self%probe)) call find_probes(self, tips, error)
+      if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => tips(self%serves(i)))
             if (tip%at == 0) cycle
-            call tip_intensity(self%model, self%loads, self%displacement, tip%at, tip%found, error)
+            call tip_intensity(self%model, self%loads, self%displacement, self%probe(i), &
+                               tip%found, error)
             if (allocated(error)) return
          end associate
       end do
    end subroutine find_intensities
+
+   !> What finds the intensities of the tips.
+   subroutine find_probes(self, tips, error)
+      class(window_t), intent(inout) :: self
+      type(window_tip_t), intent(in) :: tips(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+
+      allocate (self%probe(size(self%serves)))
+      do i = 1, size(self%serves, kind=ik)
+         if (tips(self%serves(i))%at == 0) cycle
+         call probe_of_tip(self%model, tips(self%serves(i))%at, self%probe(i), error)
+         if (allocated(error)) return
+      end do
+   end subroutine find_probes
 
    !> The window's edge with displacements that are quadratic in each coarse cell: linear between
    !! the nodes, and half of what the gradients there add; on sides of the body those of the scene,
@@ -493,7 +514,7 @@ contains
       do i = 1, size(self%serves, kind=ik)
          associate (tip => self%serves(i))
             if (tips(tip)%at == 0) cycle
-            call tip_intensity(self%model, loads, displacement, tips(tip)%at, result, error, &
+            call tip_intensity(self%model, loads, displacement, self%probe(i), result, error, &
                                quickly=.true.)
             if (allocated(error)) return
             k(:, tip) = [result%k1, result%k2]

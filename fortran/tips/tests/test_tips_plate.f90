@@ -17,9 +17,8 @@ program test_tips_plate
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use tips_dual, only: correct_intensity, has_dual
-   use tips_extraction, only: extraction_forces
-   use tips_intensity, only: plateau, tip_intensity
-   use tips_types, only: frame_of_tip, intensity_t
+   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use tips_types, only: intensity_t
    implicit none(type, external)
    integer(ik), parameter :: tension = 1, shear = 2, clamped = 3
    real(rk), parameter :: pi = acos(-1.0_rk)
@@ -122,6 +121,9 @@ contains
       type(intensity_t) :: corrected
       type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), force(:, :, :)
+      type(tip_probe_t) :: probe
+      real(rk) :: moment(2)
+      integer(ik) :: i
       real(rk) :: scale
 
       network = network_t(first=[1_ik, 3_ik], s_start=[0.0_rk], &
@@ -183,14 +185,25 @@ contains
       call estimate_error(model, displacement, recovery, estimate)
       estimated = estimate%relative
       ! Without loads on the faces the intensities are the work of the extraction's forces.
-      force = extraction_forces(model, frame_of_tip(model, 1_ik), dimensionless%radius, plateau)
+      call probe_of_tip(model, 1_ik, probe, error)
+      call checks%no_error(error, "the tip has a probe")
+      force = probe%interactions%extraction_forces(1_ik, model%mesh%n_nodes)
       call checks%is_close(sum(force(:, :, 1)*displacement)/scale, dimensionless%k1, 1.0e-9_rk, &
                            "K_I is linear in the displacement")
       call checks%is_close(sum(force(:, :, 2)*displacement)/scale, dimensionless%k2, 1.0e-9_rk, &
                            "K_II is linear in the displacement")
+      ! A body that moves as a whole has none; so the forces are in balance.
+      call checks%is_true(all(abs(sum(force, dim=2)) <= 1.0e-10_rk*sum(abs(force), dim=2)), &
+                          "the extraction's forces are in balance")
+      moment = [(sum(force(2, :, i)*model%mesh%xy(1, :) - force(1, :, i)*model%mesh%xy(2, :)), &
+                 i=1, 2)]
+      ! The auxiliary field is integrated to some 1e-5.
+      call checks%is_true(all(abs(moment) <= 1.0e-4_rk*sum(hypot(force(1, :, :), force(2, :, :)) &
+                                                         *spread(norm2(model%mesh%xy, 1), 2, 2))), &
+                          "and so are their moments")
       call checks%is_true(has_dual(model), "faces that are loaded have a dual")
       call tip_intensity(model, loads, displacement, 1_ik, corrected, error)
-      call correct_intensity(model, displacement, recovery, 1_ik, corrected, error)
+      call correct_intensity(model, displacement, recovery, probe, corrected, error)
       call checks%no_error(error, "intensities are corrected")
       dimensionless%k1_corrected = corrected%k1_corrected/scale
       dimensionless%k2_corrected = corrected%k2_corrected/scale
