@@ -2,10 +2,11 @@
 module fine_loads
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: triangle_area
    use fine_line, only: line_resultants
    use fine_elasticity, only: rocks_t
    use fine_mesh, only: fine_mesh_t
-   use fine_quadrature, only: collapsed_rule, triangle_rule_3
+   use fine_quadrature, only: collapsed_rule
    implicit none(type, external)
    private
 
@@ -118,35 +119,85 @@ contains
 
    !> Forces of one element's volume: the initial stress s0, of which pore pressure is the part
    !! -biot*p, linear in space, gives the integrals of -s0 grad N, so that no pressure gradient is
-   !! formed; the body force b gives those of N b. Both rules are exact.
+   !! formed; the body force b gives those of N b. Both are exact.
    pure function volume_forces(fine, cell, biot, loads) result(force)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: biot  !< [-]
       type(fine_loads_t), intent(in) :: loads
       real(rk) :: force(2, 6)  !< [N/m]
-      real(rk) :: points(3, 9), weights(9), corner(3, 3), stress(3), body(2)
-      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, weight
-      integer(ik) :: k, point, n_points
+      real(rk) :: corner(3, 3)
+      integer(ik) :: k
 
-      if (fine%tip_corner(cell) > 0) then
-         n_points = 9
-         call collapsed_rule(fine%tip_corner(cell), 3_ik, 3_ik, points, weights)
-      else
-         n_points = 3
-         call triangle_rule_3(points(:, 1:3), weights(1:3))
-      end if
       corner = loads%initial_stress(:, fine%cell_nodes(1:3, cell))
       do k = 1, 3
          corner(1:2, k) = corner(1:2, k) - biot*loads%pore_pressure(fine%cell_nodes(k, cell))
       end do
+      if (fine%tip_corner(cell) > 0) then
+         force = forces_at_tip(fine, cell, corner, loads%body_force)
+      else
+         force = forces_of_ordinary(fine%xy(:, fine%cell_nodes(1:3, cell)), corner, &
+                                    loads%body_force)
+      end if
+   end function volume_forces
+
+   !> The same of an element with its middle nodes in the middle, in closed form. With area
+   !! coordinates L and area A, the integrals of L_c grad N are A/3 grad L_k at its corner k = c and
+   !! 0 at other corners, A/3 ((1 + d_ca) grad L_b + (1 + d_cb) grad L_a) between a and b.
+   pure function forces_of_ordinary(xy, stress, body_force) result(force)
+      real(rk), intent(in) :: xy(2, 3)  !< corners [m]
+      real(rk), intent(in) :: stress(3, 3)  !< (xx yy xy, corners) [Pa]
+      real(rk), intent(in) :: body_force(2)  !< [N/m3]
+      real(rk) :: force(2, 6)  !< [N/m]
+      real(rk) :: slope(2, 3)  ! 2 A grad L
+      real(rk) :: all(3)
+      integer(ik) :: a, b, c
+
+      do a = 1, 3
+         b = mod(a, 3_ik) + 1
+         c = mod(b, 3_ik) + 1
+         slope(:, a) = [xy(2, b) - xy(2, c), xy(1, c) - xy(1, b)]
+      end do
+      all = sum(stress, dim=2)
+      do a = 1, 3
+         b = mod(a, 3_ik) + 1
+         force(:, a) = -traction(stress(:, a), slope(:, a))/6.0_rk
+         force(:, 3 + a) = -(traction(all + stress(:, a), slope(:, b)) &
+                             + traction(all + stress(:, b), slope(:, a)))/6.0_rk &
+                           + triangle_area(xy)/3.0_rk*body_force
+      end do
+   end function forces_of_ordinary
+
+   !> A stress times a vector.
+   pure function traction(stress, vector)
+      real(rk), intent(in) :: stress(3)  !< xx yy xy
+      real(rk), intent(in) :: vector(2)
+      real(rk) :: traction(2)
+
+      traction = [stress(1)*vector(1) + stress(3)*vector(2), &
+                  stress(3)*vector(1) + stress(2)*vector(2)]
+   end function traction
+
+   !> The same of an element at a tip, by a rule that is exact there.
+   pure function forces_at_tip(fine, cell, corner, body_force) result(force)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: corner(3, 3)  !< stress (xx yy xy, corners) [Pa]
+      real(rk), intent(in) :: body_force(2)  !< [N/m3]
+      real(rk) :: force(2, 6)  !< [N/m]
+      integer(ik), parameter :: n = 3  ! points in each direction
+      real(rk) :: points(3, n*n), weights(n*n), stress(3), body(2)
+      real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant, weight
+      integer(ik) :: k, point
+
+      call collapsed_rule(fine%tip_corner(cell), n, n, points, weights)
       force = 0.0_rk
-      do point = 1, n_points
+      do point = 1, n*n
          call fine%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
                             determinant)
          weight = weights(point)*determinant
          stress = weight*matmul(corner, area_coordinates)
-         body = weight*loads%body_force
+         body = weight*body_force
          do k = 1, 6
             force(1, k) = force(1, k) + body(1)*values(k) &
                           - stress(1)*gradients(1, k) - stress(3)*gradients(2, k)
@@ -154,6 +205,6 @@ contains
                           - stress(3)*gradients(1, k) - stress(2)*gradients(2, k)
          end do
       end do
-   end function volume_forces
+   end function forces_at_tip
 
 end module fine_loads

@@ -22,6 +22,15 @@ module fine_model
 
    public :: fine_model_t
 
+   !> Which unknowns occur together.
+   type :: pattern_t
+      integer(ik), allocatable :: first_unknown(:)  !< (blocks + 1)
+      type(lists_t) :: blocks  !< of each element
+      integer(ik), allocatable :: kept(:)  !< unknowns to condense onto
+   contains
+      procedure :: is_same_as
+   end type pattern_t
+
    !> A body with its matrix. Not to be copied: the factors belong to the original.
    type :: fine_model_t
       type(fine_mesh_t) :: mesh
@@ -34,6 +43,9 @@ module fine_model
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
       logical :: ready = .false.
       type(multifrontal_t), private :: solver
+      !> The unknowns of the elements that the solver has analysed: meshes whose nodes have moved
+      !! have the same.
+      type(pattern_t), private :: analysed
    contains
       procedure :: set_mesh
       procedure :: prepare
@@ -127,18 +139,38 @@ contains
       class(fine_model_t), intent(inout), target :: self
       type(error_t), allocatable, intent(out) :: error
       type(tied_elements_t) :: elements
-      type(lists_t) :: blocks
-      integer(ik), allocatable :: first_unknown(:)
+      type(pattern_t) :: pattern
 
-      call find_blocks(self%constraints, first_unknown)
-      blocks = list_blocks(self%mesh%cell_nodes, self%constraints, first_unknown)
-      call self%solver%analyse(first_unknown, blocks, error, kept=self%constraints%contact_dofs)
-      if (allocated(error)) return
+      call find_blocks(self%constraints, pattern%first_unknown)
+      pattern%blocks = list_blocks(self%mesh%cell_nodes, self%constraints, pattern%first_unknown)
+      pattern%kept = self%constraints%contact_dofs
+      if (.not. pattern%is_same_as(self%analysed)) then
+         if (allocated(self%analysed%first_unknown)) deallocate (self%analysed%first_unknown)
+         call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, kept=pattern%kept)
+         if (allocated(error)) return
+         self%analysed = pattern
+      end if
       elements%cell_nodes => self%mesh%cell_nodes
       elements%stiffness => self%stiffness
       elements%constraints => self%constraints
       call self%solver%factorize(elements, error)
    end subroutine factorize
+
+   !> The same unknowns occur in the same elements.
+   pure logical function is_same_as(self, other)
+      class(pattern_t), intent(in) :: self, other
+
+      is_same_as = .false.
+      if (.not. allocated(other%first_unknown)) return
+      if (size(self%first_unknown) /= size(other%first_unknown)) return
+      if (size(self%blocks%first) /= size(other%blocks%first)) return
+      if (size(self%blocks%item) /= size(other%blocks%item)) return
+      if (size(self%kept) /= size(other%kept)) return
+      is_same_as = all(self%first_unknown == other%first_unknown) &
+                   .and. all(self%blocks%first == other%blocks%first) &
+                   .and. all(self%blocks%item == other%blocks%item) &
+                   .and. all(self%kept == other%kept)
+   end function is_same_as
 
    !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
    !!

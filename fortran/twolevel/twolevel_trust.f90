@@ -32,6 +32,7 @@ module twolevel_trust
    use twolevel_state, only: two_levels_t
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
+   use twolevel_windows, only: failure_t, first_failure
    implicit none(type, external)
    private
 
@@ -214,6 +215,7 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: rough(2, size(self%tip))
+      type(failure_t) :: failure(size(self%windows%window))
       integer(ik) :: i, w
 
       if (self%undrained) then
@@ -222,12 +224,15 @@ contains
          end do
          return
       end if
+      !$omp parallel do schedule(dynamic, 1)
       do w = 1, size(self%windows%window, kind=ik)
          if (.not. self%windows%is_asked(w, self%tip)) cycle
-         call self%windows%window(w)%intensities_with(self%windows%tip, rough, error, &
+         call self%windows%window(w)%intensities_with(self%windows%tip, rough, failure(w)%error, &
                                                       pressure=self%state%unknowns(3, :))
-         if (allocated(error)) return
       end do
+      !$omp end parallel do
+      call first_failure(failure, error)
+      if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
          associate (tip => self%windows%tip(i))

@@ -20,7 +20,7 @@ module twolevel_windows
    implicit none(type, external)
    private
 
-   public :: windows_t
+   public :: failure_t, first_failure, windows_t
 
    !> A tip that another one's window holds has moved where it has by more than this share of its
    !! distance to that: intensities change by a small part of it [-].
@@ -133,12 +133,21 @@ contains
          end if
       end do
       !$omp end parallel do
+      call first_failure(failure, error)
+   end subroutine evaluate
+
+   !> The error of the first window that has one.
+   pure subroutine first_failure(failure, error)
+      type(failure_t), intent(in) :: failure(:)  !< (windows)
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: w
+
       do w = 1, size(failure, kind=ik)
          if (.not. allocated(failure(w)%error)) cycle
          error = failure(w)%error
          return
       end do
-   end subroutine evaluate
+   end subroutine first_failure
 
    !> The same for the tips of one window. It changes nothing of other windows or tips.
    subroutine evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
