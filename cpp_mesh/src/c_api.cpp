@@ -306,8 +306,11 @@ int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy, int32_t* 
     return guarded([&] {
         require(mesh != nullptr, "no mesh was given");
         const CellTree& tree = mesh->cells_by_place();
-        for (int32_t p = 0; p < n_points; ++p)
-            cells[p] = tree.locate({xy[2 * p], xy[2 * p + 1]});
+        int found = -1; // points that follow each other are often near to each other
+        for (int32_t p = 0; p < n_points; ++p) {
+            found = tree.locate({xy[2 * p], xy[2 * p + 1]}, found);
+            cells[p] = found;
+        }
     });
 }
 

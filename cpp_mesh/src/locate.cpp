@@ -100,11 +100,14 @@ double CellTree::depth_in(int cell, Vec2 p) const {
     return std::min({height(0), height(1), height(2)});
 }
 
-int CellTree::locate(Vec2 p) const {
+int CellTree::locate(Vec2 p, int guess) const {
     if (branches_.empty())
         return -1;
     const Vec2 extent = branches_[0].box.high - branches_[0].box.low;
     const double slack = tolerance * std::max(extent.x, extent.y);
+    // What lies so deep in a cell lies in no other.
+    if (guess >= 0 && depth_in(guess, p) > 2.0 * slack)
+        return guess;
     // The cell in which the point lies deepest; a point on an edge may round to just outside of
     // both.
     int best = -1;

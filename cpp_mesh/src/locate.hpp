@@ -16,8 +16,9 @@ public:
              std::vector<int> members);
     CellTree(const std::vector<Vec2>& xy, const std::vector<Triangle>& cells); // all cells
 
-    // The cell that holds p, or -1. On an edge it is one of the cells that share it.
-    int locate(Vec2 p) const;
+    // The cell that holds p, or -1. On an edge it is one of the cells that share it. The guess, a
+    // cell of the mesh or -1, changes how long it takes.
+    int locate(Vec2 p, int guess = -1) const;
 
     // Cells whose boxes touch the given one, each once, in ascending order.
     void candidates(Vec2 low, Vec2 high, std::vector<int>& found) const;
