@@ -89,6 +89,14 @@ def test_the_readme_is_rendered(case: SmallCase) -> None:
     assert "<td>2</td>" in page
 
 
+def test_tables_of_the_readme_may_have_emphasis_and_code(case: SmallCase) -> None:
+    (case.case / "README.md").write_text(
+        "| a | b |\n|---|---|\n| so **much** of it | `x = 1` and *then* |\n"
+    )
+    assert verify(case) == 0
+    assert (case.root / "report" / "report.pdf").read_bytes().startswith(b"%PDF-")
+
+
 def test_a_failure_is_red_at_the_top_and_exits_with_1(
     case: SmallCase, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
@@ -16,6 +17,8 @@ from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
 from wingcrack_verify.page import number_text, readme_html, shortened
 from wingcrack_verify.suite import JudgedSuite
 
+_CELL = re.compile(r"(<t[dh][^>]*>)(.*?)(</t[dh]>)", re.DOTALL)
+_TAG = re.compile(r"<[^>]+>")
 _FONTS = {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}
 _COLOURS = {PASSED: (26, 127, 55), GAP: (138, 90, 0), FAILED: (179, 38, 30), ERROR: (179, 38, 30)}
 _HEAD = FontFace(emphasis="B", fill_color=(240, 243, 246))
@@ -133,11 +136,16 @@ def _head(book: _Book, item: dict[str, Any], folder: Path) -> None:
         styles["code"] = FontFace(family="code", size_pt=7.5)
         styles["pre"] = TextStyle("code", "", 7.5)
         book.write_html(
-            html.replace('<div class="scroll">', "").replace("</div>", ""),
+            _plain_cells(html.replace('<div class="scroll">', "").replace("</div>", "")),
             font_family="body",
             tag_styles=styles,
         )
         book.ln(2)
+
+
+def _plain_cells(html: str) -> str:
+    """Take emphasis and code off the cells of tables, which fpdf writes in one style only."""
+    return _CELL.sub(lambda cell: cell[1] + _TAG.sub("", cell[2]) + cell[3], html)
 
 
 def _check(book: _Book, check: dict[str, Any]) -> None:
