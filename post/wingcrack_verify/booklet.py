@@ -17,7 +17,7 @@ from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
 from wingcrack_verify.page import number_text, readme_html, shortened
 from wingcrack_verify.suite import JudgedSuite
 
-_CELL = re.compile(r"(<t[dh][^>]*>)(.*?)(</t[dh]>)", re.DOTALL)
+_CELL = re.compile(r"(<t[dh](?:\s[^>]*)?>)(.*?)(</t[dh]>)", re.DOTALL)
 _TAG = re.compile(r"<[^>]+>")
 _FONTS = {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}
 _COLOURS = {PASSED: (26, 127, 55), GAP: (138, 90, 0), FAILED: (179, 38, 30), ERROR: (179, 38, 30)}
