@@ -148,14 +148,16 @@ contains
       if (self%is_open) self%reached = self%within(self%lowest() + self%speed*dt)
    end subroutine keep_pace
 
-   !> What an accepted step says of the tip's speed.
-   elemental subroutine pace(self, advance, dt)
+   !> What an accepted step says of the tip's speed: nothing where the tip lies at the start of a
+   !! piece that it has not been driven to.
+   elemental subroutine pace(self, advance, dt, is_driven)
       class(segment_t), intent(inout) :: self
-      real(rk), intent(in) :: advance  !< [m]; 0: what comes next has nothing to do with it
-      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: advance  !< [m]
+      real(rk), intent(in) :: dt  !< [s]; 0: what comes next has nothing to do with it
+      logical, intent(in) :: is_driven  !< it is at its toughness
 
       self%speed = 0.0_rk
-      if (dt > 0.0_rk) self%speed = max(0.0_rk, advance)/dt
+      if (dt > 0.0_rk .and. is_driven) self%speed = max(0.0_rk, advance)/dt
    end subroutine pace
 
    !> Go where the excess probably vanishes: back no farther than the last accepted state, and on no
@@ -245,11 +247,12 @@ contains
 
    !> Be as far along as another one, but never behind the last accepted state, and know of the
    !! excess what that knows.
-   elemental subroutine keep_up_with(self, other)
+   pure subroutine keep_up_with(self, other, has_moved)
       class(segment_t), intent(inout) :: self
       type(segment_t), intent(in) :: other
+      logical, intent(out) :: has_moved
 
-      self%reached = max(self%lowest(), self%length*(other%reached/other%length))
+      call self%go_to(self%length*(other%reached/other%length), has_moved)
       self%tried = self%length*(other%tried/other%length)
       self%excess = other%excess
       self%tries = other%tries

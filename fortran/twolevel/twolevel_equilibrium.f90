@@ -20,7 +20,7 @@ module twolevel_equilibrium
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: improve_windows
    use twolevel_excess, only: arrivals, excesses, first_onset, onset, tolerance
-   use twolevel_moves, only: judge_tips, part_company, several_kinds, tips_in_play
+   use twolevel_moves, only: judge_tips, keep_together, part_company, several_kinds, tips_in_play
    use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
@@ -139,7 +139,10 @@ contains
       end associate
       self%before = self%state
       call self%segment%restart()
-      if (.not. may_jump) call self%segment%keep_pace(dt)
+      if (.not. may_jump) then
+         call self%segment%keep_pace(dt)
+         call keep_together(self, search%kind)
+      end if
       call self%certainty%begin_step()
    end subroutine begin_search
 
@@ -305,6 +308,7 @@ contains
          do i = 1, size(wants)
             if (wants(i)) call self%segment(i)%set_out(excess(i))
          end do
+         call keep_together(self, search%kind)
       end if
       ! Not those that have come to something already: nothing lies between.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%segment%stays())
@@ -371,7 +375,7 @@ contains
       real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
 
       self%tip%advance = advances(self)
-      call self%segment%pace(self%tip%advance, dt)
+      call self%segment%pace(self%tip%advance, dt, excesses(self) >= -tolerance)
       where (self%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%segment%gain = self%segment%gain + self%tip%advance
       call self%company%accept(self%tip%drive%intensity/self%rules%toughness, self%tip%advance, &

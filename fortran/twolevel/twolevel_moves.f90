@@ -11,7 +11,7 @@ module twolevel_moves
    implicit none(type, external)
    private
 
-   public :: judge_tips, part_company, several_kinds, tips_in_play
+   public :: judge_tips, keep_together, part_company, several_kinds, tips_in_play
 
 contains
 
@@ -65,12 +65,11 @@ contains
       logical, intent(in) :: is_coupled
       logical, intent(out) :: moves(:)
       integer(ik), allocatable :: leader(:), number(:), on_way(:)
+      logical :: has_moved
       integer(ik) :: i, k
 
       moves = .false.
-      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%segment%is_open)
-      number = numbered(kind(on_way))
-      leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
+      call find_leaders(self, kind, on_way, number, leader)
       if (is_coupled) then
          call move_together(self, on_way, number, leader, excess(leader), moves)
       else
@@ -81,10 +80,42 @@ contains
       do k = 1, size(on_way, kind=ik)
          i = leader(number(k))
          if (on_way(k) == i) cycle
-         call self%segment(on_way(k))%keep_up_with(self%segment(i))
-         moves(on_way(k)) = moves(i)
+         call self%segment(on_way(k))%keep_up_with(self%segment(i), has_moved)
+         moves(on_way(k)) = moves(i) .or. has_moved
       end do
    end subroutine move_kinds
+
+   !> Those that are on their way, and the first one of each kind of them.
+   pure subroutine find_leaders(self, kind, on_way, number, leader)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      integer(ik), allocatable, intent(out) :: on_way(:)  !< tips
+      integer(ik), allocatable, intent(out) :: number(:)  !< of the kind of each of these, from 1
+      integer(ik), allocatable, intent(out) :: leader(:)  !< (kinds) tips
+      integer(ik) :: i, k
+
+      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%segment%is_open)
+      number = numbered(kind(on_way))
+      leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
+   end subroutine find_leaders
+
+   !> Tips of one kind begin a step, or a piece, equally far along: where the first of them does.
+   pure subroutine keep_together(self, kind)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      integer(ik), allocatable :: leader(:), number(:), on_way(:)
+      logical :: has_moved
+      integer(ik) :: k
+
+      call find_leaders(self, kind, on_way, number, leader)
+      do k = 1, size(on_way, kind=ik)
+         associate (segment => self%segment(on_way(k)), first => self%segment(leader(number(k))))
+            if (on_way(k) /= leader(number(k))) then
+               call segment%go_to(segment%length*(first%reached/first%length), has_moved)
+            end if
+         end associate
+      end do
+   end subroutine keep_together
 
    !> The first tips of the kinds move together, unless all are at rest.
    subroutine move_together(self, on_way, number, leader, excess, moves)
