@@ -18,7 +18,6 @@ module tips_energy
    use fine_quadrature, only: gauss_rule
    use tips_domain, only: domain_weight, element_rule, in_situ_stress, rule_size
    use tips_faces, only: face_traction, traction_source
-   use tips_interaction, only: initial_stress
    use tips_types, only: tip_frame_t
    implicit none(type, external)
    private
@@ -66,24 +65,28 @@ contains
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
-      real(rk) :: body(2), density
-      integer(ik) :: nodes(6), n_points, point
+      real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6)
+      integer(ik) :: k, nodes(6), n_points, point
 
       nodes = model%mesh%cell_nodes(:, cell)
       call element_rule(model%mesh, frame, cell, n_points, points, weights)
-      slope = initial_slope(model, loads, frame, nodes(1:3))
+      ! All in the tip's axes.
+      do k = 1, 3
+         corner(:, :, k) = initial_stress(loads, frame, nodes(k)) - reference_stress
+      end do
+      slope = slope_along(matmul(frame%axes, model%mesh%xy(:, nodes(:3))), corner)
+      moved = matmul(frame%axes, displacement(:, nodes))
       body = matmul(frame%axes, loads%body_force)
       cell_share = 0.0_rk
       do point = 1, n_points
          call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
                                   determinant)
-         ! All in the tip's axes.
          gradients = matmul(frame%axes, gradients)
-         gradient = matmul(matmul(frame%axes, displacement(:, nodes)), transpose(gradients))
+         gradient = matmul(moved, transpose(gradients))
          q_slope = matmul(gradients, q(nodes))
          elastic = frame%rock%total_stress(gradient, 0.0_rk)
-         initial = initial_stress(loads, frame%rock%biot, frame, nodes(1:3), &
-                                  area_coordinates) - reference_stress
+         initial = area_coordinates(1)*corner(:, :, 1) + area_coordinates(2)*corner(:, :, 2) &
+                   + area_coordinates(3)*corner(:, :, 3)
          density = sum((0.5_rk*elastic + initial)*gradient)
          p = matmul(elastic + initial, gradient(:, 1)) - [density, 0.0_rk]
          cell_share = cell_share + weights(point)*determinant &
@@ -92,31 +95,38 @@ contains
       end do
    end function cell_share
 
-   !> Derivative of in-situ stress less biot*p along the crack, uniform in an element [Pa/m].
-   pure function initial_slope(model, loads, frame, corners) result(slope)
-      type(fine_model_t), intent(in) :: model
+   !> In-situ stress less biot*p at a vertex, in the tip's axes [Pa].
+   pure function initial_stress(loads, frame, vertex) result(stress)
       type(fine_loads_t), intent(in) :: loads
       type(tip_frame_t), intent(in) :: frame
-      integer(ik), intent(in) :: corners(3)
+      integer(ik), intent(in) :: vertex
+      real(rk) :: stress(2, 2)
+      integer(ik) :: i
+
+      associate (given => loads%initial_stress(:, vertex))
+         stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
+      end associate
+      stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
+      do i = 1, 2
+         stress(i, i) = stress(i, i) - frame%rock%biot*loads%pore_pressure(vertex)
+      end do
+   end function initial_stress
+
+   !> Derivative by the first coordinate of a stress that is linear in a triangle [Pa/m].
+   pure function slope_along(place, corner) result(slope)
+      real(rk), intent(in) :: place(2, 3)  !< of the corners [m]
+      real(rk), intent(in) :: corner(2, 2, 3)  !< stress there [Pa]
       real(rk) :: slope(2, 2)
-      real(rk) :: place(2, 3), by_corner(3), unit(3)
       integer(ik) :: k, next, last
 
-      place = matmul(frame%axes, model%mesh%xy(:, corners))
       slope = 0.0_rk
       do k = 1, 3
-         next = mod(k, 3) + 1
-         last = mod(next, 3) + 1
-         by_corner(k) = place(2, next) - place(2, last)
+         next = mod(k, 3_ik) + 1
+         last = mod(next, 3_ik) + 1
+         slope = slope + (place(2, next) - place(2, last))*corner(:, :, k)
       end do
-      by_corner = by_corner/(2.0_rk*triangle_area(place))
-      do k = 1, 3
-         unit = 0.0_rk
-         unit(k) = 1.0_rk
-         slope = slope + by_corner(k)*initial_stress(loads, frame%rock%biot, frame, corners, &
-                                                     unit)
-      end do
-   end function initial_slope
+      slope = slope/(2.0_rk*triangle_area(place))
+   end function slope_along
 
    !> The traction of one fracture cell on the slope of its jump. In the parameter x of its shape
    !! functions the slope times ds is d[u]/dx dx, whether or not its middle node is at the quarter

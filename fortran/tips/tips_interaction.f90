@@ -32,7 +32,7 @@ module tips_interaction
    implicit none(type, external)
    private
 
-   public :: initial_stress, interaction_integrals, interactions_t
+   public :: interaction_integrals, interactions_t
 
    !> The integrals of both modes on some domains about a tip of one mesh.
    type :: interactions_t
@@ -282,25 +282,5 @@ contains
                                      *self%by_displacement(:, mode, domain, :)
       end do
    end function extraction_forces
-
-   !> In-situ stress less biot*p at a point of an element, in the tip's axes [Pa].
-   pure function initial_stress(loads, biot, frame, corners, area_coordinates) result(stress)
-      type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: biot  !< [-]
-      type(tip_frame_t), intent(in) :: frame
-      integer(ik), intent(in) :: corners(3)
-      real(rk), intent(in) :: area_coordinates(3)  !< [-]
-      real(rk) :: stress(2, 2)
-      real(rk) :: given(3), pressure
-      integer(ik) :: i
-
-      given = matmul(loads%initial_stress(:, corners), area_coordinates)
-      stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
-      stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
-      pressure = dot_product(area_coordinates, loads%pore_pressure(corners))
-      do i = 1, 2
-         stress(i, i) = stress(i, i) - biot*pressure
-      end do
-   end function initial_stress
 
 end module tips_interaction
