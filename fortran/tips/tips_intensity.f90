@@ -14,7 +14,7 @@ module tips_intensity
    implicit none(type, external)
    private
 
-   public :: complete_errors, probe_of_tip, tip_intensity, tip_probe_t
+   public :: complete_errors, intensity_of_tip, probe_of_tip, tip_intensity, tip_probe_t
 
    ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
    ! of the room where the rosette is small. A domain that shrank with the rosette would look the
@@ -30,11 +30,6 @@ module tips_intensity
       real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
       type(interactions_t) :: interactions  !< on these
    end type tip_probe_t
-
-   !> From a probe, or, to be used once, for the number of the tip.
-   interface tip_intensity
-      module procedure intensity_of_probe, intensity_of_tip
-   end interface tip_intensity
 
 contains
 
@@ -67,7 +62,7 @@ contains
    !! The estimated error of an intensity is the difference between the domains, plus that between
    !! the magnitude of both intensities and the one that the energy release rate gives. These share
    !! the tractions on the faces, whose errors they do not see (take_given_slip).
-   subroutine intensity_of_probe(model, loads, displacement, probe, intensity, error, quickly)
+   subroutine tip_intensity(model, loads, displacement, probe, intensity, error, quickly)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads  !< those of the solution
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
@@ -108,9 +103,9 @@ contains
       if (.not. size_of_all <= huge(1.0_rk)) then
          call raise_error(error, "tip_intensity", "an intensity is not a finite number")
       end if
-   end subroutine intensity_of_probe
+   end subroutine tip_intensity
 
-   !> The same for a tip by its number.
+   !> The same for a tip by its number, with a probe that is used once.
    subroutine intensity_of_tip(model, loads, displacement, tip, intensity, error)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads  !< those of the solution

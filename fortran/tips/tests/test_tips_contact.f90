@@ -14,7 +14,7 @@ program test_tips_contact
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: intensity_of_tip
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
@@ -116,7 +116,7 @@ contains
       integer(ik) :: tip
 
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          call checks%no_error(error, name//" has intensities")
          print "(a,t24,i5,a,i2,2(a,2f9.4),a,f9.4)", name, model%mesh%n_cells, " cells, tip", tip, &
             ", errors in %:", 100.0_rk*(intensity%k1 - k1)/scale, &
@@ -228,11 +228,11 @@ contains
       call checks%no_error(error, "bent crack is solved")
       call checks%is_true(contact%iterations <= 10, "bent crack: iterations")
       exact = slope*half_open*sqrt(pi*half_open)
-      call tip_intensity(model, loads, displacement, 1_ik, intensity, error)
+      call intensity_of_tip(model, loads, displacement, 1_ik, intensity, error)
       call checks%no_error(error, "closed end has intensities")
       call checks%is_true(intensity%closed, "bent crack: left end is closed")
       call checks%is_close(intensity%k1/exact, 0.0_rk, 1.0e-9_rk, "bent crack: closed end")
-      call tip_intensity(model, loads, displacement, 2_ik, intensity, error)
+      call intensity_of_tip(model, loads, displacement, 2_ik, intensity, error)
       print "(a,2f9.4,a,i3)", "bent crack: errors of K_I, K_II in %", &
          100.0_rk*(intensity%k1/exact - 1.0_rk), 100.0_rk*intensity%k2/exact, ", iterations", &
          contact%iterations
@@ -309,7 +309,7 @@ contains
       call checks%no_error(error, "weight is solved")
       scale = 0.5_rk*gamma*a*sqrt(pi*a)
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          side = merge(-1.0_rk, 1.0_rk, model%mesh%fracture%tip_end(tip) == 1)/gamma
          print "(a,2f9.4)", "weight: errors of K_I, K_II in %", &
             100.0_rk*(intensity%k1/scale - side*slopes(1)), &
@@ -365,7 +365,7 @@ contains
       call checks%no_error(error, "winged crack is solved")
       call checks%is_true(contact%iterations <= 10, "winged crack: iterations")
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          associate (scale => stress*sqrt(pi*c))
             print "(a,i6,a,i3,a,f9.4,a,f9.5)", "winged crack", model%mesh%n_cells, " cells, ", &
                contact%iterations, " iterations, error of K_I in %", &

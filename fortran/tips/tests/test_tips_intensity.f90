@@ -11,7 +11,7 @@ program test_tips_intensity
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: intensity_of_tip
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
@@ -105,7 +105,7 @@ contains
       call checks%no_error(error, name//" is solved")
       scale = hypot(k1, k2)
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          call checks%no_error(error, name//" has intensities")
          call checks%is_close(intensity%k1/scale, k1/scale, tolerance, name//": K_I")
          call checks%is_close(intensity%k2/scale, k2/scale, tolerance, name//": K_II")
@@ -166,7 +166,7 @@ contains
 
       call model%solve(loads, displacement, error)
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          call checks%is_true(abs(intensity%k1 - k1) <= intensity%k1_error .and. &
                              abs(intensity%k2 - k2) <= intensity%k2_error, name//": estimates")
         call checks%is_true(max(intensity%k1_error, intensity%k2_error) < 1.0e-3_rk*hypot(k1, k2), &
@@ -315,7 +315,7 @@ contains
       call checks%no_error(error, "linear pressure is solved")
       scale = 0.5_rk*c*half_length*sqrt(pi*half_length)
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          associate (side => model%mesh%fracture%tip_direction(1, tip))
             k1 = merge(-side, 0.0_rk, along)
          end associate
@@ -344,7 +344,7 @@ contains
       call window(0.0_rk, rock, model)
       loads = no_loads(model%mesh)
       allocate (displacement(2, model%mesh%n_nodes), source=0.0_rk)
-      call tip_intensity(model, loads, displacement, 3_ik, intensity, error)
+      call intensity_of_tip(model, loads, displacement, 3_ik, intensity, error)
       call checks%fails_with(error, "no tip number 3", "a tip that does not exist")
    end subroutine refusals
 

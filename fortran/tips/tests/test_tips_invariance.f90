@@ -10,7 +10,7 @@ program test_tips_invariance
    use fine_model, only: fine_model_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: intensity_of_tip
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
@@ -78,7 +78,7 @@ contains
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "turned problem is solved")
       do tip = 1, 2
-         call tip_intensity(model, loads, displacement, tip, intensity(tip), error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity(tip), error)
          call checks%no_error(error, "turned problem has intensities")
       end do
    end subroutine solve

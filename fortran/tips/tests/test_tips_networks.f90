@@ -13,7 +13,7 @@ program test_tips_networks
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_meshes, only: cracked_rectangle
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: intensity_of_tip
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
@@ -77,7 +77,7 @@ contains
       associate (tips => model%mesh%xy(:, model%mesh%fracture%tip_node))
          tip = minloc(norm2(tips - spread(place, 2, model%mesh%fracture%n_tips), dim=1), dim=1)
       end associate
-      call tip_intensity(model, loads, displacement, tip, intensity, error)
+      call intensity_of_tip(model, loads, displacement, tip, intensity, error)
       call checks%no_error(error, name)
       call checks%is_close(intensity%k1/scale, k1, tolerance*hypot(k1, k2), name//": K_I")
       call checks%is_close(intensity%k2/scale, k2, tolerance*hypot(k1, k2), name//": K_II")
@@ -184,7 +184,7 @@ contains
       call checks%is_close(largest, 0.0_rk, 1.0e-11_rk*maxval(abs(displacement)), &
                            "a crossing held closed")
       do tip = 1, model%mesh%fracture%n_tips
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          call checks%is_close(hypot(intensity%k1, intensity%k2)/5.0e6_rk, 0.0_rk, 2.0e-4_rk, &
                               "a crack held closed has no K")
          call checks%is_close(hypot(intensity%k1_dc, intensity%k2_dc)/5.0e6_rk, 0.0_rk, 1.0e-9_rk, &
@@ -219,7 +219,7 @@ contains
       call set_uniform(model, remote, loads)
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "bent mesh is solved")
-      call tip_intensity(model, loads, displacement, 2_ik, intensity, error)
+      call intensity_of_tip(model, loads, displacement, 2_ik, intensity, error)
       call checks%is_close(intensity%radius, 1.0_rk, 1.0e-12_rk, "the domain ends at the kink")
       call checks%is_close(intensity%k1, 0.0_rk, 5.0e-4_rk, "no K_I beside a kink")
       call checks%is_close(intensity%k2, 0.0_rk, 5.0e-4_rk, "no K_II beside a kink")

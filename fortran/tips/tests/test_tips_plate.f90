@@ -17,7 +17,7 @@ program test_tips_plate
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use tips_dual, only: correct_intensity, has_dual
-   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use tips_intensity, only: probe_of_tip, intensity_of_tip, tip_probe_t
    use tips_types, only: intensity_t
    implicit none(type, external)
    integer(ik), parameter :: tension = 1, shear = 2, clamped = 3
@@ -171,7 +171,7 @@ contains
       call checks%is_true(model%constraints%n_dofs <= 5000, "at most 5000 unknowns")
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "plate is solved")
-      call tip_intensity(model, loads, displacement, 1_ik, dimensionless, error)
+      call intensity_of_tip(model, loads, displacement, 1_ik, dimensionless, error)
       call checks%no_error(error, "plate has intensities")
       scale = stress*sqrt(0.5_rk*pi*b)
       dimensionless%k1 = dimensionless%k1/scale
@@ -202,7 +202,7 @@ contains
                                                          *spread(norm2(model%mesh%xy, 1), 2, 2))), &
                           "and so are their moments")
       call checks%is_true(has_dual(model), "faces that are loaded have a dual")
-      call tip_intensity(model, loads, displacement, 1_ik, corrected, error)
+      call intensity_of_tip(model, loads, displacement, 1_ik, corrected, error)
       call correct_intensity(model, displacement, recovery, probe, corrected, error)
       call checks%no_error(error, "intensities are corrected")
       dimensionless%k1_corrected = corrected%k1_corrected/scale
