@@ -20,36 +20,23 @@ module twolevel_window
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use growth_network, only: end_pieces
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips, transfer_mesher
    use mesh_types, only: mesh_t, network_t
-   use scene_types, only: material_t, scene_t
+   use scene_types, only: scene_t
    use simulation_body, only: shape_body
-   use simulation_rocks, only: follow_outlines, keep_off, place_rocks, regions_of_other_rock
+   use simulation_rocks, only: place_rocks, regions_of_other_rock
    use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
+   use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
    public :: coarse_values_t, window_t
-
-   !> Size of elements where fractures meet, over that along them: the stress has a weak singularity
-   !! there, which pollutes K of tips nearby with an error of first order.
-   real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
-
-   !> Growth of element size with distance from the fractures, on average
-   real(rk), parameter :: grading = 0.4_rk
-
-   !> Along fractures elements grow by so much with the distance from the tips that the window is
-   !! for, up to the size of coarse fracture cells, between which nothing is known of the fluid's
-   !! pressure; and where the whole body shows what that makes wrong (twolevel_trust), by so much
-   !! around their rosettes, beyond three radii, which the integrals need.
-   real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
 
    !> What a window takes from the coarse level.
    type :: coarse_values_t
@@ -120,46 +107,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       type(network_t) :: far_straight
-      real(rk), allocatable :: piece(:, :)
-      integer(ik) :: i
 
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
       call place(self, scene, network, tips)
       self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
-      spec%x_min = self%lower(1)
-      spec%y_min = self%lower(2)
-      spec%x_max = self%upper(1)
-      spec%y_max = self%upper(2)
-      spec%size_fracture = self%element_size
-      spec%size_boundary = spec%size_fracture + grading*norm2(self%upper - self%lower)/2.0_rk
-      spec%is_window = .true.
-      spec%is_rough = .true.
+      spec = window_spec(self%lower, self%upper, self%element_size, scene)
       if (self%is_body) call shape_body(scene, spec)
-      spec%rosette_sectors = scene%discretization%rosette_sectors
-      spec%rosette_radius = spec%size_fracture
-      spec%joint_size = joint_share*spec%size_fracture
-      if (self%is_beside_body .and. .not. self%is_body) spec%ring_slope = around
-      spec%focus_slope = along
-      spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
-      allocate (spec%foci(2, size(self%serves)))
-      do i = 1, size(self%serves, kind=ik)
-         spec%foci(:, i) = tip_place(network, tips(self%serves(i)))
-      end do
-      piece = end_pieces(network)
-      spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => tips(self%serves(i)))
-            spec%end_radius(tip%end, tip%fracture) = &
-               tip%rosette_radius(scene, piece(tip%end, tip%fracture))
-            if (.not. allocated(scene%regions)) cycle
-            call keep_off(tip_place(network, tip), scene, spec%end_radius(tip%end, tip%fracture), &
-                          error)
-            if (allocated(error)) return
-         end associate
-      end do
-      if (any(regions_of_other_rock(scene))) then
-         call follow_outlines(scene%regions, scene%domain, spec)
-      end if
+      if (self%is_beside_body .and. .not. self%is_body) call grow_away(spec)
+      call focus(scene, network, tips, self%serves, spec, error)
+      if (allocated(error)) return
       call straighten_far(network, spec, self%is_body, far_straight, self%kept)
       call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
@@ -282,17 +238,6 @@ contains
       end associate
    end subroutine place
 
-   !> Where a tip is [m].
-   pure function tip_place(network, tip) result(xy)
-      type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: tip
-      real(rk) :: xy(2)
-
-      associate (first => network%first)
-         xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, tip%end == 1))
-      end associate
-   end function tip_place
-
    !> E' of the rock around a tip of the window's mesh [Pa]; 0: it is not free.
    pure real(rk) function crack_modulus(self, tip)
       class(window_t), intent(in) :: self
@@ -324,10 +269,10 @@ contains
       integer :: i
 
       if (allocated(self%probe)) deallocate (self%probe)
-      elasticity = [constants(scene%material, scene, undrained)]
+      elasticity = [constants_of_rock(scene%material, scene, undrained)]
       if (allocated(scene%regions)) then
-         elasticity = [elasticity, (constants(scene%regions(i)%material, scene, undrained), &
-                                    i=1, size(scene%regions))]
+         elasticity = [elasticity, (constants_of_rock(scene%regions(i)%material, scene, &
+                                                      undrained), i=1, size(scene%regions))]
          call self%model%set_mesh(self%mesh, elasticity(1), error, &
                                   rocks=place_rocks(scene, self%mesh, elasticity))
       else
@@ -336,27 +281,6 @@ contains
       if (.not. allocated(error)) call self%sides%add_springs(self%model%mesh, self%model%stiffness)
       self%undrained = undrained
    end subroutine set_rock
-
-   !> The constants of a rock, for set_rock.
-   pure type(elasticity_t) function constants(material, scene, undrained) result(elasticity)
-      type(material_t), intent(in) :: material
-      type(scene_t), intent(in) :: scene
-      logical, intent(in) :: undrained
-      type(rock_t) :: rock
-      real(rk) :: lame
-
-      rock = new_rock(material, scene%fluid)
-      elasticity = elasticity_t(young=material%young, poisson=material%poisson, &
-                                biot=rock%biot(1), plane_stress=material%plane_stress)
-      if (undrained) then
-         associate (shear => rock%shear(1))
-            lame = rock%lame(1) + rock%biot(1)**2/rock%storage(1)
-            elasticity%poisson = lame/(2.0_rk*(lame + shear))
-            if (material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*shear)
-            elasticity%young = 2.0_rk*shear*(1.0_rk + elasticity%poisson)
-         end associate
-      end if
-   end function constants
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
    subroutine project(self, mesher, coarse, values, error)

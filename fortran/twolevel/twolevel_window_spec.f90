@@ -1,0 +1,124 @@
+!> What to mesh of a window, and of which rock: elements as small as its tips ask for, larger away
+!! from them.
+module twolevel_window_spec
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use coarse_rock, only: new_rock, rock_t
+   use fine_elasticity, only: elasticity_t
+   use growth_network, only: end_pieces
+   use mesh_builder, only: mesh_spec_t
+   use mesh_types, only: network_t
+   use scene_types, only: material_t, scene_t
+   use simulation_rocks, only: follow_outlines, keep_off, regions_of_other_rock
+   use twolevel_window_tip, only: window_tip_t
+   implicit none(type, external)
+   private
+
+   public :: constants_of_rock, focus, grow_away, tip_place, window_spec
+
+   !> Size of elements where fractures meet, over that along them: the stress has a weak singularity
+   !! there, which pollutes K of tips nearby with an error of first order.
+   real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
+
+   !> Growth of element size with distance from the fractures, on average
+   real(rk), parameter :: grading = 0.4_rk
+
+   !> Along fractures elements grow by so much with the distance from the tips that the window is
+   !! for, up to the size of coarse fracture cells, between which nothing is known of the fluid's
+   !! pressure; and where the whole body shows what that makes wrong (twolevel_trust), by so much
+   !! around their rosettes, beyond three radii, which the integrals need.
+   real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
+
+contains
+
+   !> A square with elements of one size along fractures.
+   pure function window_spec(lower, upper, element_size, scene) result(spec)
+      real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
+      real(rk), intent(in) :: element_size  !< at the fractures [m]
+      type(scene_t), intent(in) :: scene
+      type(mesh_spec_t) :: spec
+
+      spec%x_min = lower(1)
+      spec%y_min = lower(2)
+      spec%x_max = upper(1)
+      spec%y_max = upper(2)
+      spec%size_fracture = element_size
+      spec%size_boundary = element_size + grading*norm2(upper - lower)/2.0_rk
+      spec%is_window = .true.
+      spec%is_rough = .true.
+      spec%rosette_sectors = scene%discretization%rosette_sectors
+      spec%rosette_radius = element_size
+      spec%joint_size = joint_share*element_size
+   end function window_spec
+
+   !> Elements grow around the rosettes.
+   pure subroutine grow_away(spec)
+      type(mesh_spec_t), intent(inout) :: spec
+
+      spec%ring_slope = around
+   end subroutine grow_away
+
+   !> Elements and rosettes as the tips ask for that the window is for, and rock of its own.
+   subroutine focus(scene, network, tips, serves, spec, error)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(in) :: tips(:)  !< of the network
+      integer(ik), intent(in) :: serves(:)  !< those that the window is for
+      type(mesh_spec_t), intent(inout) :: spec
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: piece(:, :)
+      integer(ik) :: i
+
+      spec%focus_slope = along
+      spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
+      allocate (spec%foci(2, size(serves)))
+      piece = end_pieces(network)
+      spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
+      do i = 1, size(serves, kind=ik)
+         associate (tip => tips(serves(i)))
+            spec%foci(:, i) = tip_place(network, tip)
+            spec%end_radius(tip%end, tip%fracture) = &
+               tip%rosette_radius(scene, piece(tip%end, tip%fracture))
+            if (.not. allocated(scene%regions)) cycle
+            call keep_off(spec%foci(:, i), scene, spec%end_radius(tip%end, tip%fracture), error)
+            if (allocated(error)) return
+         end associate
+      end do
+      if (any(regions_of_other_rock(scene))) then
+         call follow_outlines(scene%regions, scene%domain, spec)
+      end if
+   end subroutine focus
+
+   !> Where a tip is [m].
+   pure function tip_place(network, tip) result(xy)
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(in) :: tip
+      real(rk) :: xy(2)
+
+      associate (first => network%first)
+         xy = network%xy(:, merge(first(tip%fracture), first(tip%fracture + 1) - 1, tip%end == 1))
+      end associate
+   end function tip_place
+
+   !> Elastic constants of a rock, drained or undrained (twolevel_window: set_rock).
+   pure type(elasticity_t) function constants_of_rock(material, scene, undrained) result(elasticity)
+      type(material_t), intent(in) :: material
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: undrained
+      type(rock_t) :: rock
+      real(rk) :: lame
+
+      rock = new_rock(material, scene%fluid)
+      elasticity = elasticity_t(young=material%young, poisson=material%poisson, &
+                                biot=rock%biot(1), plane_stress=material%plane_stress)
+      if (undrained) then
+         associate (shear => rock%shear(1))
+            lame = rock%lame(1) + rock%biot(1)**2/rock%storage(1)
+            elasticity%poisson = lame/(2.0_rk*(lame + shear))
+            if (material%plane_stress) elasticity%poisson = lame/(lame + 2.0_rk*shear)
+            elasticity%young = 2.0_rk*shear*(1.0_rk + elasticity%poisson)
+         end associate
+      end if
+   end function constants_of_rock
+
+end module twolevel_window_spec
