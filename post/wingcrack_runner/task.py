@@ -75,6 +75,13 @@ def tables_of(scene: Path, text: str) -> tuple[Path, ...]:
     return tuple(scene.parent / name for name in names)
 
 
+def copy_tables(task: Task, folder: Path) -> None:
+    """Put the files that the scene names beside it; one that is missing is the solver's to tell."""
+    for table in task.tables:
+        if table.is_file():
+            shutil.copy(table, folder)
+
+
 def run_task(
     task: Task,
     started: Starter = lambda start: start(),
@@ -117,8 +124,7 @@ def _command(task: Task) -> list[str]:
     if task.text is None:
         return [*_bound(), str(task.program), *task.args]
     (task.folder / "input.nml").write_text(task.text, encoding="utf-8")
-    for table in task.tables:
-        shutil.copy(table, task.folder)
+    copy_tables(task, task.folder)
     run = ("run", "../input.nml", "--out", ".", "--quiet")
     return [*_bound(), str(task.program), *run]
 

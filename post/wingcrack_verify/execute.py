@@ -79,7 +79,8 @@ class Runner:
     def _task(self, job: Job) -> Task:
         run = job.run
         program = self._programs.path(run)
-        text, tables = None, ()
+        text: str | None = None
+        tables: tuple[Path, ...] = ()
         if run.scene is not None:
             text = scene_text(run.scene, run.set, run.unset)
             tables = tables_of(run.scene, text)
