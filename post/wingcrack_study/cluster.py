@@ -97,7 +97,10 @@ def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
         client: Any = importlib.import_module("distributed").Client
         return stack.enter_context(client(started, set_as_default=False))
     except (TypeError, ValueError, OSError, RuntimeError) as reason:
-        said = str(reason).strip().splitlines() or [type(reason).__name__]
+        root: BaseException = reason
+        while root.__cause__ is not None:  # the first one says why, the others that it failed
+            root = root.__cause__
+        said = str(root).strip().splitlines() or [type(root).__name__]
         raise EnvironmentLacksError(
             f"the cluster of kind '{cluster.kind}' cannot be started ({said[0]})"
         ) from None

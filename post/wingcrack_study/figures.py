@@ -16,7 +16,7 @@ from wingcrack_study.plots import Plot
 from wingcrack_study.quantities import Quantity
 from wingcrack_study.study import Parameter, Study, StudyRun
 from wingcrack_study.table import StudyTable
-from wingcrack_study.units import NONE, axis_label, spoken
+from wingcrack_study.units import NONE, axis_label, pretty_number, pretty_unit, spoken
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import Array
 from wingcrack_verify.selection import Values, select
@@ -74,32 +74,46 @@ def _curves(
 
 @style.styled
 def _lines(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
-    """One line per run, coloured in the order of the parameter, dashed by the second."""
+    """One line per run, with a legend as long as there are few."""
     figure, axes = _empty(plot)
     names = _told_apart(study, plot)
-    first = list(dict.fromkeys(spoken(c.run.values.get(names[0])) for c in curves)) if names else []
-    second = list(dict.fromkeys(_label(c.run, names[1:], study) for c in curves))
-    colours = _colours(len(first))
-    for curve in curves:
+    few = len(curves) <= _MOST_IN_LEGEND
+    for curve, look in zip(curves, _looks(curves, names), strict=True):
         assert curve.values.x is not None
-        colour = colours[first.index(spoken(curve.run.values.get(names[0])))] if names else None
-        dash = style.LINE_STYLES[
-            second.index(_label(curve.run, names[1:], study)) % len(style.LINE_STYLES)
-        ]
         axes.plot(
             curve.values.x,
             curve.values.values,
-            color=colour,
-            linestyle=dash,
-            linewidth=1.2 if len(curves) <= _MOST_IN_LEGEND else 0.5,
-            alpha=1.0 if len(curves) <= _MOST_IN_LEGEND else 0.6,
+            linewidth=1.2 if few else 0.5,
+            alpha=1.0 if few else 0.6,
             marker=style.lone_marker(curve.values.values.size),
             label=_label(curve.run, names, study),
+            **look,
         )
-    if names and len(curves) <= _MOST_IN_LEGEND:
+    if names and few:
         _legend(figure, axes, len(curves))
     axes.set(xlabel=plot.x_label, ylabel=plot.y_label)
     return figure
+
+
+def _looks(curves: Sequence[_Curve], names: Sequence[str]) -> list[dict[str, Any]]:
+    """Colours by the first of the names and dashes by the others, if there are enough of both.
+
+    Else every line has a look of its own. Lines that nothing tells apart look alike.
+    """
+    if not names:
+        return [{"color": style.CYCLE[0]} for _ in curves]
+    first = [spoken(curve.run.values.get(names[0])) for curve in curves]
+    others = [tuple(spoken(curve.run.values.get(name)) for name in names[1:]) for curve in curves]
+    colours, dashes = list(dict.fromkeys(first)), list(dict.fromkeys(others))
+    if len(dashes) > len(style.LINE_STYLES) or len(colours) > len(style.CYCLE):
+        return [style.line_look(index) for index in range(len(curves))]
+    return [
+        {
+            "color": style.CYCLE[colours.index(colour)],
+            "linestyle": style.LINE_STYLES[dashes.index(dash)],
+        }
+        for colour, dash in zip(first, others, strict=True)
+    ]
 
 
 @style.styled
@@ -227,14 +241,10 @@ def _label(run: StudyRun, names: Sequence[str], study: Study) -> str:
     parts = []
     for name in names:
         if name in run.values:
-            unit = "" if units[name] == NONE else f" {units[name]}"
-            parts.append(f"{name.split('.')[-1].replace('_', ' ')} {_short(run, name)}{unit}")
+            unit = "" if units[name] == NONE else f" {pretty_unit(units[name])}"
+            said = name.split(".")[-1].replace("_", " ")
+            parts.append(f"{said} {pretty_number(run.values[name])}{unit}")
     return ", ".join(parts)
-
-
-def _short(run: StudyRun, name: str) -> str:
-    value = run.values[name]
-    return f"{value:.4g}" if isinstance(value, float) else spoken(value)
 
 
 def _column(study: Study, name: str) -> tuple[str, str]:
@@ -244,11 +254,6 @@ def _column(study: Study, name: str) -> tuple[str, str]:
         if item.name == name:
             return item.column, axis_label(item.name, item.unit)
     raise CaseError(f"there is no quantity or parameter '{name}'")
-
-
-def _colours(count: int) -> list[Any]:
-    """Colours that differ for few lines, and in order for many."""
-    return list(style.CYCLE[:count]) if count <= len(style.CYCLE) else style.ordered_colours(count)
 
 
 def _legend(figure: Figure, axes: Axes, count: int) -> None:

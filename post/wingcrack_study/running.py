@@ -143,7 +143,7 @@ def _run_on_cluster(
             client.submit(remote.run_there, post, _plain(task), pure=False): number
             for number, task in tasks.items()
         }
-        for future in as_completed(waiting):
+        for future in as_completed(waiting, loop=client.loop):
             number = waiting[future]
             failure = future.exception()
             if failure is None:

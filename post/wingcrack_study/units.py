@@ -41,8 +41,24 @@ def column_name(name: str, unit: str) -> str:
 
 def axis_label(name: str, unit: str) -> str:
     """Name of an axis of a figure."""
-    spoken = name.replace("_", " ").replace(".", ": ")
-    return spoken if unit == NONE else f"{spoken} [{unit}]"
+    said = name.replace("_", " ").replace(".", ": ")
+    return said if unit == NONE else f"{said} [{pretty_unit(unit)}]"
+
+
+def pretty_unit(unit: str) -> str:
+    """Unit in a figure: m2/s with its exponent raised."""
+    return re.sub(r"(?<=[A-Za-z])(-?\d+)", r"$^{\1}$", unit)
+
+
+def pretty_number(value: Any) -> str:
+    """Value in a figure: four digits, powers of ten as such."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return spoken(value)
+    mantissa, _, exponent = f"{value:.4g}".partition("e")
+    if not exponent:
+        return mantissa
+    factor = "" if mantissa == "1" else rf"{mantissa}\times"
+    return rf"${factor}10^{{{int(exponent)}}}$"
 
 
 def spoken(value: Any) -> str:
