@@ -29,7 +29,11 @@ if [[ $1 == check ]]; then
 fi
 echo "$rate $title" >>@CALLS@
 case $title in
-    fail) echo 'wingcrack: no convergence' >&2; echo 'wingcrack: the step is too small' >&2; exit 1 ;;
+    fail)
+        echo 'wingcrack: no convergence' >&2
+        echo 'wingcrack: the step is too small' >&2
+        exit 1
+        ;;
     slow) sleep 0.4 ;;
     hang) sleep 600 ;;
 esac

@@ -102,7 +102,10 @@ def read_study(path: Path, quick: bool = False) -> Study:
     scene = path.parent / fields.text("scene")
     if not scene.is_file():
         raise CaseError(f"{path.name}: there is no scene file {scene}")
-    quickly = _quick(fields.mapping("quick"), quick, path.name)
+    given = fields.mapping("quick")
+    if "count" in given and not fields.has("draw"):
+        raise CaseError(f"{path.name}: quick: 'count' is for a study with [draw]")
+    quickly = _quick(given, quick, path.name)
     changes = fields.mapping("set") | quickly.get("set", {})
     unset = fields.texts("unset", ())
     over = fields.mapping("over") | quickly.get("over", {})
@@ -110,8 +113,6 @@ def read_study(path: Path, quick: bool = False) -> Study:
     if drawn:
         draws = read_draws(fields.take("draw"), f"{path.name}: draw", quickly.get("count"))
         over[SAMPLE] = draws
-    elif "count" in quickly:
-        raise CaseError(f"{path.name}: quick: 'count' is for a study with [draw]")
     units = fields.mapping("units")
     limit = fields.positive("time_limit_s", TIME_LIMIT_S)
     constants = fields.constants("constants")
