@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.figures import load_quickly
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
 from wingcrack_study.arguments import parse
@@ -147,8 +148,10 @@ def _finish(
     write_parquet(table, out / "table.csv", out / "table.parquet")
     if study.quantiles:
         write_statistics(study, table, out / "statistics.csv")
+    before_s = clock.cpu_s()
     notes = [] if ended else _draw(study, table, out)
-    _write_record(study, ledger, given, cluster, clock, ended)
+    figures_s = clock.cpu_s() - before_s
+    _write_record(study, ledger, given, cluster, clock, ended, figures_s)
     _tell(table, notes)
     if ended:
         left = len(study.runs) - len(ledger.outcomes)
@@ -164,6 +167,7 @@ def _draw(study: Study, table: StudyTable, out: Path) -> list[str]:
     """Draw all figures; give what is missing in them."""
     if not study.plots:
         return []
+    load_quickly()
     from wingcrack_study.figures import draw
 
     notes = []
@@ -193,6 +197,7 @@ def _write_record(
     cluster: Cluster,
     clock: Clock,
     ended: int,
+    figures_s: float,
 ) -> None:
     """Write study.json: what the call did, and what it cost."""
     new = [outcome for outcome in ledger.outcomes.values() if not outcome.reused]
@@ -210,6 +215,7 @@ def _write_record(
         "runs_failed": sum(item.status != "finished" for item in ledger.outcomes.values()),
         "wall_s": round(wall_s, 3),
         "runs_cpu_s": round(runs_s, 3),
+        "figures_cpu_s": round(figures_s, 3),
         "cpu_s": round(clock.cpu_s(), 3) if counted else None,
     }
     write_text(given.out / "study.json", json.dumps(record, indent=1) + "\n")
