@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
 from wingcrack_study.plots import Plot
@@ -189,6 +190,7 @@ def _bars(study: Study, plot: Plot, table: StudyTable) -> Figure:
         raise CaseError(f"figure '{plot.name}': no run has a {plot.quantity}")
     bins = _bins(values, plot.x_log).tolist()
     axes.hist(values, bins=bins, color=style.CYCLE[4], edgecolor="white")
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     for index, share in enumerate(study.quantiles):
         place = float(np.quantile(values, share))
         axes.axvline(
