@@ -197,7 +197,7 @@ def _bars(study: Study, plot: Plot, table: StudyTable) -> Figure:
             place,
             color="black",
             linestyle=style.LINE_STYLES[index % len(style.LINE_STYLES)],
-            label=f"{100 * share:g} %: {place:.3g}",
+            label=f"{100 * share:g} %: {place:.4g}",
         )
     if study.quantiles:
         axes.legend(loc="best", title=f"{values.size} runs")
