@@ -12,7 +12,7 @@ from launcher_tree import TOP
 
 LAUNCHER = TOP / "wingcrack"
 SCENE = TOP / "inputs" / "paper_c" / "onset.nml"
-COMMANDS = ("run", "check", "plot", "verify", "bench", "test", "build", "format", "lint")
+COMMANDS = ("run", "check", "plot", "study", "verify", "bench", "test", "build", "format", "lint")
 
 
 def call(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -64,6 +64,12 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["run", str(SCENE), "--out", f"{SCENE}/deeper/down"], "onset.nml is a file"),
         (["run", "nowhere.nml", "other.nml"], "run takes one scene file, and other.nml"),
         (["run", "nowhere.nml", "--fast"], "unknown option --fast"),
+        (["study"], "the following arguments are required: STUDY.toml"),
+        (["study", "nowhere.toml"], "there is no study nowhere.toml"),
+        (["study", "."], ". is a folder, not a study's file"),
+        (["study", str(SCENE), "--jobs", "0"], "'0' is no whole number from 1 to 1024"),
+        (["study", str(SCENE), "--cluster", "moon"], "invalid choice: 'moon'"),
+        (["study", str(SCENE), "--out", f"{SCENE}/deeper"], "onset.nml is a file"),
         (["verify", "--fast"], "unrecognized arguments: --fast"),
         (["verify", "no_such_case"], "there is no case 'no_such_case'"),
         (["verify", "--jobs"], "--jobs: expected one argument"),

@@ -23,9 +23,9 @@ prepare() {
     if [[ -n $target ]]; then with_lock build release "$target"; fi
 }
 
-# prepare_developer: see to the environment with the tools of a developer.
+# prepare_developer: see to the environment with the tools of a developer, who tests studies too.
 prepare_developer() {
-    requirement_lists+=("$root/requirements_developer.txt")
+    requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt")
     prepare
 }
 
@@ -33,6 +33,12 @@ prepare_developer() {
 prepare_ranks() {
     package_lists+=("$root/tools/system_packages_ranks.txt")
     prepare "$ranks_target"
+}
+
+# prepare_study: see to what studies take, beside the rest.
+prepare_study() {
+    requirement_lists+=("$root/requirements_study.txt")
+    prepare "$solver_target"
 }
 
 # with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.

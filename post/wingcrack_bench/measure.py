@@ -17,10 +17,10 @@ from pathlib import Path
 
 from wingcrack_bench.catalogue import Benchmark
 from wingcrack_bench.scenes import write_scene
+from wingcrack_runner.task import ONE_THREAD
 
-# One thread, and one set of kernels of OpenBLAS whatever the processor: counts mean something then.
-_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-_COUNTED = {**_ONE_THREAD, "OPENBLAS_CORETYPE": "Haswell"}
+# One set of kernels of OpenBLAS whatever the processor, too: counts mean something then.
+_COUNTED = {**ONE_THREAD, "OPENBLAS_CORETYPE": "Haswell"}
 
 
 class RunFailedError(Exception):
@@ -191,7 +191,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 def _run(solver: Path, name: str, scene: Path, out: Path) -> Run:
     before = _children_s()
-    _call([str(solver)], name, scene, out, _ONE_THREAD)
+    _call([str(solver)], name, scene, out, ONE_THREAD)
     return _read(out, _children_s() - before)
 
 

@@ -68,7 +68,7 @@ class _Figures:
     def draw(self, run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
         """Give each figure with its label."""
         module, _, function = self.maker.partition(":")
-        _load_quickly()
+        load_quickly()
         make: Callable[..., Any] = getattr(import_module(f"wingcrack_post.{module}"), function)
         if self.several:
             yield from make(run, times_s)
@@ -133,7 +133,7 @@ def draw_figures(
         yield outcome
 
 
-def _load_quickly() -> None:
+def load_quickly() -> None:
     """Keep matplotlib from writing help for each class that it loads, by asking all its methods."""
     artist: Any = import_module("matplotlib.artist")
     artist.kwdoc = _no_help

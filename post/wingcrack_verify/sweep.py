@@ -108,7 +108,7 @@ def _expand(
         wants what the point does not have.
     """
     template = {name: value for name, value in data.items() if name != "over"}
-    points = _points(data["over"], f"{place}: over") if "over" in data else [{}]
+    points = grid_points(data["over"], f"{place}: over") if "over" in data else [{}]
     names = dict.fromkeys(itertools.chain.from_iterable(points))
     around = {} if outer is None else outer.point
     used: set[str] = set() if outer is None else outer.used
@@ -135,8 +135,28 @@ def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> Table:
     return joined
 
 
-def _points(over: Any, place: str) -> list[Table]:
-    """All combinations of the axes; the last axis changes first."""
+def filled(
+    table: Mapping[str, Any], point: Mapping[str, Any], place: str
+) -> tuple[Table, set[str]]:
+    """Table with the values of a point in its templates, and the names that these used.
+
+    Raises
+    ------
+    CaseError
+        If a template wants what the point does not have.
+    """
+    used: set[str] = set()
+    return _Filler(dict(point), used, place).filled(table), used
+
+
+def grid_points(over: Any, place: str) -> list[Table]:
+    """All combinations of the axes; the last axis changes first.
+
+    Raises
+    ------
+    CaseError
+        If an axis gives nothing, or two give the same name.
+    """
     if not isinstance(over, Mapping) or not over:
         raise CaseError(f"{place} must be a table of lists")
     axes = [_axis(name, values, f"{place}.{name}") for name, values in over.items()]

@@ -1,0 +1,1 @@
+"""Studies: many runs of a scene from one file, with a table of them and figures."""

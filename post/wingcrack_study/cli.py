@@ -1,0 +1,260 @@
+"""Command line: ``python -m wingcrack_study STUDY.toml``."""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import json
+import os
+import signal
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from wingcrack_post.figures import load_quickly
+from wingcrack_runner.outcome import Outcome
+from wingcrack_runner.task import Task
+from wingcrack_study.arguments import parse
+from wingcrack_study.cluster import Cluster
+from wingcrack_study.running import Clock, check_scenes, done_before, run_tasks, tasks_of
+from wingcrack_study.study import Study, read_study
+from wingcrack_study.table import (
+    StudyTable,
+    make_table,
+    write_csv,
+    write_parquet,
+    write_statistics,
+    write_text,
+)
+from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+
+_ENDED_BY = {signal.SIGINT: 130, signal.SIGTERM: 143}
+
+
+class _Ended(BaseException):
+    """A signal asks for the end."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.status = _ENDED_BY[signal.Signals(number)]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status."""
+    given = parse(arguments)
+    try:
+        with _signals():
+            return _study(given)
+    except CaseError as reason:
+        return _say(str(reason), 2)
+    except EnvironmentLacksError as reason:
+        return _say(str(reason), 3)
+    except OSError as reason:
+        place = f"{reason.filename}: " if reason.filename else ""
+        return _say(f"{place}{reason.strerror or reason}", 1)
+    except _Ended as ended:
+        return _say("interrupted; nothing was run", ended.status)
+
+
+def _say(text: str, status: int) -> int:
+    print(f"wingcrack study: {text}", file=sys.stderr)
+    return status
+
+
+def _study(given: argparse.Namespace) -> int:
+    clock = Clock()
+    study = read_study(given.study, given.quick)
+    kind = given.cluster or study.cluster.kind
+    cluster = Cluster(kind, study.cluster.workers, study.cluster.arguments)
+    workers = given.jobs or cluster.workers or len(os.sched_getaffinity(0))
+    tasks = tasks_of(study, given.build, given.out)
+    before = done_before(tasks)
+    check_scenes([run for run in study.runs if run.number not in before], tasks, workers)
+    print(f"{study.title}\n{len(tasks)} runs, {len(before)} of them done before", flush=True)
+    if given.check:
+        print("all scenes are sound; nothing was run")
+        return 0
+    given.out.mkdir(parents=True, exist_ok=True)
+    with _folder_of_one(given.out):
+        return _run(study, tasks, cluster, workers, given, clock)
+
+
+def _run(
+    study: Study,
+    tasks: Mapping[int, Task],
+    cluster: Cluster,
+    workers: int,
+    given: argparse.Namespace,
+    clock: Clock,
+) -> int:
+    """Run what is not done, then write table and figures, whatever has ended the runs."""
+    before = done_before(tasks)  # again: another call may have had the folder until now
+    ledger = _Ledger(study, before, workers, clock)
+    open_tasks = {number: task for number, task in tasks.items() if number not in before}
+    status = 0
+    try:
+        run_tasks(open_tasks, cluster, workers, ledger)
+    except _Ended as ended:
+        status = ended.status
+    with _undisturbed():
+        return _finish(study, ledger, given, cluster, clock, status)
+
+
+class _Ledger:
+    """The outcomes so far, and a line for each that comes."""
+
+    def __init__(
+        self, study: Study, before: Mapping[int, Outcome], workers: int, clock: Clock
+    ) -> None:
+        self.outcomes = dict(before)
+        self.reused = len(before)
+        self._labels = {run.number: run.label for run in study.runs}
+        self._workers = workers
+        self._clock = clock
+
+    def __call__(self, number: int, outcome: Outcome) -> None:
+        self.outcomes[number] = outcome
+        if outcome.status == "finished":
+            how = f"{outcome.cpu_s:.2f} CPU s"
+        else:
+            how = f"{outcome.status}: {outcome.reason}"
+        done, total = len(self.outcomes), len(self._labels)
+        place = f"[{done:{len(str(total))}}/{total}]"
+        print(f"{place} {self._labels[number]}: {how}{self._left()}", flush=True)
+
+    def _left(self) -> str:
+        """How long the rest will take, if it is like what was run."""
+        new, left = len(self.outcomes) - self.reused, len(self._labels) - len(self.outcomes)
+        if left == 0 or new < self._workers:
+            return ""
+        seconds = self._clock.wall_s() / new * left
+        return f"  (about {seconds / 60:.0f} min left)" if seconds > 90 else ""
+
+
+def _finish(
+    study: Study,
+    ledger: _Ledger,
+    given: argparse.Namespace,
+    cluster: Cluster,
+    clock: Clock,
+    ended: int,
+) -> int:
+    """Write table and figures of what there is, and tell how it went."""
+    out: Path = given.out
+    table = make_table(study, ledger.outcomes, out)
+    write_csv(table, out / "table.csv")
+    write_parquet(table, out / "table.csv", out / "table.parquet")
+    if study.quantiles:
+        write_statistics(study, table, out / "statistics.csv")
+    before_s = clock.cpu_s()
+    notes = [] if ended else _draw(study, table, out)
+    figures_s = clock.cpu_s() - before_s
+    _write_record(study, ledger, given, cluster, clock, ended, figures_s)
+    _tell(table, notes)
+    if ended:
+        left = len(study.runs) - len(ledger.outcomes)
+        return _say(f"interrupted with {left} runs to go; {out / 'table.csv'} has the rest", ended)
+    bad = sum(row["status"] != "finished" for row in table.rows)
+    if bad:
+        return _say(f"{bad} of {len(table.rows)} runs failed; {out / 'table.csv'} says why", 1)
+    print(out / "table.csv")
+    return 0
+
+
+def _draw(study: Study, table: StudyTable, out: Path) -> list[str]:
+    """Draw all figures; give what is missing in them."""
+    if not study.plots:
+        return []
+    load_quickly()
+    from wingcrack_study.figures import draw
+
+    notes = []
+    for plot in study.plots:
+        try:
+            files, missing = draw(study, plot, table, out)
+            print(files[0], flush=True)
+            notes += [f"figure '{plot.name}': {item}" for item in missing]
+        except CaseError as reason:
+            notes.append(str(reason))
+    return notes
+
+
+def _tell(table: StudyTable, notes: Sequence[str]) -> None:
+    """List what failed and what could not be read, each with its reason."""
+    for row in table.rows:
+        if row["reason"]:
+            print(f"{row['label']}: {row['status']}: {row['reason']}")
+    for note in notes:
+        print(note)
+
+
+def _write_record(
+    study: Study,
+    ledger: _Ledger,
+    given: argparse.Namespace,
+    cluster: Cluster,
+    clock: Clock,
+    ended: int,
+    figures_s: float,
+) -> None:
+    """Write study.json: what the call did, and what it cost."""
+    new = [outcome for outcome in ledger.outcomes.values() if not outcome.reused]
+    runs_s, wall_s = sum(outcome.cpu_s for outcome in new), clock.wall_s()
+    counted = cluster.kind in ("none", "local")  # of others only their own machines know
+    record: dict[str, Any] = {
+        "title": study.title,
+        "study": given.study.name,
+        "quick": given.quick,
+        "status": "stopped" if ended else "finished",
+        "cluster": cluster.kind,
+        "runs": len(study.runs),
+        "runs_done": len(ledger.outcomes),
+        "runs_of_this_call": len(new),
+        "runs_failed": sum(item.status != "finished" for item in ledger.outcomes.values()),
+        "wall_s": round(wall_s, 3),
+        "runs_cpu_s": round(runs_s, 3),
+        "figures_cpu_s": round(figures_s, 3),
+        "cpu_s": round(clock.cpu_s(), 3) if counted else None,
+    }
+    write_text(given.out / "study.json", json.dumps(record, indent=1) + "\n")
+
+
+@contextmanager
+def _signals() -> Iterator[None]:
+    """Let signals end the call in order."""
+
+    def end(number: int, _frame: object) -> None:
+        raise _Ended(number)
+
+    earlier = {number: signal.signal(number, end) for number in _ENDED_BY}
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Let nothing but SIGKILL come between while the table is written."""
+    earlier = {number: signal.signal(number, signal.SIG_IGN) for number in _ENDED_BY}
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _folder_of_one(out: Path) -> Iterator[None]:
+    """Keep the folder of the study for this call alone."""
+    handle = os.open(out, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise CaseError(f"another study is running in {out}: wait, or say --out") from None
+    finally:
+        os.close(handle)
