@@ -63,7 +63,10 @@ def draw(numbers: random.Random, which: int) -> Trace:
     trace = [place]
     for _ in range(3):
         angle += math.radians(numbers.gauss(0.0, 4.0))
-        place = (place[0] + length / 3.0 * math.cos(angle), place[1] + length / 3.0 * math.sin(angle))
+        place = (
+            place[0] + length / 3.0 * math.cos(angle),
+            place[1] + length / 3.0 * math.sin(angle),
+        )
         trace.append(place)
     return trace
 
@@ -84,9 +87,7 @@ def distance(place: tuple[float, float], line: Trace) -> float:
         d = (x_1 - x_0, y_1 - y_0)
         share = ((place[0] - x_0) * d[0] + (place[1] - y_0) * d[1]) / (d[0] ** 2 + d[1] ** 2)
         share = min(1.0, max(0.0, share))
-        least = min(
-            least, math.hypot(place[0] - x_0 - share * d[0], place[1] - y_0 - share * d[1])
-        )
+        least = min(least, math.hypot(place[0] - x_0 - share * d[0], place[1] - y_0 - share * d[1]))
     return least
 
 

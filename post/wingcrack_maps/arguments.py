@@ -121,7 +121,7 @@ def _add_import(commands: argparse._SubParsersAction[_Parser]) -> _Parser:
     parser.add_argument(
         "--polygons", choices=("boundary", "region"), help="what polygons are that do not say it"
     )
-    _add_common(parser)
+    _add_common(parser, needs_out=False)
     return parser
 
 
@@ -152,13 +152,17 @@ def _add_network(commands: argparse._SubParsersAction[_Parser]) -> _Parser:
         help="fractures may cross, and only ends keep --distance from other fractures",
     )
     parser.add_argument("--seed", type=_whole, default=1, help="of the random numbers (default: 1)")
-    _add_common(parser)
+    _add_common(parser, needs_out=True)
     return parser
 
 
-def _add_common(parser: _Parser) -> None:
+def _add_common(parser: _Parser, needs_out: bool) -> None:
     parser.add_argument(
-        "--out", type=Path, metavar="SCENE.nml", help="the scene to write (default: MAP.nml)"
+        "--out",
+        type=Path,
+        metavar="SCENE.nml",
+        required=needs_out,
+        help="the scene to write" + ("" if needs_out else " (default: MAP.nml)"),
     )
     parser.add_argument(
         "--scene", type=Path, metavar="BASE.nml", help="scene that the fractures are added to"
@@ -170,9 +174,7 @@ def _add_common(parser: _Parser) -> None:
         metavar="NAME=VALUE",
         help="entry of all fractures that do not say it, as friction=0.7",
     )
-    parser.add_argument(
-        "--cell", type=_positive, metavar="SIZE", help="cells at the fractures [m]"
-    )
+    parser.add_argument("--cell", type=_positive, metavar="SIZE", help="cells at the fractures [m]")
     parser.add_argument(
         "--margin", type=_positive, metavar="D", help="room around the fractures in the body [m]"
     )

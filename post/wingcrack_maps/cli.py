@@ -100,9 +100,7 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     return report
 
 
-def _add_entries(
-    given: argparse.Namespace, content: Map, path: str, base: Base | None
-) -> None:
+def _add_entries(given: argparse.Namespace, content: Map, path: str, base: Base | None) -> None:
     """Let attributes of the fractures be entries of their groups, with what goes for all."""
     group = groups()["fracture"]
     asked = dict(setting(text, group) for text in given.set)

@@ -149,8 +149,4 @@ def complete(
         for entries in lacking:
             entries[name] = value
         if lacking and assumed:
-            content.note(
-                "assumed", f"{name} = {value} for {len(lacking)} fractures that say none"
-            )
-
-
+            content.note("assumed", f"{name} = {value} for {len(lacking)} fractures that say none")

@@ -106,9 +106,7 @@ def vertex_angle(points: Points, vertex: int) -> float:
     return math.degrees(abs(math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))))
 
 
-def stretches_beside(
-    line: LineString, other: LineString, limits: Limits
-) -> shapely.Geometry:
+def stretches_beside(line: LineString, other: LineString, limits: Limits) -> shapely.Geometry:
     """Where a line runs along another one: nearer than the distance, at less than the angle."""
     pieces = []
     ours, others = _segments(line), _segments(other)
@@ -198,8 +196,14 @@ class _Search:
         points, limits, shape = self.lines[i].points, self.limits, self.shapes[i]
         outside = shape.difference(self.body.buffer(limits.same))
         if outside.length > limits.same:
-            yield self._fault("outside", (i,), outside.coords[0] if outside.geom_type ==
-                              "LineString" else outside.geoms[0].coords[0], outside.length)
+            yield self._fault(
+                "outside",
+                (i,),
+                outside.coords[0]
+                if outside.geom_type == "LineString"
+                else outside.geoms[0].coords[0],
+                outside.length,
+            )
             return
         if stretches_beside(shape, self.rim, limits).length > 0.0:
             place = stretches_beside(shape, self.rim, limits).interpolate(0.5, True)
@@ -258,9 +262,11 @@ class _Search:
         gaps = np.hypot(*(ends - point).T)
         nearest = float(gaps.min())
         end = ends[int(gaps.argmin())]
-        return nearest < self.limits.near and Point(end).distance(
-            self.shapes[i]
-        ) > self.limits.same and self._stub(j, i, int(gaps.argmin()) == 0) >= self.limits.near
+        return (
+            nearest < self.limits.near
+            and Point(end).distance(self.shapes[i]) > self.limits.same
+            and self._stub(j, i, int(gaps.argmin()) == 0) >= self.limits.near
+        )
 
     def _stub(self, i: int, j: int, is_start: bool) -> float:
         """Length of what a line has behind the last place where it crosses another one [m]."""

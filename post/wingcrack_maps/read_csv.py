@@ -119,7 +119,9 @@ class _Table:
         for name, places in self.vertices.items():
             attributes, source = self.first[name]
             if len(places) < 2:
-                raise SceneError(f"{self.path}: {source}: '{name}' has one vertex, but it takes two")
+                raise SceneError(
+                    f"{self.path}: {source}: '{name}' has one vertex, but it takes two"
+                )
             label = name_of(attributes) or name
             self.found.lines.append(Line(label, np.array(places), attributes, source))
         return self.found

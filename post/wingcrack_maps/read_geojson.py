@@ -27,7 +27,7 @@ def read_geojson(text: str, path: str) -> tuple[Map, bool]:
     except ValueError as reason:
         raise SceneError(f"{path}: not a JSON file: {reason}") from None
     if not isinstance(content, dict) or "type" not in content:
-        raise SceneError(f"{path}: no GeoJSON, which is an object with a \"type\"")
+        raise SceneError(f'{path}: no GeoJSON, which is an object with a "type"')
     system = _system(content, path)
     found = Map()
     for number, feature in enumerate(_features(content, path), start=1):
@@ -55,7 +55,7 @@ def _features(content: dict[str, Any], path: str) -> list[Any]:
     if content["type"] == "FeatureCollection":
         features = content.get("features")
         if not isinstance(features, list):
-            raise SceneError(f"{path}: the FeatureCollection has no list \"features\"")
+            raise SceneError(f'{path}: the FeatureCollection has no list "features"')
         return features
     return [content]
 

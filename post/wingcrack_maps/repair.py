@@ -70,9 +70,7 @@ def repair(
 
 
 class _Network:
-    def __init__(
-        self, lines: list[Line], body: Polygon | None, limits: Limits, ends: str
-    ) -> None:
+    def __init__(self, lines: list[Line], body: Polygon | None, limits: Limits, ends: str) -> None:
         self.lines, self.body, self.limits, self.ends = lines, body, limits, ends
         self.names = {line.name for line in lines}
         self.after: dict[int, list[Line]] = {}
@@ -116,9 +114,7 @@ class _Network:
         return made
 
     def _whole(self, indices: Sequence[int]) -> float:
-        return sum(
-            line.length for i in indices for line in self.after.get(i, [self.lines[i]])
-        )
+        return sum(line.length for i in indices for line in self.after.get(i, [self.lines[i]]))
 
     def _report(self, fault: Fault, what: str, change: float) -> Repair:
         names = tuple(self.lines[i].name for i in fault.lines)

@@ -113,6 +113,4 @@ def _sizes(network: Network) -> dict[str, Value]:
 def _well(lines: Sequence[Line]) -> str:
     """A well in the longest fracture."""
     longest = max(lines, key=lambda line: line.length)
-    return group_text(
-        "injection", {"fracture": longest.name, "rate": 1.0e-5, "pressure": 28.0e6}
-    )
+    return group_text("injection", {"fracture": longest.name, "rate": 1.0e-5, "pressure": 28.0e6})
