@@ -9,13 +9,14 @@ over a stretch of another one, vertices set twice, names with blanks and accents
 """
 
 import argparse
+import itertools
 import json
 import math
 import random
 
 WIDTH, HEIGHT = 40.0, 30.0  # [m]
-SETS = ((25.0, 6.0, 9.0, 0.60), (85.0, 7.0, 6.0, 0.65), (140.0, 9.0, 4.0, 0.70))
-CLEARANCE = 0.6  # of traces that have nothing to do with each other [m]
+SETS = ((25.0, 6.0, 11.0, 0.60), (85.0, 7.0, 8.0, 0.65), (140.0, 9.0, 6.0, 0.70))
+CLEARANCE = 0.4  # of traces that have nothing to do with each other [m]
 
 Trace = list[tuple[float, float]]
 
@@ -83,7 +84,7 @@ def is_clear(trace: Trace, other: Trace) -> bool:
 def distance(place: tuple[float, float], line: Trace) -> float:
     """Distance of a place from a polyline."""
     least = math.inf
-    for (x_0, y_0), (x_1, y_1) in zip(line, line[1:], strict=False):
+    for (x_0, y_0), (x_1, y_1) in itertools.pairwise(line):
         d = (x_1 - x_0, y_1 - y_0)
         share = ((place[0] - x_0) * d[0] + (place[1] - y_0) * d[1]) / (d[0] ** 2 + d[1] ** 2)
         share = min(1.0, max(0.0, share))
@@ -94,7 +95,7 @@ def distance(place: tuple[float, float], line: Trace) -> float:
 def abutting(numbers: random.Random, traces: list[tuple[Trace, int]], k: int) -> Trace:
     """Draw a trace that should end on another one and misses it, short of it or past it."""
     while True:
-        target, which = traces[numbers.randrange(34)]
+        target, _ = traces[numbers.randrange(34)]
         (x_0, y_0), (x_1, y_1) = target[1:3]
         share = numbers.uniform(0.3, 0.7)
         turn = math.atan2(y_1 - y_0, x_1 - x_0) + math.radians(numbers.uniform(55.0, 125.0))

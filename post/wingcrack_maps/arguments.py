@@ -134,11 +134,14 @@ def _add_network(commands: argparse._SubParsersAction[_Parser]) -> _Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    needed = {"required": True, "action": "append"}
     parser.add_argument("--box", required=True, type=_box, metavar="X0,Y0,X1,Y1", help="[m]")
-    parser.add_argument("--density", metavar="LAW", type=_density, **needed)
-    parser.add_argument("--length", metavar="LAW", type=_law(_LENGTHS), **needed)
-    parser.add_argument("--orientation", metavar="LAW", type=_law(_ANGLES), **needed)
+    parser.add_argument("--density", metavar="LAW", type=_density, required=True, action="append")
+    parser.add_argument(
+        "--length", metavar="LAW", type=_law(_LENGTHS), required=True, action="append"
+    )
+    parser.add_argument(
+        "--orientation", metavar="LAW", type=_law(_ANGLES), required=True, action="append"
+    )
     parser.add_argument(
         "--distance",
         type=_positive,

@@ -19,7 +19,7 @@ from wingcrack_maps.faults import SAME, Limits, extent, find_faults
 from wingcrack_maps.features import Map
 from wingcrack_maps.random_network import Set, random_network
 from wingcrack_maps.read import read_map
-from wingcrack_maps.repair import repair
+from wingcrack_maps.repair import Repair, repair
 from wingcrack_maps.report import Report, file_texts, terminal_text
 from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_size, scene_text
 from wingcrack_maps.units import shift
@@ -69,12 +69,14 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     give_names(content, base.names if base is not None else set())
     _add_entries(given, content, path, base)
     body = _body(given, content, base)
+    if base is None:
+        content.note("assumed", "rock, fluid, stress, well and time are ours: change them to yours")
     limits = _limits(given, content)
     read = len(content.lines)
     total = sum(line.length for line in content.lines)
     found = find_faults(content.lines, body, limits)
     report = Report(path, limits.near, limits.angle_deg)
-    repairs = []
+    repairs: list[Repair] = []
     if given.repair is not None:
         content.lines, repairs = repair(content.lines, body, limits, given.ends)
         if not content.lines:
@@ -177,8 +179,8 @@ def _write(out: Path, text: str, report: Report) -> None:
         for file_path, content in file_texts(report, out).items():
             file_path.write_text(content, encoding="utf-8")
         trial.chmod(0o666 & ~_mask())
-        os.replace(trial, out)
-        print(f"\n{words.rstrip()}\n")
+        trial.replace(out)
+        print(f"\n{words.rstrip().replace(trial.stem, out.stem)}\n")
     except OSError as reason:
         raise SceneError(f"{out}: it cannot be written: {reason.strerror}") from None
     finally:

@@ -6,7 +6,7 @@ import math
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from wingcrack_maps.features import Area, Line, Map
 from wingcrack_maps.geometry import NAMES
@@ -27,8 +27,11 @@ def give_names(content: Map, taken: set[str]) -> None:
         Names that are there already.
     """
     nameless = 0
-    for stem, items in (("f", content.lines), ("r", [a for a in content.areas])):
-        used = set(taken) if stem == "f" else set()
+    kinds: tuple[tuple[str, Sequence[Line | Area], set[str]], ...] = (
+        ("f", content.lines, set(taken)),
+        ("r", content.areas, set()),
+    )
+    for stem, items, used in kinds:
         for number, item in enumerate(items, start=1):
             wanted = item.name
             nameless += not wanted

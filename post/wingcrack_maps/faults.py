@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -187,8 +188,8 @@ class _Search:
         for k, first in enumerate(segments):
             for second in segments[k + 2 :]:
                 if first.intersects(second):
-                    return shapely.get_coordinates(first.intersection(second))[0]
-        return self.lines[i].points[0]
+                    return np.asarray(shapely.get_coordinates(first.intersection(second))[0])
+        return np.asarray(self.lines[i].points[0])
 
     def _with_body(self, i: int) -> Iterator[Fault]:
         if self.rim is None or self.body is None:
@@ -206,7 +207,7 @@ class _Search:
             )
             return
         if stretches_beside(shape, self.rim, limits).length > 0.0:
-            place = stretches_beside(shape, self.rim, limits).interpolate(0.5, True)
+            place = stretches_beside(shape, self.rim, limits).interpolate(0.5, normalized=True)
             yield self._fault("overlap", (i,), place.coords[0], place.distance(self.rim))
             return
         for k, point in enumerate(points):
@@ -225,7 +226,8 @@ class _Search:
 
     def _run_together(self, i: int, j: int) -> Iterator[Fault]:
         # of two the shorter one gives way; of two alike the later one
-        shorter, longer = (i, j) if self.lines[i].length < self.lines[j].length else (j, i)
+        is_shorter = self.lines[i].length < self.lines[j].length - self.limits.near
+        shorter, longer = (i, j) if is_shorter else (j, i)
         shape, other = self.shapes[shorter], self.shapes[longer]
         beside = stretches_beside(shape, other, self.limits)
         if beside.length == 0.0:
@@ -274,7 +276,7 @@ class _Search:
         if len(met) == 0:
             return math.inf
         places = [self.shapes[i].project(Point(place)) for place in met]
-        return min(places) if is_start else self.shapes[i].length - max(places)
+        return float(min(places) if is_start else self.shapes[i].length - max(places))
 
     def _crossings(self, beside: set[tuple[int, int]]) -> Iterator[Fault]:
         """Places on one line where others cross it, too near to each other or to its vertices."""
@@ -289,13 +291,17 @@ class _Search:
                     met.setdefault(own, []).append((along, other))
         for i, places in met.items():
             places.sort()
-            for (first, one), (second, other) in zip(places, places[1:], strict=False):
+            for (first, one), (second, other) in pairwise(places):
                 if limits.same < second - first < limits.near:
                     place = self.shapes[i].interpolate(first).coords[0]
                     yield self._fault("near crossings", (i, one, other), place, second - first)
 
     @staticmethod
     def _fault(
-        kind: str, lines: tuple[int, ...], place: Sequence[float], size: float, vertex: int = -1
+        kind: str,
+        lines: tuple[int, ...],
+        place: Sequence[float] | Points,
+        size: float,
+        vertex: int = -1,
     ) -> Fault:
         return Fault(kind, lines, (float(place[0]), float(place[1])), float(size), vertex)

@@ -80,6 +80,11 @@ class Map:
     areas: list[Area] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
 
+    @property
+    def features(self) -> list[Line | Area]:
+        """Lines and areas."""
+        return [*self.lines, *self.areas]
+
     def note(self, kind: str, what: str) -> None:
         """Add a note."""
         self.notes.append(Note(kind, what))

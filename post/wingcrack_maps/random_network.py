@@ -57,9 +57,9 @@ def draw_lengths(law: Law, count: int, generator: np.random.Generator) -> Number
         exponent, low, high = numbers
         share = generator.random(count)
         if exponent == 1.0:
-            return low * (high / low) ** share
+            return np.asarray(low * (high / low) ** share)
         k = 1.0 - exponent  # by the ratio of the bounds, lest powers overflow
-        return low * (1.0 + share * ((high / low) ** k - 1.0)) ** (1.0 / k)
+        return np.asarray(low * (1.0 + share * ((high / low) ** k - 1.0)) ** (1.0 / k))
     if name == "lognormal":
         bounds = numbers[2:]
         return _bounded(
@@ -152,7 +152,7 @@ def random_network(
     generator = np.random.default_rng(seed)
     area = (box[2] - box[0]) * (box[3] - box[1])
     found = Map()
-    drawn = []
+    drawn: list[tuple[float, float, int]] = []
     for number, one in enumerate(sets, start=1):
         lengths = sizes_of(one, area, generator)
         angles = draw_angles(one.orientation, lengths.size, generator)
@@ -164,8 +164,11 @@ def random_network(
         name = f"f{k}" if len(sets) == 1 else f"set{number}_{k}"
         found.lines.append(Line(name, points, {}, f"set {number}"))
     total = sum(line.length for line in found.lines)
-    found.note("density", f"{len(placed)} fractures in {area:.6g} m2: P20 = {len(placed) / area:.6g}"
-               f" 1/m2, P21 = {total / area:.6g} m/m2")  # fmt: skip
+    found.note(
+        "density",
+        f"{len(placed)} fractures in {area:.6g} m2:"
+        f" P20 = {len(placed) / area:.6g} 1/m2, P21 = {total / area:.6g} m/m2",
+    )
     if distance > 0.0:
         found.note("rejected", f"{rejected} places nearer than {distance:g} m to another fracture")
     return found

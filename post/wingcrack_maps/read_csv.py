@@ -76,9 +76,7 @@ class _Table:
                 f"{self.path}:{number}: the row has {len(cells)} values but must have"
                 f" {len(self.header)}, one per column"
             )
-        used = {self.geometry, *self.segment} or {""}
-        if not (self.geometry or self.segment):
-            used = {"x", "y"}
+        used = {self.geometry, *self.segment} - {""} or {"x", "y"}
         attributes: Attributes = {
             word: _plain(cells[k], self.mark)
             for k, word in enumerate(self.header)

@@ -63,7 +63,8 @@ def _features(content: dict[str, Any], path: str) -> list[Any]:
 def _add(found: Map, feature: Any, path: str, source: str) -> None:
     if not isinstance(feature, dict):
         raise SceneError(f"{path}: {source} is no object with a geometry")
-    geometry, attributes = feature, {}
+    geometry: Any = feature
+    attributes: Any = {}
     if feature.get("type") == "Feature":
         geometry = feature.get("geometry")
         attributes = feature.get("properties") or {}

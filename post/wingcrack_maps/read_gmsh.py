@@ -1,4 +1,4 @@
-"""Maps from gmsh's .geo and .msh files: physical curves are fractures, physical surfaces regions."""
+"""Maps from gmsh's .geo and .msh files, by their physical curves and surfaces."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ def _read(path: Path) -> Map:
         pieces = [MultiLineString(list(_edges(tag, nodes))) for tag in tags]
         merged = linemerge([line for piece in pieces for line in piece.geoms])
         lines = list(merged.geoms) if hasattr(merged, "geoms") else [merged]
-        if rim is not None and all(rim.contains(line.interpolate(0.5, True)) for line in lines):
+        if rim is not None and all(
+            rim.contains(line.interpolate(0.5, normalized=True)) for line in lines
+        ):
             found.note("left out", f"physical curve '{name}' lies on the rim: a side, no fracture")
             continue
         for number, line in enumerate(lines, start=1):
@@ -127,11 +129,11 @@ def _without_straight(points: Points) -> Points:
         start = int(np.argmax(turn))
         points = np.vstack([np.roll(ring, -start, axis=0), ring[start]])
     turn = _turns(points[:-2], points[1:-1], points[2:])
-    return points[np.concatenate([[True], turn > 1e-9, [True]])]
+    return np.asarray(points[np.concatenate([[True], turn > 1e-9, [True]])])
 
 
 def _turns(before: Points, here: Points, after: Points) -> Points:
     """Sine of the angle by which a polyline turns [-]."""
     a, b = here - before, after - here
     sine = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    return sine / (np.hypot(*a.T) * np.hypot(*b.T))
+    return np.asarray(sine / (np.hypot(*a.T) * np.hypot(*b.T)))

@@ -12,7 +12,8 @@ from shapely.geometry import LineString, Point, Polygon
 from wingcrack_maps.faults import BODY, HARMLESS, Fault, Limits, find_faults
 from wingcrack_maps.features import Line, Points
 
-_ROUNDS = 60
+_ROUNDS = 80
+_PATIENCE = 25  # rounds after which a place is cut out, where moving goes round in circles
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,9 @@ def repair(
     """
     network = _Network(list(lines), body, limits, ends)
     done: list[Repair] = []
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
+        if number == _PATIENCE:
+            network.give_up_moving()
         faults = [f for f in find_faults(network.lines, body, limits) if f.kind not in HARMLESS]
         made = network.round(faults)
         done.extend(made)
@@ -89,6 +92,11 @@ class _Network:
             "near corner": self._to_corner,
             "inner vertex": self._split,
         }
+
+    def give_up_moving(self) -> None:
+        """From now on cut places out instead of moving anything there."""
+        for kind in ("near end", "near vertex", "near crossings", "overlap", "end past"):
+            self.ways[kind] = self._cut_out
 
     def round(self, faults: Sequence[Fault]) -> list[Repair]:
         """Repair faults of one kind, each fracture once; the rest comes when all is seen anew."""
@@ -142,6 +150,12 @@ class _Network:
         """Take out of the first fracture what runs along the other one."""
         flat = self._other(fault).buffer(self.limits.near, cap_style="flat")
         return self._keep(fault.lines[0], self._shape(fault.lines[0]).difference(flat))
+
+    def _cut_out(self, fault: Fault) -> str:
+        """Cut the place out of the shorter one, which leaves a gap of some distances."""
+        i = min(fault.lines, key=lambda k: self.lines[k].length)
+        hole = Point(fault.place).buffer(2.0 * self.limits.near)
+        return f"place cut out: {self._keep(i, self._shape(i).difference(hole))}"
 
     def _remove(self, fault: Fault) -> str:
         self.after[fault.lines[0]] = []

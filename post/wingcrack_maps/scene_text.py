@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
+from shapely.strtree import STRtree
 
 from wingcrack_maps.base import Base
 from wingcrack_maps.body import domain_values
@@ -60,7 +62,8 @@ def cell_size(lines: Sequence[Line]) -> float:
     """Cells at the fractures: an eighth of the median length, at most the shortest fracture [m]."""
     lengths = np.array([line.length for line in lines])
     size = min(float(np.median(lengths)) / _CELLS, float(lengths.min()))
-    return float(f"{size * 0.999:.2g}") if float(f"{size:.2g}") > size else float(f"{size:.2g}")
+    grain = 10.0 ** (math.floor(math.log10(size)) - 1)
+    return float(f"{math.floor(size / grain * (1.0 + 1e-12)) * grain:.2g}")
 
 
 def scene_text(network: Network, heading: str, base: Base | None) -> str:
@@ -111,6 +114,18 @@ def _sizes(network: Network) -> dict[str, Value]:
 
 
 def _well(lines: Sequence[Line]) -> str:
-    """A well in the longest fracture."""
-    longest = max(lines, key=lambda line: line.length)
-    return group_text("injection", {"fracture": longest.name, "rate": 1.0e-5, "pressure": 28.0e6})
+    """A well in the longest fracture of what hangs together over the largest length."""
+    shapes = [LineString(line.points) for line in lines]
+    tree = STRtree(shapes)
+    # shares of a cell's size are nothing here, and meeting ends differ by rounding
+    touching = [tree.query(shape, "dwithin", 1e-9 * shape.length) for shape in shapes]
+    cluster = list(range(len(lines)))
+    for i, others in enumerate(touching):
+        for j in others:
+            old, new = cluster[int(j)], cluster[i]
+            cluster = [new if number == old else number for number in cluster]
+    total = [sum(lines[j].length for j, c in enumerate(cluster) if c == own) for own in cluster]
+    longest = max(range(len(lines)), key=lambda i: (total[i], lines[i].length))
+    return group_text(
+        "injection", {"fracture": lines[longest].name, "rate": 1.0e-5, "pressure": 28.0e6}
+    )

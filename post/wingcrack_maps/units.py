@@ -58,7 +58,7 @@ def could_be_degrees(content: Map) -> bool:
 
 def scale(content: Map, unit: str) -> None:
     """Turn all coordinates into metres."""
-    for item in (*content.lines, *content.areas):
+    for item in content.features:
         item.points = item.points * METRES[unit]
 
 
@@ -78,7 +78,7 @@ def shift(content: Map, origin: str) -> None:
         place = np.floor(low)
     else:
         place = np.array([float(word) for word in origin.split(",")])
-    for item in (*content.lines, *content.areas):
+    for item in content.features:
         item.points = item.points - place
     content.note(
         "shift",
@@ -87,4 +87,4 @@ def shift(content: Map, origin: str) -> None:
 
 
 def _all_points(content: Map) -> list[Points]:
-    return [item.points for item in (*content.lines, *content.areas)]
+    return [item.points for item in content.features]

@@ -70,7 +70,7 @@ def _short(parameter: Parameter) -> str:
 
 
 def _sentence(meaning: str, ends: str = ".;:") -> str:
-    """Give what stands before one of these marks, which count only after a word and in no bracket."""
+    """Give what stands before one of these marks, if it ends a word outside of brackets."""
     plain, depth = meaning.replace("`", ""), 0
     for k, mark in enumerate(plain):
         depth += (mark == "(") - (mark == ")")
