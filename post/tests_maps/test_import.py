@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import f90nml
 import gmsh
 import pytest
 
@@ -206,7 +207,7 @@ def test_gmsh_regions_sides_and_an_embedded_fracture(tmp_path: Path) -> None:
     gmsh.write(str(tmp_path / "m.msh"))
     gmsh.finalize()
 
-    status, scene = imported(tmp_path / "m.msh")
+    status, scene = imported(tmp_path / "m.msh", "--region", "gneiss:young=5e10")
     assert status == 0
     found = fractures(scene)
     assert list(found) == ["fault"]
@@ -214,8 +215,9 @@ def test_gmsh_regions_sides_and_an_embedded_fracture(tmp_path: Path) -> None:
     assert ends == [(5.0, 5.0), (15.0, 12.0)]
     text = scene.read_text()
     assert "&domain x_min = 0.0, x_max = 40.0, y_min = 0.0, y_max = 20.0 /" in text
-    assert "name = 'granite'" in text
-    assert "name = 'gneiss'" in text
+    assert "! &region name = 'granite'" in text
+    assert f90nml.read(scene)["region"]["name"] == "gneiss"
+    assert ("no rock", "", "") in rows(scene, "noted")
     assert "'foot' lies on the rim" in scene.with_suffix(".repairs.csv").read_text()
 
 

@@ -121,6 +121,13 @@ def _add_import(commands: argparse._SubParsersAction[_Parser]) -> _Parser:
     parser.add_argument(
         "--polygons", choices=("boundary", "region"), help="what polygons are that do not say it"
     )
+    parser.add_argument(
+        "--region",
+        action="append",
+        default=[],
+        metavar="REGION:NAME=VALUE",
+        help="entry of a region, as marl:young=5e9",
+    )
     _add_common(parser, needs_out=False)
     return parser
 

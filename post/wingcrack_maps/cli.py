@@ -14,7 +14,7 @@ from shapely.geometry import Polygon
 from wingcrack_maps.arguments import parse
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
-from wingcrack_maps.entries import complete, entry_values, give_names, setting
+from wingcrack_maps.entries import complete, entry_values, give_names, set_regions, setting
 from wingcrack_maps.faults import SAME, Limits, extent, find_faults
 from wingcrack_maps.features import Map
 from wingcrack_maps.random_network import Set, random_network
@@ -67,6 +67,8 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     if not content.lines:
         raise SceneError(f"{path}: it has no lines, so no fractures")
     give_names(content, base.names if base is not None else set())
+    if given.command == "import":
+        set_regions(given.region, content)
     _add_entries(given, content, path, base)
     body = _body(given, content, base)
     if base is None:
@@ -95,9 +97,10 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     }
     report.add_repairs(repairs)
     report.add_faults(left, content.lines)
+    network = _network(given, content, path, body, base)
     report.add_notes(content.notes)
     print(terminal_text(report), flush=True)
-    text = scene_text(_network(given, content, path, body, base), _heading(given, path), base)
+    text = scene_text(network, _heading(given, path), base)
     _write(given.out, text, report)
     return report
 
@@ -144,13 +147,19 @@ def _network(
 ) -> Network:
     regions = [area for area in content.areas if area.role == "region"]
     region_values = entry_values("region", regions, content, path)
+    for area, values in zip(regions, region_values, strict=True):
+        if not values:
+            content.note(
+                "no rock", f"region '{area.name}' has no rock of its own: the scene has it as a"
+                " comment; an attribute or --region gives it some"
+            )  # fmt: skip
     cell = given.cell
     if cell is None and base is not None:
         cell = base.number("coarse", "size_fracture") or base.number("fe", "size_fracture")
     if cell is None:
         cell = cell_size(content.lines)
-    values = [line.attributes for line in content.lines]
-    return Network(content.lines, values, regions, region_values, body, cell)  # type: ignore[arg-type]
+    line_values = [line.attributes for line in content.lines]
+    return Network(content.lines, line_values, regions, region_values, body, cell)  # type: ignore[arg-type]
 
 
 def _heading(given: argparse.Namespace, path: str) -> str:

@@ -127,14 +127,29 @@ def _number(value: object) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def setting(text: str, group: Group) -> tuple[str, Value]:
+def set_regions(texts: Sequence[str], content: Map) -> None:
+    """Give regions what the command line says of them, as REGION:NAME=VALUE."""
+    for text in texts:
+        name, mark, rest = text.partition(":")
+        found = [area for area in content.areas if area.name == name and area.role == "region"]
+        if not (mark and found):
+            known = ", ".join(area.name for area in content.areas if area.role == "region")
+            raise SceneError(
+                f"--region {text}: it must be REGION:NAME=VALUE with a REGION of the map"
+                f" ({known or 'which has none'})"
+            )
+        word, value = setting(rest, groups()["region"], "--region")
+        found[0].attributes[word] = value
+
+
+def setting(text: str, group: Group, option: str = "--set") -> tuple[str, Value]:
     """Understand NAME=VALUE of the command line for a group."""
     name, mark, value = text.partition("=")
     name = name.strip().lower()
     if not mark or name not in group.parameters or name in _GEOMETRIC:
         known = ", ".join(n for n in group.parameters if n not in _GEOMETRIC)
-        raise SceneError(f"--set {text}: it must be NAME=VALUE with a NAME of {known}")
-    return name, entry_value(group.parameters[name], value.strip(), f"--set {text}")
+        raise SceneError(f"{option} {text}: it must be NAME=VALUE with a NAME of {known}")
+    return name, entry_value(group.parameters[name], value.strip(), f"{option} {text}")
 
 
 def complete(

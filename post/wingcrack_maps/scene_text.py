@@ -99,7 +99,10 @@ def _geometry(network: Network, base: Base | None) -> str:
         pieces.append(group_text(name, _sizes(network)))
     for area, values in zip(network.regions, network.region_values, strict=True):
         x, y = (list(map(float, row)) for row in area.points.T)
-        pieces.append(group_text("region", {"name": area.name, "x": x, "y": y, **values}))
+        text = group_text("region", {"name": area.name, "x": x, "y": y, **values})
+        if not values:  # without rock of its own a region is none
+            text = "".join(f"! {line}\n" for line in text.splitlines())
+        pieces.append(text)
     for line, values in zip(network.lines, network.line_values, strict=True):
         x, y = (list(map(float, row)) for row in line.points.T)
         pieces.append(group_text("fracture", {"name": line.name, "x": x, "y": y, **values}))
