@@ -143,6 +143,8 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
         ("m.geojson", '{"type": "LineString", "coordinates": "x"}', "has no geometry that can"),
         ("m.geojson", '{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}', "give --unit m"),
         ("m.geo", "Point(1)={0,0,0};", "it has no physical curves or surfaces"),
+        ("m.geo", "// x\nSystemCall 'touch x';\n", "m.geo:2: SystemCall is not run in a map"),
+        ("m.geo", "Include 'other.geo';\n", "m.geo:1: Include is not run in a map"),
         ("m.msh", "nonsense\n", "gmsh cannot read it"),
     ],
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,11 @@ from shapely.ops import linemerge
 from wingcrack_maps.features import Area, Line, Map, Points
 from wingcrack_scenes.errors import SceneError
 
+_COMMANDS = re.compile(
+    r"\b(NonBlocking)?System(Call)?\b|\b(Include|Merge|ShapeFromFile|OnelabRun|Plugin|Print|Save)\b"
+    r"|\b(Parse|Eval|Call|Macro)\w*\b|\bPrintf\b"
+)
+
 
 def read_gmsh(path: Path) -> Map:
     """Read the physical groups of a file.
@@ -22,6 +28,7 @@ def read_gmsh(path: Path) -> Map:
     note; the others are fractures. The outline of all physical surfaces is the body's, and each
     surface a region where there are several.
     """
+    _refuse_commands(path)
     gmsh.initialize(["wingcrack"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -34,6 +41,23 @@ def read_gmsh(path: Path) -> Map:
         raise SceneError(f"{path}: gmsh cannot read it: {said}") from None
     finally:
         gmsh.finalize()
+
+
+def _refuse_commands(path: Path) -> None:
+    """Refuse a script that could start programs or read further files: a map is data."""
+    if path.suffix.lower() != ".geo":
+        return
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as reason:
+        raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
+    for number, line in enumerate(lines, start=1):
+        found = _COMMANDS.search(line)
+        if found:
+            raise SceneError(
+                f"{path}:{number}: {found[0]} is not run in a map, which must hold geometry only;"
+                " mesh it with gmsh yourself and import the .msh file"
+            )
 
 
 def _read(path: Path) -> Map:
