@@ -145,7 +145,12 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
         ("m.geo", "Point(1)={0,0,0};", "it has no physical curves or surfaces"),
         ("m.geo", "// x\nSystemCall 'touch x';\n", "m.geo:2: SystemCall is not run in a map"),
         ("m.geo", "Include 'other.geo';\n", "m.geo:1: Include is not run in a map"),
-        ("m.msh", "nonsense\n", "gmsh cannot read it"),
+        ("m.msh", "SystemCall 'touch x';\n", "no mesh of gmsh, which begins with $MeshFormat"),
+        ("m.msh", "$MeshFormat\nnonsense\n", "gmsh cannot read it"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n", "all its lines lie at one place"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n2,2,2,2\n", "no fracture has a length"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n2,2,9,9\n", "check refuses the scene"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,1e300,1\n", "row 2 has a coordinate of 1e+300 m, but none"),
     ],
 )  # fmt: skip
 def test_bad_maps_are_refused_with_a_sentence(

@@ -66,6 +66,8 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     base = read_base(given.scene)
     if not content.lines:
         raise SceneError(f"{path}: it has no lines, so no fractures")
+    if extent(content.lines) == 0.0:
+        raise SceneError(f"{path}: all its lines lie at one place and have no length")
     give_names(content, base.names if base is not None else set())
     if given.command == "import":
         set_regions(given.region, content)
@@ -135,7 +137,9 @@ def _body(given: argparse.Namespace, content: Map, base: Base | None) -> Polygon
 
 
 def _limits(given: argparse.Namespace, content: Map) -> Limits:
-    lengths = sorted(line.length for line in content.lines)
+    lengths = sorted(line.length for line in content.lines if line.length > 0.0)
+    if not lengths:
+        raise SceneError("no fracture has a length: each lies at one place")
     near = given.repair or given.near or lengths[len(lengths) // 2] / 40.0
     if given.repair is not None and given.near not in (None, given.repair):
         raise SceneError("--near and --repair ask for two distances; give one of them")

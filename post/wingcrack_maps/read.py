@@ -45,7 +45,7 @@ def read_map(path: Path, unit: str | None) -> Map:
                 " project the map first"
             )
         found.note("coordinate system", "the map says none; its numbers are taken as metres")
-    scale(found, unit or "m")
+    scale(found, unit or "m", str(path))
     return found
 
 

@@ -45,12 +45,14 @@ def read_gmsh(path: Path) -> Map:
 
 def _refuse_commands(path: Path) -> None:
     """Refuse a script that could start programs or read further files: a map is data."""
-    if path.suffix.lower() != ".geo":
-        return
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
+    if path.suffix.lower() == ".msh":  # gmsh would take anything else for a script
+        if not (lines and lines[0].strip() == "$MeshFormat"):
+            raise SceneError(f"{path}: no mesh of gmsh, which begins with $MeshFormat")
+        return
     for number, line in enumerate(lines, start=1):
         found = _COMMANDS.search(line)
         if found:

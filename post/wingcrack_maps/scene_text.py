@@ -60,7 +60,7 @@ class Network:
 
 def cell_size(lines: Sequence[Line]) -> float:
     """Cells at the fractures: an eighth of the median length, at most the shortest fracture [m]."""
-    lengths = np.array([line.length for line in lines])
+    lengths = np.array([line.length for line in lines if line.length > 0.0])
     size = min(float(np.median(lengths)) / _CELLS, float(lengths.min()))
     grain = 10.0 ** (math.floor(math.log10(size)) - 1)
     return float(f"{math.floor(size / grain * (1.0 + 1e-12)) * grain:.2g}")

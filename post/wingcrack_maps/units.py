@@ -11,6 +11,8 @@ from wingcrack_scenes.errors import SceneError
 
 METRES = {"m": 1.0, "km": 1000.0, "ft": 0.3048, "cm": 0.01, "mm": 0.001}
 
+_FARTHEST = 1e8  # [m]
+
 # Projected systems among the numbers that the EPSG registry otherwise gives to geographic ones.
 _PROJECTED = (range(4087, 4089), range(4217, 4218), range(4399, 4464), range(4484, 4490),
               range(4491, 4556), range(4559, 4560), range(4568, 4600), range(4647, 4648),
@@ -56,10 +58,21 @@ def could_be_degrees(content: Map) -> bool:
     return bool((np.abs(places[:, 0]) <= 180.0).all() and (np.abs(places[:, 1]) <= 90.0).all())
 
 
-def scale(content: Map, unit: str) -> None:
-    """Turn all coordinates into metres."""
+def scale(content: Map, unit: str, path: str) -> None:
+    """Turn all coordinates into metres.
+
+    Raises
+    ------
+    SceneError
+        If one is farther from the origin than the earth is wide.
+    """
     for item in content.features:
         item.points = item.points * METRES[unit]
+        if np.abs(item.points).max() > _FARTHEST:
+            raise SceneError(
+                f"{path}: {item.source} has a coordinate of {np.abs(item.points).max():.3g} m, but"
+                f" none may be beyond {_FARTHEST:.0e} m"
+            )
 
 
 def shift(content: Map, origin: str) -> None:
