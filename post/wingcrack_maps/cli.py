@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from shapely.geometry import Polygon
 
@@ -31,6 +33,7 @@ from wingcrack_scenes.solver import check
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status: 0 done, 2 bad input, 3 lacking solver."""
     given = parse(arguments)
+    signal.signal(signal.SIGTERM, _end)
     try:
         content, path = _content(given)
         report = _make(given, content, path)
@@ -40,11 +43,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SolverLackingError as reason:
         print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
         return 3
+    except KeyboardInterrupt:
+        print(f"wingcrack {given.command}: interrupted; nothing was written", file=sys.stderr)
+        return 130
     left = report.number("left")
     if left and given.repair is None:
         print(f"{left} faults are left as they are; --repair DISTANCE repairs them.")
     print(f"{given.out} is written, and with {given.out.stem}.repairs.csv and .json what was done.")
     return 0
+
+
+def _end(number: int, frame: object) -> NoReturn:
+    """End on SIGTERM in a way that tidies up."""
+    sys.exit(128 + number)
+
+
+def _tell(done: int, left: int) -> None:
+    """Say how far a long repair is, on a terminal."""
+    if sys.stderr.isatty():
+        print(f"\r{done} repairs, {left} faults left  ", end="", file=sys.stderr, flush=True)
+        if left == 0:
+            print(file=sys.stderr)
 
 
 def _content(given: argparse.Namespace) -> tuple[Map, str]:
@@ -82,7 +101,7 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     report = Report(path, limits.near, limits.angle_deg)
     repairs: list[Repair] = []
     if given.repair is not None:
-        content.lines, repairs = repair(content.lines, body, limits, given.ends)
+        content.lines, repairs = repair(content.lines, body, limits, given.ends, _tell)
         if not content.lines:
             raise SceneError(f"{path}: with --repair {given.repair:g} no fracture would be left")
     left = find_faults(content.lines, body, limits)

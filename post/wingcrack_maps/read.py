@@ -7,7 +7,6 @@ from pathlib import Path
 from wingcrack_maps.features import Map
 from wingcrack_maps.read_csv import read_csv
 from wingcrack_maps.read_geojson import read_geojson
-from wingcrack_maps.read_gmsh import read_gmsh
 from wingcrack_maps.read_wkt import read_wkt
 from wingcrack_maps.units import could_be_degrees, scale
 from wingcrack_scenes.errors import SceneError
@@ -31,6 +30,9 @@ def read_map(path: Path, unit: str | None) -> Map:
     """
     ending = path.suffix.lower()
     if ending in (".msh", ".geo"):
+        # late: only these take gmsh's library
+        from wingcrack_maps.read_gmsh import read_gmsh
+
         found = read_gmsh(path)
         says_system = True
     else:

@@ -45,7 +45,11 @@ class Repair:
 
 
 def repair(
-    lines: Sequence[Line], body: Polygon | None, limits: Limits, ends: str
+    lines: Sequence[Line],
+    body: Polygon | None,
+    limits: Limits,
+    ends: str,
+    tell: Callable[[int, int], None] = lambda done, left: None,
 ) -> tuple[list[Line], list[Repair]]:
     """Repair what can be repaired.
 
@@ -53,6 +57,8 @@ def repair(
     ----------
     ends : str
         ``join`` moves an end onto what it is near to, ``gap`` cuts it back.
+    tell : callable
+        Is told after each round how many repairs are made and how many faults were left before it.
 
     Returns
     -------
@@ -65,6 +71,7 @@ def repair(
         if number == _PATIENCE:
             network.give_up_moving()
         faults = [f for f in find_faults(network.lines, body, limits) if f.kind not in HARMLESS]
+        tell(len(done), len(faults))
         made = network.round(faults)
         done.extend(made)
         if not made:
