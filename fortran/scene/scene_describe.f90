@@ -36,6 +36,8 @@ module scene_describe
       "* Rates are per metre of thickness.", &
       "* Groups and names may be in upper or lower case. Texts are taken as they are.", &
       "* A group is given once, unless it says `repeated`: then once per item.", &
+  "* `include 'rock.inc'` between groups stands for the groups of that file, which is looked for", &
+      "  beside the file that includes it, and may include others.", &
       "* Unknown groups and names, values of the wrong kind, values out of range and values that", &
       "  contradict each other are errors; nothing is run or written then.", &
       "* Every run writes `scene.nml`, the scene as understood with every default written out."]

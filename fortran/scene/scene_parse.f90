@@ -3,13 +3,14 @@ module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
+   use base_texts, only: text_t
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
                                need_choice, need_fluid, need_fracture, need_growth, need_tips, &
                                parameters
-   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
-                          refuse, sheet_t
+   use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
+                          path_beside, record_t, refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
-                           token_slash, token_text, token_word, tokenize
+                           token_slash, token_t, token_text, token_word, tokenize, unquoted
    use scene_types, only: name_length
    use scene_values, only: default_value, read_value, shortened, value_t
    use scene_words, only: is_identifier, lower_case, nearest_word
@@ -20,6 +21,7 @@ module scene_parse
 
    integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene
    integer, parameter :: most_groups = 10000
+   integer, parameter :: most_nested = 20  !< files that include each other
 
 contains
 
@@ -28,11 +30,22 @@ contains
       character(len=*), intent(in) :: path
       type(sheet_t), intent(out) :: sheet
       type(error_t), allocatable, intent(out) :: error
+
+      sheet%path = trim(path)
+      call parse_file([text_t ::], sheet, error)
+      if (allocated(error)) return
+      call complete(sheet, error)
+   end subroutine parse_scene
+
+   !> The groups of the file sheet%path, and of those that it includes.
+   recursive subroutine parse_file(parents, sheet, error)
+      type(text_t), intent(in) :: parents(:)  !< paths of the files that include it, from the first
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: source, fault
       type(token_list_t) :: tokens
       integer(ik) :: fault_line
 
-      sheet%path = trim(path)
       call load(sheet%path, source, error)
       if (allocated(error)) return
       call tokenize(source, tokens, fault, fault_line)
@@ -40,10 +53,44 @@ contains
          call raise_error(error, "", sheet%path//":"//integer_text(fault_line)//": "//fault)
          return
       end if
-      call parse_groups(source, tokens, sheet, error)
-      if (allocated(error)) return
-      call complete(sheet, error)
-   end subroutine parse_scene
+      call parse_groups(source, tokens, parents, sheet, error)
+   end subroutine parse_file
+
+   !> `include 'path'` between groups: the groups of that file stand here. Its path is seen from the
+   !! folder of the file that includes it.
+   recursive subroutine include_file(quoted, line, parents, sheet, error)
+      character(len=*), intent(in) :: quoted  !< the path in its quotes
+      integer(ik), intent(in) :: line
+      type(text_t), intent(in) :: parents(:)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(text_t), allocatable :: chain(:)
+      character(len=:), allocatable :: here
+      logical :: exists
+      integer :: k
+
+      here = sheet%path
+      chain = [parents, text_t(here)]
+      sheet%path = path_beside(here, unquoted(quoted))
+      inquire (file=sheet%path, exist=exists)
+      do k = 1, size(chain)
+         if (chain(k)%text /= sheet%path) cycle
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          " goes round in a circle: that file includes this one")
+         return
+      end do
+      if (size(chain) > most_nested) then
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          " is nested too deeply, in more than "// &
+                          integer_text(int(most_nested, ik))//" files")
+      else if (.not. exists) then
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          ": there is no file "//sheet%path)
+      else
+         call parse_file(chain, sheet, error)
+      end if
+      if (.not. allocated(error)) sheet%path = here
+   end subroutine include_file
 
    !> The bytes of a file.
    subroutine load(path, source, error)
@@ -79,9 +126,10 @@ contains
    end subroutine load
 
    !> All groups of a file.
-   pure subroutine parse_groups(source, tokens, sheet, error)
+   recursive subroutine parse_groups(source, tokens, parents, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
+      type(text_t), intent(in) :: parents(:)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
       type(record_t) :: record
@@ -89,6 +137,14 @@ contains
 
       next = 1
       do while (tokens%items(next)%kind /= token_end)
+         if (is_include(source, tokens%items(next), tokens%items(next + 1))) then
+            associate (path => tokens%items(next + 1))
+               call include_file(source(path%first:path%last), path%line, parents, sheet, error)
+            end associate
+            if (allocated(error)) return
+            next = next + 2
+            cycle
+         end if
          associate (token => tokens%items(next))
             if (token%kind /= token_group) then
                call raise_error(error, "", place(sheet, token%line)//"'"// &
@@ -105,6 +161,7 @@ contains
             earlier = 0
             if (.not. groups(group)%repeated) earlier = sheet%find(trim(groups(group)%name))
             record = empty_record(group, token%line)
+            record%path = sheet%path
          end associate
          call add_record(sheet, record)
          if (sheet%length > most_groups) then
@@ -112,8 +169,9 @@ contains
                         integer_text(int(most_groups, ik))//" groups that a scene may have")
             return
          else if (earlier > 0) then
-            call refuse(error, sheet, sheet%length, "", "is given twice, first on line "// &
-                        integer_text(sheet%records(earlier)%line)//", but must be given once")
+            call refuse(error, sheet, sheet%length, "", "is given twice, first on "// &
+                        line_text(sheet, earlier, sheet%records(earlier)%line, sheet%length)// &
+                        ", but must be given once")
             return
          end if
          next = next + 1
@@ -173,6 +231,16 @@ contains
       end associate
       next = next + 1
    end subroutine parse_values
+
+   !> The word include with a text behind it; the last token, token_end, is never one.
+   pure logical function is_include(source, token, next)
+      character(len=*), intent(in) :: source
+      type(token_t), intent(in) :: token, next
+
+      is_include = .false.
+      if (token%kind /= token_word .or. next%kind /= token_text) return
+      is_include = lower_case(source(token%first:token%last)) == "include"
+   end function is_include
 
    !> A word with `=` behind it; the last token, token_end, is never one.
    pure logical function begins_value(kind, next_kind)

@@ -13,7 +13,7 @@ module scene_schedule
    use base_number, only: integer_text
    use base_texts, only: text_t
    use scene_parameters, only: groups, kind_reals, parameter_t, parameters
-   use scene_sheet, only: parameter_index, refuse, sheet_t
+   use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
    use scene_tokens, only: token_list_t, tokenize
    use scene_values, only: read_value, shortened, value_t
    use scene_words, only: lower_case
@@ -54,7 +54,7 @@ contains
          if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
          if (.not. file%is_set) cycle
-         call load_table(sheet, i, path_beside(sheet%path, file%text), file%line, error)
+         call load_table(sheet, i, path_beside(path_of(sheet, i), file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
             record%values(parameter_index(record%group, "schedule"))%is_set = .false.
@@ -78,16 +78,6 @@ contains
          return
       end do
    end subroutine refuse_both
-
-   !> A path as seen from the folder of a scene file.
-   pure function path_beside(scene_path, path) result(whole)
-      character(len=*), intent(in) :: scene_path, path
-      character(len=:), allocatable :: whole
-
-      whole = path
-      if (index(path, "/") == 1) return
-      whole = scene_path(:index(scene_path, "/", back=.true.))//path
-   end function path_beside
 
    !> Read a table into a group.
    subroutine load_table(sheet, record, path, line, error)
