@@ -38,6 +38,9 @@ module scene_describe
       "* A group is given once, unless it says `repeated`: then once per item.", &
   "* `include 'rock.inc'` between groups stands for the groups of that file, which is looked for", &
       "  beside the file that includes it, and may include others.", &
+   "* `&define depth = 2500.0, stress = '-24.0e3*depth' /` gives names to numbers. From there on", &
+      "  a text in place of a number is an expression of numbers, such names, + - * / ^ and", &
+      "  brackets: `sxx = 'stress', syy = '0.6*stress'`.", &
       "* Unknown groups and names, values of the wrong kind, values out of range and values that", &
       "  contradict each other are errors; nothing is run or written then.", &
       "* Every run writes `scene.nml`, the scene as understood with every default written out."]

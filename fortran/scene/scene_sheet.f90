@@ -3,6 +3,7 @@ module scene_sheet
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
+   use scene_expression, only: constant_t
    use scene_parameters, only: choice_name, choice_value, groups, parameters
    use scene_values, only: value_t
    implicit none(type, external)
@@ -32,6 +33,7 @@ module scene_sheet
       character(len=:), allocatable :: path
       type(record_t), allocatable :: records(:)
       integer :: length = 0  !< records in use
+      type(constant_t), allocatable :: constants(:)  !< named values, in order; unallocated: none yet
    contains
       procedure :: find
       procedure :: has
