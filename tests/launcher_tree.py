@@ -130,11 +130,19 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     (root / "requirements.txt").write_text(requirements)
     (root / "requirements_developer.txt").write_text("")
     (root / "requirements_study.txt").write_text("")
+    (root / "requirements_maps.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
     # The real packages understand their arguments; what they do with them is replaced.
-    for package in ("wingcrack_post", "wingcrack_study", "wingcrack_verify", "wingcrack_bench"):
+    for package in (
+        "wingcrack_post",
+        "wingcrack_study",
+        "wingcrack_verify",
+        "wingcrack_bench",
+        "wingcrack_scenes",
+        "wingcrack_maps",
+    ):
         shutil.copytree(TOP / "post" / package, root / "post" / package)
         (root / "post" / package / "__main__.py").write_text(_POST)
     place = folder / "place"

@@ -12,7 +12,24 @@ from launcher_tree import TOP
 
 LAUNCHER = TOP / "wingcrack"
 SCENE = TOP / "inputs" / "paper_c" / "onset.nml"
-COMMANDS = ("run", "check", "plot", "study", "verify", "bench", "test", "build", "format", "lint")
+COMMANDS = (
+    "run",
+    "check",
+    "plot",
+    "new",
+    "import",
+    "network",
+    "study",
+    "verify",
+    "bench",
+    "test",
+    "build",
+    "format",
+    "lint",
+)
+MAP = TOP / "inputs" / "examples" / "outcrop.geojson"
+LAWS = ["--box", "0,0,9,9", "--density", "p20=1", "--length", "constant:1"]
+LAWS += ["--orientation", "uniform"]
 
 
 def call(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -70,6 +87,33 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["study", str(SCENE), "--jobs", "0"], "'0' is no whole number from 1 to 1024"),
         (["study", str(SCENE), "--cluster", "moon"], "invalid choice: 'moon'"),
         (["study", str(SCENE), "--out", f"{SCENE}/deeper"], "onset.nml is a file"),
+        (["new", "reactor"], "there is no kind 'reactor' (there are: injection, network"),
+        (["new", "--out", "scene.txt"], "--out must end in .nml, unlike scene.txt"),
+        (["new", "--out", "nowhere/scene.nml"], "the scene cannot go to nowhere/scene.nml"),
+        (["new", "--out", "Störung 1.nml"], "may have letters, digits"),
+        (["new", "--out", str(SCENE)], "onset.nml is there already; --overwrite replaces it"),
+        (["import"], "the following arguments are required: MAP"),
+        (["import", "nowhere.csv"], "there is no map nowhere.csv"),
+        (["import", "."], ". is a folder, not a map"),
+        (["import", str(SCENE)], "which says what it is"),
+        (["import", str(MAP), "--unit", "mile"], "argument --unit: invalid choice: 'mile'"),
+        (["import", str(MAP), "--repair", "0"], "'0' must be greater than 0"),
+        (["import", str(MAP), "--repair", "nan"], "'nan' is no number"),
+        (["import", str(MAP), "--angle", "1"], "'1' must be from 3 to 45 degrees"),
+        (["import", str(MAP), "--origin", "1;2"], "'1;2' must be X,Y, centre or corner"),
+        (["import", str(MAP), "--scene", "none.nml"], "there is no scene file none.nml"),
+        (["import", str(MAP), "--out", str(SCENE)], "onset.nml is there already"),
+        (["network"], "the following arguments are required: --box"),
+        (["network", *LAWS], "the following arguments are required: --out"),
+        (["network", *LAWS[:-2], "--out", "n.nml"], "arguments are required: --orientation"),
+        (["network", *LAWS, *LAWS[2:4], "--out", "n.nml"], "must be given equally often"),
+        (["network", *LAWS, "--box", "1,0,0,1"], "'1,0,0,1' must be X0,Y0,X1,Y1 with X0 < X1"),
+        (["network", *LAWS, "--density", "p32=1"], "'p32=1' must be p20=N or p21=L"),
+        (["network", *LAWS, "--length", "power:2,1"], "'power:2,1' has 2 numbers after its name"),
+        (["network", *LAWS, "--length", "power:2,4,1"], "MIN must be less than MAX"),
+        (["network", *LAWS, "--length", "constant:-1"], "lengths must be greater than 0"),
+        (["network", *LAWS, "--orientation", "fisher:1,2"], "is none of uniform, constant"),
+        (["network", *LAWS, "--seed", "1.5"], "'1.5' is no whole number from 0 on"),
         (["verify", "--fast"], "unrecognized arguments: --fast"),
         (["verify", "no_such_case"], "there is no case 'no_such_case'"),
         (["verify", "--jobs"], "--jobs: expected one argument"),

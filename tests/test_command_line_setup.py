@@ -295,8 +295,32 @@ def test_the_tools_of_a_developer_are_not_for_everyone(own_tree: Tree) -> None:
     assert own_tree.call("build", WINGCRACK_NO_INSTALL="1").returncode == 0
 
 
+def test_what_maps_take_is_not_for_everyone(own_tree: Tree) -> None:
+    (own_tree.root / "requirements_maps.txt").write_text("no-such-thing==2.0\n")
+    (own_tree.place / "m.csv").write_text("x1,y1,x2,y2\n0,0,1,1\n")
+    laws = ["--box=0,0,9,9", "--density=p20=1", "--length=constant:1", "--orientation=uniform"]
+    for call in (["import", "m.csv"], ["network", *laws, "--out", "n.nml"]):
+        done = own_tree.call(*call, WINGCRACK_NO_INSTALL="1")
+        assert done.returncode == 3
+        assert "no-such-thing==2.0" in done.stderr
+    done = own_tree.call("new", "network", WINGCRACK_NO_INSTALL="1")
+    assert (done.returncode, done.stdout) == (0, "post new network\n")
+
+
+def test_a_map_and_a_network_are_handed_over(own_tree: Tree) -> None:
+    (own_tree.place / "my map.csv").write_text("x1,y1,x2,y2\n0,0,1,1\n")
+    done = own_tree.call("import", "my map.csv", "--set", "friction=0.5", POST_STATUS="2")
+    assert done.returncode == 2
+    assert done.stdout == "post import my map.csv --set friction=0.5\n"
+
+
 def test_a_wrong_call_is_refused_before_anything_is_set_up(bare_tree: Tree) -> None:
-    for call in (["verify", "--jobs", "x"], ["bench", "x"], ["plot", ".", "--only", "x"]):
+    for call in (
+        ["verify", "--jobs", "x"],
+        ["bench", "x"],
+        ["plot", ".", "--only", "x"],
+        ["new", "x"],
+    ):
         done = bare_tree.call(*call)
         assert (done.returncode, done.stdout) == (2, "")
         assert "'x'" in done.stderr
@@ -305,7 +329,7 @@ def test_a_wrong_call_is_refused_before_anything_is_set_up(bare_tree: Tree) -> N
     assert not (bare_tree.root / "build").exists()
 
 
-@pytest.mark.parametrize("command", ["verify", "bench", "plot"])
+@pytest.mark.parametrize("command", ["verify", "bench", "plot", "new", "import", "network"])
 def test_help_does_not_wait_for_an_installation(bare_tree: Tree, command: str) -> None:
     done = bare_tree.call(command, "--help")
     assert (done.returncode, done.stderr) == (0, "")

@@ -41,6 +41,12 @@ prepare_study() {
     prepare "$solver_target"
 }
 
+# prepare_maps: see to what fracture maps and random networks take, beside the rest.
+prepare_maps() {
+    requirement_lists+=("$root/requirements_maps.txt")
+    prepare "$solver_target"
+}
+
 # with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.
 with_lock() {
     local lock

@@ -11,7 +11,7 @@ module app_geometry
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
                           culprit_t, fault_t, with_name
    use mesh_types, only: network_t
-   use scene_sheet, only: refuse, sheet_t
+   use scene_sheet, only: line_text, refuse, sheet_t
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -50,7 +50,7 @@ contains
          if (i == 1) then
             first_record = record
          else if (all(record /= [first_record, sheet%find("domain")])) then
-            name = name//" (line "//integer_text(sheet%records(record)%line)//")"
+          name = name//" ("//line_text(sheet, record, sheet%records(record)%line, first_record)//")"
          end if
          reason = with_name(reason, "{"//integer_text(int(i, ik))//"}", name)
       end do

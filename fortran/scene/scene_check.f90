@@ -3,7 +3,6 @@
 module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk
-   use base_number, only: integer_text
    use base_tolerances, only: round_off
    use scene_check_column, only: check_column
    use scene_check_faces, only: check_faces
@@ -17,7 +16,7 @@ module scene_check
    use scene_check_table, only: check_table
    use scene_check_wells, only: check_given_wells, check_wells
    use scene_parameters, only: groups
-   use scene_sheet, only: refuse, sheet_t
+   use scene_sheet, only: line_text, refuse, sheet_t
    use scene_storage, only: least_compressibility, skempton, storage
    use scene_types, only: scene_t
    use scene_values, only: value_t
@@ -93,8 +92,8 @@ contains
             other = sheet%records(j)%value("name")
             if (.not. other%is_set) cycle
             if (name%text /= other%text) cycle
-            call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on line "// &
-                        integer_text(other%line)//" but must be unique")
+            call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on "// &
+                        line_text(sheet, j, other%line, i)//" but must be unique")
             return
          end do
       end do

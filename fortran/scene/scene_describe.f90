@@ -36,6 +36,11 @@ module scene_describe
       "* Rates are per metre of thickness.", &
       "* Groups and names may be in upper or lower case. Texts are taken as they are.", &
       "* A group is given once, unless it says `repeated`: then once per item.", &
+  "* `include 'rock.inc'` between groups stands for the groups of that file, which is looked for", &
+      "  beside the file that includes it, and may include others.", &
+   "* `&define depth = 2500.0, stress = '-24.0e3*depth' /` gives names to numbers. From there on", &
+      "  a text in place of a number is an expression of numbers, such names, + - * / ^ and", &
+      "  brackets: `sxx = 'stress', syy = '0.6*stress'`.", &
       "* Unknown groups and names, values of the wrong kind, values out of range and values that", &
       "  contradict each other are errors; nothing is run or written then.", &
       "* Every run writes `scene.nml`, the scene as understood with every default written out."]

@@ -1,18 +1,21 @@
 !> Reads a scene file into a sheet: syntax, names, kinds and ranges are checked here, one by one.
 module scene_parse
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, lk
+   use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
+   use base_texts, only: text_t
+   use scene_expression, only: constant_t, evaluate
+   use scene_parameter_types, only: kind_real, kind_reals, parameter_t
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
                                need_choice, need_fluid, need_fracture, need_growth, need_tips, &
                                parameters
-   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, record_t, &
-                          refuse, sheet_t
+   use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
+                          path_beside, record_t, refuse, sheet_t
    use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
-                           token_slash, token_text, token_word, tokenize
+                           token_slash, token_t, token_text, token_word, tokenize, unquoted
    use scene_types, only: name_length
    use scene_values, only: default_value, read_value, shortened, value_t
-   use scene_words, only: is_identifier, lower_case, nearest_word
+   use scene_words, only: is_identifier, lower_case, nearest_word, real_text
    implicit none(type, external)
    private
 
@@ -20,6 +23,7 @@ module scene_parse
 
    integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene
    integer, parameter :: most_groups = 10000
+   integer, parameter :: most_nested = 20  !< files that include each other
 
 contains
 
@@ -28,11 +32,23 @@ contains
       character(len=*), intent(in) :: path
       type(sheet_t), intent(out) :: sheet
       type(error_t), allocatable, intent(out) :: error
+
+      sheet%path = trim(path)
+      allocate (sheet%constants(0))
+      call parse_file([text_t ::], sheet, error)
+      if (allocated(error)) return
+      call complete(sheet, error)
+   end subroutine parse_scene
+
+   !> The groups of the file sheet%path, and of those that it includes.
+   recursive subroutine parse_file(parents, sheet, error)
+      type(text_t), intent(in) :: parents(:)  !< paths of the files that include it, from the first
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: source, fault
       type(token_list_t) :: tokens
       integer(ik) :: fault_line
 
-      sheet%path = trim(path)
       call load(sheet%path, source, error)
       if (allocated(error)) return
       call tokenize(source, tokens, fault, fault_line)
@@ -40,10 +56,44 @@ contains
          call raise_error(error, "", sheet%path//":"//integer_text(fault_line)//": "//fault)
          return
       end if
-      call parse_groups(source, tokens, sheet, error)
-      if (allocated(error)) return
-      call complete(sheet, error)
-   end subroutine parse_scene
+      call parse_groups(source, tokens, parents, sheet, error)
+   end subroutine parse_file
+
+   !> `include 'path'` between groups: the groups of that file stand here. Its path is seen from the
+   !! folder of the file that includes it.
+   recursive subroutine include_file(quoted, line, parents, sheet, error)
+      character(len=*), intent(in) :: quoted  !< the path in its quotes
+      integer(ik), intent(in) :: line
+      type(text_t), intent(in) :: parents(:)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(text_t), allocatable :: chain(:)
+      character(len=:), allocatable :: here
+      logical :: exists
+      integer :: k
+
+      here = sheet%path
+      chain = [parents, text_t(here)]
+      sheet%path = path_beside(here, unquoted(quoted))
+      inquire (file=sheet%path, exist=exists)
+      do k = 1, size(chain)
+         if (chain(k)%text /= sheet%path) cycle
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          " goes round in a circle: that file includes this one")
+         return
+      end do
+      if (size(chain) > most_nested) then
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          " is nested too deeply, in more than "// &
+                          integer_text(int(most_nested, ik))//" files")
+      else if (.not. exists) then
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          ": there is no file "//sheet%path)
+      else
+         call parse_file(chain, sheet, error)
+      end if
+      if (.not. allocated(error)) sheet%path = here
+   end subroutine include_file
 
    !> The bytes of a file.
    subroutine load(path, source, error)
@@ -79,9 +129,10 @@ contains
    end subroutine load
 
    !> All groups of a file.
-   pure subroutine parse_groups(source, tokens, sheet, error)
+   recursive subroutine parse_groups(source, tokens, parents, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
+      type(text_t), intent(in) :: parents(:)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
       type(record_t) :: record
@@ -89,12 +140,26 @@ contains
 
       next = 1
       do while (tokens%items(next)%kind /= token_end)
+         if (is_include(source, tokens%items(next), tokens%items(next + 1))) then
+            associate (path => tokens%items(next + 1))
+               call include_file(source(path%first:path%last), path%line, parents, sheet, error)
+            end associate
+            if (allocated(error)) return
+            next = next + 2
+            cycle
+         end if
          associate (token => tokens%items(next))
             if (token%kind /= token_group) then
                call raise_error(error, "", place(sheet, token%line)//"'"// &
                                 shortened(source(token%first:token%last))// &
                                 "' stands outside of a group, where only comments may stand")
                return
+            end if
+            if (lower_case(source(token%first:token%last)) == "define") then
+               next = next + 1
+               call parse_constants(source, tokens, next, sheet, error)
+               if (allocated(error)) return
+               cycle
             end if
             group = group_index(lower_case(source(token%first:token%last)))
             if (group == 0) then
@@ -105,6 +170,7 @@ contains
             earlier = 0
             if (.not. groups(group)%repeated) earlier = sheet%find(trim(groups(group)%name))
             record = empty_record(group, token%line)
+            record%path = sheet%path
          end associate
          call add_record(sheet, record)
          if (sheet%length > most_groups) then
@@ -112,8 +178,9 @@ contains
                         integer_text(int(most_groups, ik))//" groups that a scene may have")
             return
          else if (earlier > 0) then
-            call refuse(error, sheet, sheet%length, "", "is given twice, first on line "// &
-                        integer_text(sheet%records(earlier)%line)//", but must be given once")
+            call refuse(error, sheet, sheet%length, "", "is given twice, first on "// &
+                        line_text(sheet, earlier, sheet%records(earlier)%line, sheet%length)// &
+                        ", but must be given once")
             return
          end if
          next = next + 1
@@ -163,8 +230,8 @@ contains
                if (begins_value(items(next)%kind, items(next + 1)%kind)) exit
                next = next + 1
             end do
-            call read_value(parameters(item), source, items(first:next - 1), record%values(item), &
-                            reason)
+            call read_resolved(parameters(item), source, items(first:next - 1), sheet%constants, &
+                               record%values(item), reason)
             if (allocated(reason)) then
                call refuse(error, sheet, sheet%length, trim(parameters(item)%name), reason)
                return
@@ -173,6 +240,121 @@ contains
       end associate
       next = next + 1
    end subroutine parse_values
+
+   !> Values where texts stand for numbers: below a &define those are expressions.
+   pure subroutine read_resolved(parameter, source, items, constants, value, reason)
+      type(parameter_t), intent(in) :: parameter
+      character(len=*), intent(in) :: source
+      type(token_t), intent(in) :: items(:)
+      type(constant_t), intent(in) :: constants(:)
+      type(value_t), intent(inout) :: value
+      character(len=:), allocatable, intent(out) :: reason
+      character(len=:), allocatable :: resolved, fault
+      type(token_list_t) :: tokens
+      integer(ik) :: fault_line
+      real(rk) :: number
+      integer :: k
+
+      if (size(constants) == 0 .or. .not. takes_expressions(parameter) .or. &
+          all(items%kind /= token_text)) then
+         call read_value(parameter, source, items, value, reason)
+         return
+      end if
+      resolved = ""
+      do k = 1, size(items)
+         associate (piece => source(items(k)%first:items(k)%last))
+            if (items(k)%kind /= token_text) then
+               resolved = resolved//" "//piece
+               cycle
+            end if
+            call evaluate(unquoted(piece), constants, number, fault)
+            if (allocated(fault)) then
+               reason = "is "//shortened(piece)//", which is no expression: "//fault
+               return
+            end if
+            resolved = resolved//" "//real_text(number)
+         end associate
+      end do
+      call tokenize(resolved, tokens, fault, fault_line)
+      call read_value(parameter, resolved, tokens%items(:tokens%length - 1), value, reason)
+   end subroutine read_resolved
+
+   !> Numbers, unless a text may stand in their place.
+   pure logical function takes_expressions(parameter)
+      type(parameter_t), intent(in) :: parameter
+
+      takes_expressions = any(parameter%kind == [kind_real, kind_reals]) .and. &
+                          len_trim(parameter%choices) == 0
+   end function takes_expressions
+
+   !> What stands between `&define` and `/`: names and what they stand for, from top to bottom.
+   pure subroutine parse_constants(source, tokens, next, sheet, error)
+      character(len=*), intent(in) :: source
+      type(token_list_t), intent(in) :: tokens
+      integer, intent(inout) :: next
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(constant_t) :: constant
+      character(len=:), allocatable :: fault, name, word
+      integer :: earlier
+
+      do while (tokens%items(next)%kind /= token_slash)
+         if (tokens%items(next)%kind == token_comma) then
+            next = next + 1
+            cycle
+         end if
+         constant%line = tokens%items(next)%line
+         name = lower_case(source(tokens%items(next)%first:tokens%items(next)%last))
+         if (any(tokens%items(next)%kind == [token_end, token_group])) then
+            fault = "is not ended by '/' as it must be"
+         else if (.not. begins_value(tokens%items(next)%kind, tokens%items(next + 1)%kind)) then
+          fault = "'"//shortened(name)//"' stands where 'name = value' or the closing '/' must "// &
+                    "stand"
+         else if (.not. is_constant_name(name)) then
+            fault = "'"//shortened(name)//"' is no name, which has letters, digits and '_', at "// &
+                    "most 64, and begins with a letter"
+         else if (all(tokens%items(next + 2)%kind /= [token_word, token_text])) then
+            fault = name//" has no value"
+         else
+            earlier = findloc(sheet%constants%name == name, .true., dim=1)
+            if (earlier > 0) fault = name//" is given twice, but must be given once"
+         end if
+         if (.not. allocated(fault)) then
+            word = source(tokens%items(next + 2)%first:tokens%items(next + 2)%last)
+            if (tokens%items(next + 2)%kind == token_text) word = unquoted(word)
+            constant%name = name
+            call evaluate(word, sheet%constants, constant%value, fault)
+            if (allocated(fault)) fault = name//" is '"//shortened(word)// &
+                                          "', which is no expression: "//fault
+         end if
+         if (allocated(fault)) then
+            call raise_error(error, "", place(sheet, constant%line)//"&define: "//fault// &
+                             " (see docs/input.md)")
+            return
+         end if
+         sheet%constants = [sheet%constants, constant]
+         next = next + 3
+      end do
+      next = next + 1
+   end subroutine parse_constants
+
+   pure logical function is_constant_name(word)
+      character(len=*), intent(in) :: word  !< in lower case
+      character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
+
+      is_constant_name = len(word) <= 64 .and. scan(word(1:1), letters) == 1 .and. &
+                         verify(word, letters//"0123456789_") == 0
+   end function is_constant_name
+
+   !> The word include with a text behind it; the last token, token_end, is never one.
+   pure logical function is_include(source, token, next)
+      character(len=*), intent(in) :: source
+      type(token_t), intent(in) :: token, next
+
+      is_include = .false.
+      if (token%kind /= token_word .or. next%kind /= token_text) return
+      is_include = lower_case(source(token%first:token%last)) == "include"
+   end function is_include
 
    !> A word with `=` behind it; the last token, token_end, is never one.
    pure logical function begins_value(kind, next_kind)

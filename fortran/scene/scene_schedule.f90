@@ -2,15 +2,18 @@
 !! side.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
-!! `pressure_pa`. Rows that begin with # are comments. What a table says becomes values of the
-!! group, so that all that follows, scene.nml as well, knows of lists alone.
+!! `pressure_pa`; times may be in min, h or d, pressures and tractions in kPa, MPa or bar instead.
+!! Columns are parted by commas, semicolons or tabs, whichever the first row has; where it is not
+!! commas, numbers may have a decimal comma, as spreadsheets write them in many countries. Rows that
+!! begin with # are comments. What a table says becomes values of the group, so that all that
+!! follows, scene.nml as well, knows of lists alone.
 module scene_schedule
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
    use base_texts, only: text_t
    use scene_parameters, only: groups, kind_reals, parameter_t, parameters
-   use scene_sheet, only: parameter_index, refuse, sheet_t
+   use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
    use scene_tokens, only: token_list_t, tokenize
    use scene_values, only: read_value, shortened, value_t
    use scene_words, only: lower_case
@@ -19,8 +22,22 @@ module scene_schedule
 
    public :: load_schedules
 
+   !> What some programs put before a text in UTF-8.
+   character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+
    !> What the first time of a table says besides.
    character(len=*), parameter :: start = "start"
+
+   !> A unit that a column may have instead of that of its parameter.
+   type :: unit_t
+      character(len=3) :: name, of  !< in lower case; of which unit
+      real(rk) :: factor  !< how many of these it is [-]
+   end type unit_t
+
+   type(unit_t), parameter :: other_units(*) = &
+                              [unit_t("min", "s", 60.0_rk), unit_t("h", "s", 3600.0_rk), &
+                               unit_t("d", "s", 86400.0_rk), unit_t("kpa", "pa", 1.0e3_rk), &
+                               unit_t("mpa", "pa", 1.0e6_rk), unit_t("bar", "pa", 1.0e5_rk)]
 
    integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no table
 
@@ -37,7 +54,7 @@ contains
          if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
          if (.not. file%is_set) cycle
-         call load_table(sheet, i, path_beside(sheet%path, file%text), file%line, error)
+         call load_table(sheet, i, path_beside(path_of(sheet, i), file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
             record%values(parameter_index(record%group, "schedule"))%is_set = .false.
@@ -62,16 +79,6 @@ contains
       end do
    end subroutine refuse_both
 
-   !> A path as seen from the folder of a scene file.
-   pure function path_beside(scene_path, path) result(whole)
-      character(len=*), intent(in) :: scene_path, path
-      character(len=:), allocatable :: whole
-
-      whole = path
-      if (index(path, "/") == 1) return
-      whole = scene_path(:index(scene_path, "/", back=.true.))//path
-   end function path_beside
-
    !> Read a table into a group.
    subroutine load_table(sheet, record, path, line, error)
       type(sheet_t), intent(inout) :: sheet
@@ -81,8 +88,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(text_t), allocatable :: cells(:), rows(:)
       integer, allocatable :: item(:)
+      real(rk), allocatable :: factor(:)
       type(value_t) :: value
       character(len=:), allocatable :: reason
+      character :: mark
       integer :: k, n, row
 
       call read_rows(sheet, record, path, rows, error)
@@ -90,23 +99,24 @@ contains
       n = 0
       do row = 1, size(rows)
          if (is_comment(rows(row)%text)) cycle
-         cells = split(rows(row)%text)
+         if (.not. allocated(item)) mark = mark_of(rows(row)%text)
+         cells = split(rows(row)%text, mark)
          if (.not. allocated(item)) then
-            call find_columns(cells, sheet%records(record)%group, item, reason)
+            call find_columns(cells, sheet%records(record)%group, item, factor, reason)
             if (.not. allocated(reason)) then
                call refuse_both(sheet, record, [character(len=20) :: &
                                                 parameters(item)%name, start], error)
                if (allocated(error)) return
             end if
          else if (size(cells) /= size(item)) then
-           reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
-                     integer_text(size(item, kind=ik))//", one per column"
+            reason = wrong_count(size(cells), size(item), mark)
          else
             n = n + 1
             do k = 1, size(item)
+               if (mark /= ",") cells(k)%text = with_point(cells(k)%text)
                call read_cell(cells(k)%text, parameters(item(k)), value, reason)
                if (allocated(reason)) exit
-               call append(sheet%records(record)%values(item(k)), value%reals(1), n, line)
+               call append(sheet%records(record)%values(item(k)), factor(k)*value%reals(1), n, line)
             end do
          end if
          if (.not. allocated(reason)) cycle
@@ -118,6 +128,18 @@ contains
                               "without rows, but must have a row per stage below the names of "// &
                               "its columns")
    end subroutine load_table
+
+   !> A row has not one value per column.
+   pure function wrong_count(n, wanted, mark) result(reason)
+      integer, intent(in) :: n, wanted
+      character, intent(in) :: mark  !< what parts the columns
+      character(len=:), allocatable :: reason
+
+      reason = "the row has "//integer_text(int(n, ik))//" values but must have "// &
+               integer_text(int(wanted, ik))//", one per column"
+      if (mark == "," .and. n > wanted) reason = reason//"; where numbers have a decimal "// &
+                                                 "comma, semicolons or tabs must part the columns"
+   end function wrong_count
 
    !> The rows of a file, without line ends.
    subroutine read_rows(sheet, record, path, rows, error)
@@ -145,6 +167,7 @@ contains
       allocate (character(len=n_bytes) :: source)
       read (unit, iostat=status) source
       close (unit)
+      if (index(source, byte_order_mark) == 1) source = source(len(byte_order_mark) + 1:)
       allocate (rows(count([(source(first:first) == new_line("a"), first=1, len(source))]) + 1))
       first = 1
       do status = 1, size(rows)
@@ -166,27 +189,54 @@ contains
       if (.not. is_comment) is_comment = index(adjustl(row), "#") == 1
    end function is_comment
 
-   !> What stands between commas, without blanks around it.
-   pure function split(row) result(cells)
+   !> What parts the columns: a tab or a semicolon if the row has one, else commas.
+   pure character function mark_of(row) result(mark)
       character(len=*), intent(in) :: row
+
+      mark = ","
+      if (index(row, ";") > 0) mark = ";"
+      if (index(row, achar(9)) > 0) mark = achar(9)
+   end function mark_of
+
+   !> A number with a point where it has one comma; what has more is no such number.
+   pure function with_point(cell) result(text)
+      character(len=*), intent(in) :: cell
+      character(len=len(cell)) :: text
+      integer :: place
+
+      text = cell
+      place = index(cell, ",")
+      if (place == 0 .or. place /= index(cell, ",", back=.true.)) return
+      if (index(cell, ".") == 0) text(place:place) = "."
+   end function with_point
+
+   !> What stands between the marks, without blanks around it, nor double quotes.
+   pure function split(row, mark) result(cells)
+      character(len=*), intent(in) :: row
+      character, intent(in) :: mark
       type(text_t), allocatable :: cells(:)
       integer :: first, k, last
 
-      allocate (cells(count([(row(k:k) == ",", k=1, len(row))]) + 1))
+      allocate (cells(count([(row(k:k) == mark, k=1, len(row))]) + 1))
       first = 1
       do k = 1, size(cells)
-         last = index(row(first:), ",") + first - 2
+         last = index(row(first:), mark) + first - 2
          if (k == size(cells)) last = len(row)
          cells(k)%text = trim(adjustl(row(first:last)))
          first = last + 2
+         last = len(cells(k)%text)
+         if (last < 2) cycle
+         if (cells(k)%text(1:1)//cells(k)%text(last:) /= '""') cycle
+         cells(k)%text = cells(k)%text(2:last - 1)
       end do
    end function split
 
    !> The parameters that columns are named after; times are among them.
-   pure subroutine find_columns(names, group, item, reason)
+   pure subroutine find_columns(names, group, item, factor, reason)
       type(text_t), intent(in) :: names(:)
       integer, intent(in) :: group
       integer, allocatable, intent(out) :: item(:)
+      real(rk), allocatable, intent(out) :: factor(:)  !< units of the parameters in those given [-]
       character(len=:), allocatable, intent(out) :: reason  !< unallocated: they are good
       character(len=:), allocatable :: known
       integer :: k, m
@@ -196,20 +246,40 @@ contains
          if (is_column(parameters(m), group)) known = known//", "//column_name(parameters(m))
       end do
       allocate (item(size(names)), source=0)
+      allocate (factor(size(names)), source=1.0_rk)
       do k = 1, size(names)
          do m = 1, size(parameters)
             if (.not. is_column(parameters(m), group)) cycle
-            if (column_name(parameters(m)) == lower_case(names(k)%text)) item(k) = m
+            call compare(lower_case(names(k)%text), parameters(m), m, item(k), factor(k))
          end do
          if (item(k) == 0) then
-            reason = "the column '"//shortened(names(k)%text)//"' must be one of "//known(3:)
+            reason = "the column '"//shortened(names(k)%text)//"' must be one of "//known(3:)// &
+                     "; or in place of _s _min, _h or _d, and of _pa _kpa, _mpa or _bar"
          else if (any(item(:k - 1) == item(k))) then
-            reason = "the column '"//names(k)%text//"' is given twice"
+            reason = "the column '"//column_name(parameters(item(k)))//"' is given twice"
          end if
          if (allocated(reason)) return
       end do
       if (.not. any(parameters(item)%name == "time")) reason = "the column time_s is missing"
    end subroutine find_columns
+
+   !> Whether a column is that of a parameter, in its own or another unit.
+   pure subroutine compare(name, parameter, m, item, factor)
+      character(len=*), intent(in) :: name  !< of the column, in lower case
+      type(parameter_t), intent(in) :: parameter
+      integer, intent(in) :: m  !< the parameter's number
+      integer, intent(inout) :: item  !< becomes that number if it is
+      real(rk), intent(inout) :: factor  !< [-]
+      integer :: k
+
+      if (column_name(parameter) == name) item = m
+      do k = 1, size(other_units)
+         if (lower_case(trim(parameter%unit)) /= other_units(k)%of) cycle
+         if (trim(parameter%name)//"_"//trim(other_units(k)%name) /= name) cycle
+         item = m
+         factor = other_units(k)%factor
+      end do
+   end subroutine compare
 
    !> A list of this group, which a table may hold.
    pure logical function is_column(parameter, group)

@@ -3,13 +3,15 @@ module scene_sheet
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
+   use scene_expression, only: constant_t
    use scene_parameters, only: choice_name, choice_value, groups, parameters
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
    public :: record_t, sheet_t
-   public :: add_record, empty_record, group_index, parameter_index, refuse
+   public :: add_record, empty_record, group_index, line_text, parameter_index, path_beside
+   public :: path_of, refuse
 
    character(len=*), parameter :: read_about_it = "(see docs/input.md)"
 
@@ -17,6 +19,7 @@ module scene_sheet
    type :: record_t
       integer :: group = 0  !< index into groups
       integer(ik) :: line = 0  !< of `&group`; 0: not in the file, all values are defaults
+      character(len=:), allocatable :: path  !< of the file, which may be an included one
       type(value_t), allocatable :: values(:)  !< the group's; indexed as scene_parameters
    contains
       procedure :: value => value_of
@@ -30,6 +33,7 @@ module scene_sheet
       character(len=:), allocatable :: path
       type(record_t), allocatable :: records(:)
       integer :: length = 0  !< records in use
+      type(constant_t), allocatable :: constants(:)  !< named values, in order; unallocated: none yet
    contains
       procedure :: find
       procedure :: has
@@ -87,6 +91,7 @@ contains
          do i = 1, sheet%length
             larger(i)%group = sheet%records(i)%group
             larger(i)%line = sheet%records(i)%line
+            call move_alloc(sheet%records(i)%path, larger(i)%path)
             call move_alloc(sheet%records(i)%values, larger(i)%values)
          end do
          call move_alloc(larger, sheet%records)
@@ -157,6 +162,40 @@ contains
       has = self%find(name) > 0
    end function has
 
+   !> The file that a group stands in.
+   pure function path_of(sheet, record) result(path)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record  !< index into sheet%records
+      character(len=:), allocatable :: path
+
+      path = sheet%path
+      if (allocated(sheet%records(record)%path)) path = sheet%records(record)%path
+   end function path_of
+
+   !> A path as seen from the folder of a scene file.
+   pure function path_beside(scene_path, path) result(whole)
+      character(len=*), intent(in) :: scene_path, path
+      character(len=:), allocatable :: whole
+
+      whole = path
+      if (index(path, "/") == 1) return
+      whole = scene_path(:index(scene_path, "/", back=.true.))//path
+   end function path_beside
+
+   !> "line 12", and of which file where that is not the one of another group.
+   pure function line_text(sheet, record, line, other) result(text)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record  !< index into sheet%records
+      integer(ik), intent(in) :: line
+      integer, intent(in) :: other  !< index of the group that the message begins with
+      character(len=:), allocatable :: text
+
+      text = "line "//integer_text(line)
+      if (path_of(sheet, record) /= path_of(sheet, other)) then
+         text = text//" of "//path_of(sheet, record)
+      end if
+   end function line_text
+
    !> Raise an error about a parameter of a group.
    pure subroutine refuse(error, sheet, record, name, reason)
       type(error_t), allocatable, intent(out) :: error
@@ -184,7 +223,7 @@ contains
             line = sheet%records(record)%values(item)%line
          end if
       end if
-      message = sheet%path
+      message = path_of(sheet, record)
       if (line > 0) message = message//":"//integer_text(line)
       message = message//": &"//trim(groups(sheet%records(record)%group)%name)//": "
       if (name /= "") message = message//name//" "

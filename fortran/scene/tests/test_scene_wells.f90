@@ -30,6 +30,7 @@ program test_scene_wells
 
    call check_lists()
    call check_table()
+   call check_spreadsheets()
    call check_faults()
    call check_table_faults()
    call delete_file(path)
@@ -91,6 +92,40 @@ contains
       call expect_same()
    end subroutine check_table
 
+   !> Tables as spreadsheets write them: a byte order mark, semicolons or tabs, decimal commas,
+   !! quoted names, ends of lines from elsewhere, and hours and MPa.
+   subroutine check_spreadsheets()
+      character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+
+      call expect_table([character(len=60) :: byte_order_mark// &
+                         "time_s;rate_m2_s;pressure_pa"//achar(13), "0;1,5e-7;9e6"//achar(13), &
+                         "5400,0;0;9000000,0"//achar(13)])
+      call expect_table([character(len=60) :: "Time_H"//achar(9)//"Rate_m2_s"//achar(9)// &
+                         "Pressure_MPa", "0"//achar(9)//"1.5e-7"//achar(9)//"9", &
+                         "1,5"//achar(9)//"0"//achar(9)//"9,0"])
+      call expect_table([character(len=60) :: '"time_min","rate_m2_s","pressure_bar"', &
+                         "0,1.5e-7,90", "90,0,90"])
+      call expect_table([character(len=60) :: "time_d,rate_m2_s,pressure_kpa", "0,1.5e-7,9e3", &
+                         "0.0625,0,9000"])
+   end subroutine check_spreadsheets
+
+   !> A well with 1.5e-7 m2/s for an hour and a half and then none, up to 9 MPa.
+   subroutine expect_table(lines)
+      character(len=*), intent(in) :: lines(:)
+
+      call put_lines(table, lines)
+      call read_with("&injection fracture='f1' schedule='"//table//"' /")
+      call checks%no_error(error, "a table of a spreadsheet: "//trim(lines(1)))
+      if (allocated(error)) return
+      associate (well => scene%injections(1))
+         call checks%is_true(size(well%time) == 2 .and. well%stage_at(5399.9_rk) == 1_ik .and. &
+                             well%stage_at(5400.1_rk) == 2_ik, "hours and minutes are seconds")
+         call checks%is_close(well%rate(1), 1.5e-7_rk, 1.0e-12_rk, "a decimal comma")
+         call checks%is_close(well%pressure(2), 9.0e6_rk, 1.0e-12_rk, "MPa, bar and kPa are Pa")
+      end associate
+      call expect_same()
+   end subroutine expect_table
+
    subroutine check_faults()
       character(len=*), parameter :: here = ":10: &injection: "
 
@@ -133,11 +168,19 @@ contains
 
    subroutine check_table_faults()
       call refuse_table("time_s,rate_m3_s", "0,1", ":1: the column 'rate_m3_s' must be one of "// &
-                        "rate_m2_s, pressure_pa, time_s"//doc)
+                        "rate_m2_s, pressure_pa, time_s; or in place of _s _min, _h or _d, "// &
+                        "and of _pa _kpa, _mpa or _bar"//doc)
       call refuse_table("rate_m2_s,pressure_pa", "0,1", ":1: the column time_s is missing"//doc)
       call refuse_table("time_s,time_s", "0,1", ":1: the column 'time_s' is given twice"//doc)
-     call refuse_table("time_s,rate_m2_s", "0", ":2: the row has 1 values but must have 2, one "// &
-                        "per column"//doc)
+      call refuse_table("time_s,rate_m2_s", "0", ":2: the row has 1 values but must have 2, "// &
+                        "one per column"//doc)
+      call refuse_table("time_s,time_h", "0,1", ":1: the column 'time_s' is given twice"//doc)
+      call refuse_table("time_s,rate_m2_s", "0,5,1,2", ":2: the row has 4 values but must have "// &
+                        "2, one per column; where numbers have a decimal comma, semicolons or "// &
+                        "tabs must part the columns"//doc)
+      call refuse_table("time_s;rate_m2_s", "0;1.000,5", ":2: rate_m2_s has several values"//doc)
+      call refuse_table("time_s;rate_m2_s", "0,1e-7", ":2: the row has 1 values but must have "// &
+                        "2, one per column"//doc)
       call refuse_table("time_s,rate_m2_s", "0,", ":2: rate_m2_s has no value"//doc)
       call refuse_table("time_s,rate_m2_s", "-5,1e-7", ":2: time_s is -5 but must be a finite "// &
                         "number at least 0.0 [s]"//doc)

@@ -1,0 +1,263 @@
+"""Maps of every format become scenes that the solver accepts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import f90nml
+import gmsh
+import pytest
+
+from map_calls import OUTCROP, area, feature, fractures, geojson, imported, needs_solver, rows
+from wingcrack_maps.cli import main
+from wingcrack_maps.units import in_degrees
+
+pytestmark = needs_solver
+
+LINES = (feature((0, 0), (10, 0), name="a"), feature((5, -4), (5, 6), name="b", friction=0.7))
+
+
+def test_a_geojson_map_becomes_a_scene(tmp_path: Path) -> None:
+    status, scene = imported(geojson(tmp_path / "m.geojson", *LINES), "--unit", "m")
+    assert status == 0
+    found = fractures(scene)
+    assert found["a"]["x"] == [0.0, 10.0]
+    assert found["b"]["y"] == [-4.0, 6.0]
+    assert (found["a"]["friction"], found["b"]["friction"]) == (0.6, 0.7)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("m.wkt", "# two\nLINESTRING (0 0, 10 0)\nSRID=25832;LINESTRING Z (5 -4 1, 5 6 2)\n"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,10,0\n5,-4,5,6\n"),
+        ("m.csv", "\ufeffX1;Y1;X2;Y2\r\n0;0;10,0;0\r\n5;-4;5;6,0\r\n"),
+        ("m.csv", "name\tx\ty\nf1\t0\t0\nf1\t10\t0\nf2\t5\t-4\nf2\t5\t6\n"),
+        ("m.csv", 'wkt,name\n"LINESTRING (0 0, 10 0)",f1\n"MULTILINESTRING ((5 -4, 5 6))",f2\n'),
+        ("m.geo", "Point(1)={0,0,0};Point(2)={10,0,0};Point(3)={5,-4,0};Point(4)={5,6,0};"
+         'Line(1)={1,2};Line(2)={3,4};Physical Curve("f1")={1};Physical Curve("f2")={2};\n'),
+    ],
+    ids=["wkt", "segments", "semicolons", "vertices", "wkt column", "geo"],
+)  # fmt: skip
+def test_formats_give_the_same_fractures(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    status, scene = imported(tmp_path / name)
+    assert status == 0
+    found = fractures(scene)
+    assert {name: (f["x"], f["y"]) for name, f in found.items()} == {
+        "f1": ([0.0, 10.0], [0.0, 0.0]),
+        "f2": ([5.0, 5.0], [-4.0, 6.0]),
+    }
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("km", 1000.0), ("ft", 0.3048), ("cm", 0.01)])
+def test_units_of_length(tmp_path: Path, unit: str, metres: float) -> None:
+    _, scene = imported(geojson(tmp_path / "m.geojson", *LINES), "--unit", unit)
+    assert fractures(scene)["a"]["x"] == [0.0, pytest.approx(10.0 * metres, rel=1e-15)]
+
+
+def test_the_origin_is_moved_and_told(tmp_path: Path) -> None:
+    lines = (feature((3500000, 5700000), (3500010, 5700004)),)
+    path = geojson(tmp_path / "m.geojson", *lines)
+    status, scene = imported(path, "--origin", "3500000,5700000")
+    assert status == 0
+    assert fractures(scene)["f1"]["x"] == [0.0, 10.0]
+    assert "(3500000, 5700000) m of the map" in scene.with_suffix(".repairs.csv").read_text()
+
+
+def test_boundary_and_regions(tmp_path: Path) -> None:
+    body = area((-20, -20), (40, -20), (40, 30), (-20, 35), kind="boundary")
+    soft = area((20, -10), (30, -10), (30, 10), (20, 10), kind="region", name="marl", young=5e9)
+    path = geojson(tmp_path / "m.geojson", *LINES, body, soft)
+    status, scene = imported(path, "--unit", "m")
+    assert status == 0
+    text = scene.read_text()
+    assert "shape = 'polygon'" in text
+    assert "name = 'marl'" in text
+    assert "young = 5000000000.0" in text
+
+
+def test_fractures_are_added_to_a_scene(tmp_path: Path) -> None:
+    base = tmp_path / "base.nml"
+    base.write_text(
+        "! my rock\n&domain x_min = -50, x_max = 50, y_min = -50, y_max = 50 /\n"
+        "&material young = 1e10, poisson = 0.2 /\n"
+        "&side name = 'bottom', x_displacement = 0.0, y_displacement = 0.0 /\n"
+        "&side name = 'top', y_traction = -1e6 /\n"
+        "&fracture name = 'a', x = -30.0, -20.0, y = 5.0, 5.0, friction = 0.4 /\n"
+    )
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    status, scene = imported(path, "--unit", "m", "--scene", str(base), "--set", "friction=0.5")
+    assert status == 0
+    text = scene.read_text()
+    assert text.startswith(base.read_text())
+    assert "aperture" not in text  # there is no fluid
+    found = fractures(scene)
+    assert {name: f["friction"] for name, f in found.items()} == {"a": 0.4, "a_2": 0.5, "b": 0.7}
+    assert ("renamed", "", "") in rows(scene, "noted")
+
+
+def test_names_are_made_good_and_different(tmp_path: Path) -> None:
+    lines = [feature((0, 4 * k), (9, 4 * k), name=n) for k, n in enumerate(["Störung 1"] * 2)]
+    lines.append(feature((0, 12), (9, 12), name="x" * 80))
+    lines.append(feature((0, 16), (9, 16), name="断层"))
+    status, scene = imported(geojson(tmp_path / "m.geojson", *lines), "--unit", "m")
+    assert status == 0
+    assert list(fractures(scene)) == ["Storung_1", "Storung_1_2", "x" * 64, "f4"]
+    assert len([row for row in rows(scene, "noted") if row[0] == "renamed"]) == 4
+
+
+def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
+    path = geojson(tmp_path / "m.geojson", feature((0, 0), (9, 1), strike=30, Aperture="2e-4"))
+    status, scene = imported(path, "--unit", "m")
+    assert status == 0
+    assert fractures(scene)["f1"]["aperture"] == 2e-4
+    assert (
+        "'strike' of 1 features is no entry of &fracture"
+        in scene.with_suffix(".repairs.csv").read_text()
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        ("m.csv", "", "the file is empty"),
+        ("m.csv", "x1,y1,x2,y2\n", "it holds no lines"),
+        ("m.csv", "a,b\n1,2\n", "the columns a, b hold no fractures; there must be x1, y1"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,1\n", "m.csv:2: the row has 3 values but must have 4"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,1,?\n", "m.csv:2: y2 is '?' but must be a number"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,1,inf\n", "m.csv:2: y2 is 'inf' but must be a number"),
+        ("m.csv", "x1,y1,x1,y2\n0,0,1,1\n", "the column 'x1' is given twice"),
+        ("m.csv", "name,x,y\na,0,0\nb,1,1\na,2,2\n", "m.csv:4: 'a' goes on after 'b'"),
+        ("m.csv", "name,x,y\na,0,0\n", "'a' has one vertex, but it takes two"),
+        ("m.csv", "x1,y1,x2,y2,friction\n0,0,9,1,high\n", "friction is 'high' but must be a num"),
+        ("m.csv", "x1,y1,x2,y2,friction\n0,0,9,1,-1\n", "check refuses the scene"),
+        ("m.wkt", "LINESTRING (0 0, 1\n", "line 1 is no well-known text"),
+        ("m.wkt", "SRID=4326;LINESTRING (0 0, 1 1)\n", "is in degrees of longitude and latitude"),
+        ("m.wkt", "POINT (1 1)\n", "it holds no lines and no polygons"),
+        ("m.geojson", "{", "not a JSON file"),
+        ("m.geojson", "[]", "no GeoJSON"),
+        ("m.geojson", '{"type": "FeatureCollection"}', 'has no list "features"'),
+        ("m.geojson", '{"type": "LineString", "coordinates": [[0, NaN], [1, 1]]}', "NaN is no"),
+        ("m.geojson", '{"type": "LineString", "coordinates": "x"}', "has no geometry that can"),
+        ("m.geojson", '{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}', "give --unit m"),
+        ("m.geo", "Point(1)={0,0,0};", "it has no physical curves or surfaces"),
+        ("m.geo", "// x\nSystemCall 'touch x';\n", "m.geo:2: SystemCall is not run in a map"),
+        ("m.geo", "Include 'other.geo';\n", "m.geo:1: Include is not run in a map"),
+        ("m.msh", "SystemCall 'touch x';\n", "no mesh of gmsh, which begins with $MeshFormat"),
+        ("m.msh", "$MeshFormat\nnonsense\n", "gmsh cannot read it"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n", "all its lines lie at one place"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n2,2,2,2\n", "no fracture has a length"),
+        ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n2,2,9,9\n", "check refuses the scene"),
+        ("m.csv", "x1,y1,x2,y2\n0,0,1e300,1\n", "row 2 has a coordinate of 1e+300 m, but none"),
+    ],
+)  # fmt: skip
+def test_bad_maps_are_refused_with_a_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str, reason: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    status, _ = imported(tmp_path / name)
+    assert status == 2
+    assert reason in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize(
+    ("features", "more", "reason"),
+    [
+        ([area((0, 0), (9, 0), (0, 9))], {}, "may be the body or a region"),
+        ([area((0, 0), (9, 0), (0, 9), kind="lake")], {}, "has the kind 'lake', but it must be"),
+        ([feature((0, 0), (9, 0), kind="region")], {}, "is a line but its kind is 'region'"),
+        ([area((0, 0), (9, 9), (9, 0), (0, 9), kind="region"), *LINES], {}, "crosses itself"),
+        ([area((0, 0), (9, 0), (0, 9), kind="boundary")], {}, "it has no lines"),
+        (LINES, {"crs": {"properties": {"name": "urn:ogc:def:crs:EPSG::4326"}}}, "in degrees"),
+        (LINES, {"crs": {"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}, "in degrees"),
+        (["x"], {}, "feature 1 is no object with a geometry"),
+    ],
+)  # fmt: skip
+def test_bad_features_are_refused(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    features: list[dict[str, object]],
+    more: dict[str, object],
+    reason: str,
+) -> None:
+    status, scene = imported(geojson(tmp_path / "m.geojson", *features, **more), "--unit", "m")
+    assert status == 2
+    assert reason in capsys.readouterr().err
+    assert not scene.exists()
+
+
+def test_coordinate_systems_by_name() -> None:
+    degrees = ("EPSG:4326", "urn:ogc:def:crs:EPSG::4258", "SRID=4269", "OGC:CRS84", "WGS 84")
+    lengths = ("EPSG:25832", "urn:ogc:def:crs:EPSG::3857", "SRID=31467", "local", "EPSG:4547")
+    assert all(in_degrees(system) for system in degrees)
+    assert not any(in_degrees(system) for system in lengths)
+
+
+def test_gmsh_regions_sides_and_an_embedded_fracture(tmp_path: Path) -> None:
+    gmsh.initialize(["t"], readConfigFiles=False, interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    occ = gmsh.model.occ
+    left, right = occ.addRectangle(0, 0, 0, 20, 20), occ.addRectangle(20, 0, 0, 20, 20)
+    line = occ.addLine(occ.addPoint(5, 5, 0), occ.addPoint(15, 12, 0))
+    _, origins = occ.fragment([(2, left), (2, right)], [(1, line)])
+    occ.synchronize()
+    gmsh.model.addPhysicalGroup(2, [origins[0][0][1]], name="granite")
+    gmsh.model.addPhysicalGroup(2, [origins[1][0][1]], name="gneiss")
+    gmsh.model.addPhysicalGroup(1, [tag for _, tag in origins[2]], name="fault")
+    foot = [t for _, t in gmsh.model.getEntitiesInBoundingBox(-1, -1, -1, 21, 0.1, 1, 1)]
+    gmsh.model.addPhysicalGroup(1, foot, name="foot")
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 3.0)
+    gmsh.model.mesh.generate(2)
+    gmsh.write(str(tmp_path / "m.msh"))
+    gmsh.finalize()
+
+    status, scene = imported(tmp_path / "m.msh", "--region", "gneiss:young=5e10")
+    assert status == 0
+    found = fractures(scene)
+    assert list(found) == ["fault"]
+    ends = sorted(zip(found["fault"]["x"], found["fault"]["y"], strict=True))  # type: ignore[call-overload]
+    assert ends == [(5.0, 5.0), (15.0, 12.0)]
+    text = scene.read_text()
+    assert "&domain x_min = 0.0, x_max = 40.0, y_min = 0.0, y_max = 20.0 /" in text
+    assert "! &region name = 'granite'" in text
+    assert f90nml.read(scene)["region"]["name"] == "gneiss"
+    assert ("no rock", "", "") in rows(scene, "noted")
+    assert "'foot' lies on the rim" in scene.with_suffix(".repairs.csv").read_text()
+
+
+def test_the_outcrop_is_refused_as_it_is_where_the_solver_could_not_mesh_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "o.nml"
+    assert main(["import", str(OUTCROP), "--unit", "m", "--out", str(out)]) == 2
+    assert "--repair DISTANCE may mend it" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_outcrop_is_repaired(tmp_path: Path) -> None:
+    """What the generator of the map has put in is found, each as often as it is there."""
+    out = tmp_path / "o.nml"
+    call = ["import", str(OUTCROP), "--unit", "m", "--repair", "0.1", "--out", str(out)]
+    assert main(call) == 0
+    content = json.loads(out.with_suffix(".repairs.json").read_text())
+    assert (content["fractures read"], content["fractures written"]) == (50, 45)
+    assert content["faults left"] == 0
+    kinds = [row["fault"] for row in content["rows"] if row["status"] == "repaired"]
+    put_in = {"short segment": 2, "short fracture": 2, "duplicate": 3, "overlap": 3, "end past": 4}
+    assert {kind: kinds.count(kind) for kind in put_in} == put_in
+    assert kinds.count("near end") == 4 + 3  # short of their targets, and joined after the overlaps
+
+
+def test_nothing_is_replaced_unasked_and_a_folder_that_cannot_be_written_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    assert imported(path, "--unit", "m")[0] == 0
+    with pytest.raises(SystemExit) as ended:
+        imported(path, "--unit", "m")
+    assert ended.value.code == 2
+    assert "--overwrite replaces it" in capsys.readouterr().err
+    assert imported(path, "--unit", "m", "--overwrite")[0] == 0

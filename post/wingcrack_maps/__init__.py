@@ -1,0 +1,1 @@
+"""Fracture maps and random networks as scenes: read, examined, repaired on request, written."""

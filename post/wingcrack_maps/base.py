@@ -1,0 +1,72 @@
+"""The scene that a network is added to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import f90nml
+from shapely.geometry import Polygon, box
+
+from wingcrack_scenes.errors import SceneError
+
+
+@dataclass
+class Base:
+    """A scene file as far as it matters here.
+
+    Attributes
+    ----------
+    text : str
+        The whole file, which is kept as it is.
+    groups : dict
+        Its groups by name, each a list.
+    """
+
+    text: str = ""
+    groups: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+
+    @property
+    def names(self) -> set[str]:
+        """Names of its fractures."""
+        return {str(group.get("name")) for group in self.groups.get("fracture", [])}
+
+    def number(self, group: str, name: str) -> float | None:
+        """Give a number of a group that is given once, if it is there."""
+        values = self.groups.get(group, [{}])[0]
+        value = values.get(name)
+        return float(value) if isinstance(value, int | float) else None
+
+    def body(self) -> Polygon | None:
+        """Give the body where it is a rectangle or a polygon; of a disc the solver must judge."""
+        domain = self.groups.get("domain", [{}])[0]
+        try:
+            if domain.get("shape", "rectangle") == "rectangle" and domain:
+                low_x, low_y, high_x, high_y = (
+                    float(domain[name]) for name in ("x_min", "y_min", "x_max", "y_max")
+                )
+                return box(low_x, low_y, high_x, high_y)
+            if domain.get("shape") == "polygon":
+                return Polygon(list(zip(domain["x"], domain["y"], strict=True)))
+        except (KeyError, TypeError, ValueError):
+            return None  # the solver says what is wrong with it
+        return None
+
+
+def read_base(path: Path | None) -> Base | None:
+    """Read a scene file that need not be complete."""
+    if path is None:
+        return None
+    try:
+        text = path.read_text(encoding="utf-8")
+        scene = f90nml.reads(text)
+    except OSError as reason:
+        raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
+    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
+        raise SceneError(f"{path}: no scene file of namelist groups ({reason})") from None
+    found: dict[str, list[dict[str, Any]]] = {}
+    for name, group in scene.items():
+        for item in group if isinstance(group, list) else [group]:
+            found.setdefault(str(name).lower(), []).append(dict(item))
+    return Base(text, found)

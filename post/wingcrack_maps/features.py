@@ -1,0 +1,90 @@
+"""What a map holds, whatever file it comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points: TypeAlias = NDArray[np.float64]
+"""(n, 2) places [m]."""
+
+Attributes: TypeAlias = dict[str, object]
+
+
+@dataclass
+class Line:
+    """A fracture.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Vertices from one end to the other [m].
+    source : str
+        Where the map says it, as ``row 7``.
+    """
+
+    name: str
+    points: Points
+    attributes: Attributes = field(default_factory=dict)
+    source: str = ""
+
+    @property
+    def length(self) -> float:
+        """Length along the line [m]."""
+        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
+
+
+@dataclass
+class Area:
+    """A polygon without holes: the body or a region.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Corners, the first one not repeated [m].
+    role : str
+        ``boundary``, ``region``, or nothing where the map does not say.
+    """
+
+    name: str
+    points: Points
+    role: str = ""
+    attributes: Attributes = field(default_factory=dict)
+    source: str = ""
+
+
+@dataclass
+class Note:
+    """Something that was noticed, left out or changed on the way; nothing happens without one.
+
+    Attributes
+    ----------
+    kind : str
+        In one or two words, as ``attribute left out``.
+    what : str
+        The sentence.
+    """
+
+    kind: str
+    what: str
+
+
+@dataclass
+class Map:
+    """All that was read."""
+
+    lines: list[Line] = field(default_factory=list)
+    areas: list[Area] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
+
+    @property
+    def features(self) -> list[Line | Area]:
+        """Lines and areas."""
+        return [*self.lines, *self.areas]
+
+    def note(self, kind: str, what: str) -> None:
+        """Add a note."""
+        self.notes.append(Note(kind, what))

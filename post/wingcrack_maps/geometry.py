@@ -1,0 +1,110 @@
+"""Features from geometries of shapely, for all formats that hand over such."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from wingcrack_maps.features import Area, Attributes, Line, Map, Points
+from wingcrack_scenes.errors import SceneError
+
+NAMES = ("name", "label", "id", "fid")
+ROLES = ("boundary", "region", "fracture")
+
+
+def add_geometry(
+    content: Map, geometry: BaseGeometry, attributes: Attributes, path: str, source: str
+) -> None:
+    """Add a geometry with all its parts; what is neither line nor polygon becomes a note.
+
+    Parameters
+    ----------
+    attributes : dict
+        What the map says of it; ``kind`` is its role.
+    path, source : str
+        File, and place in it.
+
+    Raises
+    ------
+    SceneError
+        If a coordinate is no number, or the role is unknown or does not fit.
+    """
+    role = _role(attributes, path, source)
+    parts = list(_parts(geometry))
+    if not parts:
+        content.note("empty", f"{source} has an empty geometry and gives nothing")
+    for number, part in enumerate(parts, start=1):
+        name = name_of(attributes)
+        if name and len(parts) > 1:
+            name = f"{name}.{number}"
+        if part.has_z:
+            content.note("height left out", f"{source}: coordinates have a height, which is left")
+        if isinstance(part, LineString):
+            if role not in ("", "fracture"):
+                raise SceneError(
+                    f"{path}: {source} is a line but its kind is '{role}': it takes a polygon"
+                )
+            line = Line(name, _points(part.coords, path, source), attributes, source)
+            content.lines.append(line)
+        elif isinstance(part, Polygon):
+            _add_polygon(content, part, Area(name, _no_points(), role, attributes), path, source)
+        else:
+            content.note("left out", f"{source} is a {part.geom_type}, no line and no polygon")
+
+
+def _add_polygon(content: Map, part: Polygon, area: Area, path: str, source: str) -> None:
+    ring = _points(part.exterior.coords, path, source)
+    if area.role == "fracture":
+        content.lines.append(Line(area.name, ring, area.attributes, source))
+        content.note("closed line", f"{source}: the outline of the polygon is a closed fracture")
+        return
+    if part.interiors:
+        content.note("hole left out", f"{source}: holes of the polygon are left out")
+    area.points, area.source = ring[:-1], source
+    content.areas.append(area)
+
+
+def name_of(attributes: Attributes) -> str:
+    """Name of a feature by its attributes, or nothing."""
+    by_word = {word.lower(): value for word, value in attributes.items()}
+    for word in NAMES:
+        if by_word.get(word) not in (None, ""):
+            return str(by_word[word])
+    return ""
+
+
+def _role(attributes: Attributes, path: str, source: str) -> str:
+    for word in list(attributes):
+        if word.lower() == "kind":
+            role = str(attributes.pop(word) or "").strip().lower()
+            if role and role not in ROLES:
+                raise SceneError(
+                    f"{path}: {source} has the kind '{role}', but it must be one of"
+                    f" {', '.join(ROLES)}"
+                )
+            return role
+    return ""
+
+
+def _parts(geometry: BaseGeometry) -> Iterator[BaseGeometry]:
+    if geometry.is_empty:
+        return
+    if hasattr(geometry, "geoms"):
+        for part in geometry.geoms:
+            yield from _parts(part)
+    else:
+        yield geometry
+
+
+def _points(coordinates: object, path: str, source: str) -> Points:
+    points = np.asarray(coordinates, dtype=float)[:, :2]
+    if not np.isfinite(points).all():
+        raise SceneError(f"{path}: {source} has a coordinate that is no finite number")
+    return points
+
+
+def _no_points() -> Points:
+    return np.empty((0, 2))

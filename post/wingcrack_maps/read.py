@@ -1,0 +1,67 @@
+"""A map from its file, by the file's ending."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from wingcrack_maps.features import Map
+from wingcrack_maps.read_csv import read_csv
+from wingcrack_maps.read_geojson import read_geojson
+from wingcrack_maps.read_wkt import read_wkt
+from wingcrack_maps.units import could_be_degrees, scale
+from wingcrack_scenes.errors import SceneError
+
+ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
+
+
+def read_map(path: Path, unit: str | None) -> Map:
+    """Read a map in metres.
+
+    Parameters
+    ----------
+    unit : str, optional
+        That of the map's coordinates; without one they are metres, and a GeoJSON file that says no
+        coordinate system must have numbers that cannot be degrees.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read or understood; nothing is guessed.
+    """
+    ending = path.suffix.lower()
+    if ending in (".msh", ".geo"):
+        # late: only these take gmsh's library
+        from wingcrack_maps.read_gmsh import read_gmsh
+
+        found = read_gmsh(path)
+        says_system = True
+    else:
+        found, says_system = _read_text(path, ending)
+    if not (found.lines or found.areas):
+        raise SceneError(f"{path}: it holds no lines and no polygons")
+    if unit is None and ending in (".geojson", ".json") and not says_system:
+        if could_be_degrees(found):
+            raise SceneError(
+                f"{path}: it says no coordinate system, which in GeoJSON means degrees, and its"
+                " numbers could be such: give --unit m (or km, ft, cm, mm) if they are lengths, or"
+                " project the map first"
+            )
+        found.note("coordinate system", "the map says none; its numbers are taken as metres")
+    scale(found, unit or "m", str(path))
+    return found
+
+
+def _read_text(path: Path, ending: str) -> tuple[Map, bool]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(f"{path}: it is not UTF-8 text; save it as UTF-8") from None
+    except OSError as reason:
+        raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
+    if not text.strip():
+        raise SceneError(f"{path}: the file is empty")
+    if ending in (".geojson", ".json"):
+        return read_geojson(text, str(path))
+    if ending == ".wkt":
+        return read_wkt(text, str(path)), True
+    return read_csv(text, str(path)), True

@@ -1,0 +1,143 @@
+"""Maps from CSV tables: a segment a row, a vertex a row, or well-known text in a column."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+from shapely.geometry import LineString
+
+from wingcrack_maps.features import Attributes, Line, Map
+from wingcrack_maps.geometry import add_geometry, name_of
+from wingcrack_maps.read_wkt import geometry_of
+from wingcrack_scenes.errors import SceneError
+
+_GEOMETRY = ("wkt", "geometry", "geom", "the_geom")
+_SEGMENT = (("x1", "y1", "x2", "y2"), ("x_1", "y_1", "x_2", "y_2"))
+_LAYOUTS = (
+    "x1, y1, x2, y2 (a straight fracture a row), name, x, y (a vertex a row) or wkt (a geometry"
+    " a row)"
+)
+
+
+def read_csv(text: str, path: str) -> Map:
+    """Read a table whose first row names the columns.
+
+    Columns are parted by commas, semicolons or tabs, whichever the first row has; where it is not
+    commas, numbers may have a decimal comma.
+    """
+    rows = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not rows:
+        raise SceneError(f"{path}: the table is empty; it must have a row of column names")
+    separator = next((mark for mark in "\t;" if mark in rows[0][1]), ",")
+    header = [word.strip() for word in _cells(rows[0][1], separator)]
+    repeated = {word for word in header if word and header.count(word) > 1}
+    if repeated:
+        raise SceneError(f"{path}: the column '{sorted(repeated)[0]}' is given twice")
+    table = _Table(path, {word.lower(): k for k, word in enumerate(header)}, header, separator)
+    for number, line in rows[1:]:
+        table.add(number, _cells(line, separator))
+    return table.finish()
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader(io.StringIO(line), delimiter=separator))]
+
+
+class _Table:
+    """What the rows so far have given."""
+
+    def __init__(self, path: str, column: dict[str, int], header: list[str], mark: str) -> None:
+        self.path, self.column, self.header, self.mark = path, column, header, mark
+        self.found = Map()
+        self.vertices: dict[str, list[tuple[float, float]]] = {}
+        self.first: dict[str, tuple[Attributes, str]] = {}
+        self.last = ""
+        self.geometry = next((word for word in _GEOMETRY if word in column), "")
+        self.segment = next((words for words in _SEGMENT if all(w in column for w in words)), ())
+        self.name = next((w for w in ("name", "fracture", "label", "id") if w in column), "")
+        is_vertices = self.name and {"x", "y"} <= column.keys()
+        if not (self.geometry or self.segment or is_vertices):
+            raise SceneError(
+                f"{path}: the columns {', '.join(header)} hold no fractures; there must be"
+                f" {_LAYOUTS}"
+            )
+
+    def add(self, number: int, cells: list[str]) -> None:
+        """Add a row."""
+        source = f"row {number}"
+        if len(cells) != len(self.header):
+            raise SceneError(
+                f"{self.path}:{number}: the row has {len(cells)} values but must have"
+                f" {len(self.header)}, one per column"
+            )
+        used = {self.geometry, *self.segment} - {""} or {"x", "y"}
+        attributes: Attributes = {
+            word: _plain(cells[k], self.mark)
+            for k, word in enumerate(self.header)
+            if word and word.lower() not in used and cells[k] != ""
+        }
+        if self.geometry:
+            made = geometry_of(cells[self.column[self.geometry]], self.path, source)
+            add_geometry(self.found, made, attributes, self.path, source)
+        elif self.segment:
+            x_1, y_1, x_2, y_2 = (self._number(cells, word, number) for word in self.segment)
+            made = LineString([(x_1, y_1), (x_2, y_2)])
+            add_geometry(self.found, made, attributes, self.path, source)
+        else:
+            self._add_vertex(cells, attributes, number)
+
+    def _add_vertex(self, cells: list[str], attributes: Attributes, number: int) -> None:
+        name = cells[self.column[self.name]]
+        if not name:
+            raise SceneError(f"{self.path}:{number}: the row has no {self.name}")
+        if name in self.vertices and name != self.last:
+            raise SceneError(
+                f"{self.path}:{number}: '{name}' goes on after '{self.last}', but the vertices of"
+                " a fracture must follow each other"
+            )
+        attributes.setdefault("name", name)
+        if name in self.first and attributes != self.first[name][0]:
+            self.found.note(
+                "attribute left out",
+                f"row {number}: other attributes than in the first row of '{name}' do not count",
+            )
+        self.first.setdefault(name, (attributes, f"row {number}"))
+        place = (self._number(cells, "x", number), self._number(cells, "y", number))
+        self.vertices.setdefault(name, []).append(place)
+        self.last = name
+
+    def finish(self) -> Map:
+        """Give the map, once all rows are added."""
+        for name, places in self.vertices.items():
+            attributes, source = self.first[name]
+            if len(places) < 2:
+                raise SceneError(
+                    f"{self.path}: {source}: '{name}' has one vertex, but it takes two"
+                )
+            label = name_of(attributes) or name
+            self.found.lines.append(Line(label, np.array(places), attributes, source))
+        return self.found
+
+    def _number(self, cells: list[str], word: str, number: int) -> float:
+        text = cells[self.column[word]]
+        value = _plain(text, self.mark)
+        if isinstance(value, float) and np.isfinite(value):
+            return value
+        raise SceneError(f"{self.path}:{number}: {word} is '{text}' but must be a number")
+
+
+def _plain(text: str, separator: str) -> float | str:
+    """Give a number if the cell is one."""
+    decimal = text.replace(",", ".") if separator != "," and text.count(",") == 1 else text
+    if "_" in decimal:  # Python's own way of grouping digits is nobody's table
+        return text
+    try:
+        return float(decimal)
+    except ValueError:
+        return text

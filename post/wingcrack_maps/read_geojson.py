@@ -1,0 +1,83 @@
+"""Maps from GeoJSON (RFC 7946)."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import shapely
+from shapely.geometry import shape
+
+from wingcrack_maps.features import Map
+from wingcrack_maps.geometry import add_geometry
+from wingcrack_maps.units import refuse_degrees
+from wingcrack_scenes.errors import SceneError
+
+
+def read_geojson(text: str, path: str) -> tuple[Map, bool]:
+    """Read a FeatureCollection, a Feature or a bare geometry.
+
+    Returns
+    -------
+    Map, bool
+        The map in its own unit, and whether it says its coordinate system.
+    """
+    try:
+        content = json.loads(text, parse_constant=_no_constant)
+    except ValueError as reason:
+        raise SceneError(f"{path}: not a JSON file: {reason}") from None
+    if not isinstance(content, dict) or "type" not in content:
+        raise SceneError(f'{path}: no GeoJSON, which is an object with a "type"')
+    system = _system(content, path)
+    found = Map()
+    for number, feature in enumerate(_features(content, path), start=1):
+        _add(found, feature, path, f"feature {number}")
+    if system:
+        found.note("coordinate system", f"the map says {system}; its unit is taken as asked for")
+    return found, bool(system)
+
+
+def _no_constant(word: str) -> float:
+    raise ValueError(f"{word} is no number that JSON knows")
+
+
+def _system(content: dict[str, Any], path: str) -> str:
+    entry = content.get("crs")
+    if not entry:
+        return ""
+    named = entry.get("properties", {}) if isinstance(entry, dict) else {}
+    system = str(named.get("name") or named.get("code") or entry)
+    refuse_degrees(path, system)
+    return system
+
+
+def _features(content: dict[str, Any], path: str) -> list[Any]:
+    if content["type"] == "FeatureCollection":
+        features = content.get("features")
+        if not isinstance(features, list):
+            raise SceneError(f'{path}: the FeatureCollection has no list "features"')
+        return features
+    return [content]
+
+
+def _add(found: Map, feature: Any, path: str, source: str) -> None:
+    if not isinstance(feature, dict):
+        raise SceneError(f"{path}: {source} is no object with a geometry")
+    geometry: Any = feature
+    attributes: Any = {}
+    if feature.get("type") == "Feature":
+        geometry = feature.get("geometry")
+        attributes = feature.get("properties") or {}
+        if not isinstance(attributes, dict):
+            raise SceneError(f"{path}: {source}: its properties are no object of names and values")
+        attributes = dict(attributes)
+        if feature.get("id") is not None and "id" not in attributes:
+            attributes["id"] = feature["id"]
+    if geometry is None:
+        found.note("empty", f"{source} has no geometry and gives nothing")
+        return
+    try:
+        made = shape(geometry)
+    except (AttributeError, KeyError, TypeError, ValueError, shapely.errors.ShapelyError) as reason:
+        raise SceneError(f"{path}: {source} has no geometry that can be read: {reason}") from None
+    add_geometry(found, made, attributes, path, source)

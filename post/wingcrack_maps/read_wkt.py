@@ -1,0 +1,34 @@
+"""Maps from well-known text, one geometry a line; `SRID=25832;` may stand before it."""
+
+from __future__ import annotations
+
+import shapely
+
+from wingcrack_maps.features import Map
+from wingcrack_maps.geometry import add_geometry
+from wingcrack_maps.units import refuse_degrees
+from wingcrack_scenes.errors import SceneError
+
+
+def read_wkt(text: str, path: str) -> Map:
+    """Read all lines that are neither empty nor comments (#)."""
+    found = Map()
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            geometry = geometry_of(line.strip(), path, f"line {number}")
+            add_geometry(found, geometry, {}, path, f"line {number}")
+    return found
+
+
+def geometry_of(text: str, path: str, source: str) -> shapely.Geometry:
+    """Read one geometry."""
+    head, separator, rest = text.partition(";")
+    if separator and head.upper().startswith("SRID="):
+        refuse_degrees(path, head)
+        text = rest
+    try:
+        return shapely.from_wkt(text)
+    except shapely.errors.ShapelyError as reason:
+        raise SceneError(
+            f"{path}: {source} is no well-known text such as LINESTRING (0 0, 1 2): {reason}"
+        ) from None

@@ -1,0 +1,9 @@
+"""What can be wrong with a call, a map or a scene; each message is one sentence for the user."""
+
+
+class SceneError(Exception):
+    """Bad input: nothing is written, status 2."""
+
+
+class SolverLackingError(Exception):
+    """The solver cannot be started: status 3."""
