@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wingcrack_post.arguments import FORMATS
-from wingcrack_post.errors import AbsentError, EnvironmentLacksError
+from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
@@ -131,6 +131,28 @@ def draw_figures(
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
+
+
+def figure_of(run: Run, name: str) -> Figure:
+    """Give one figure by the name of its files, as ``story`` or ``fracture_1``.
+
+    Raises
+    ------
+    AbsentError
+        If the run does not hold what it needs.
+    RunError
+        If there is no figure of that name.
+    """
+    for figures in _FIGURES:
+        if figures.several and not name.startswith(f"{figures.name}_"):
+            continue
+        if not figures.several and name != figures.name:
+            continue
+        for label, figure in figures.draw(run, ()):
+            if not label or f"{figures.name}_{label}" == name:
+                return figure
+    known = (f"{f.name}_NAME" if f.several else f.name for f in _FIGURES)
+    raise RunError(f"there is no figure '{name}'; there are {', '.join(known)}.")
 
 
 def _load_quickly() -> None:
