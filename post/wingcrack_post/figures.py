@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from wingcrack_post.arguments import FORMATS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
+from wingcrack_post.page import write_page
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
@@ -81,6 +82,7 @@ class _Figures:
 _MANY = 16  # files of figures of a kind, after which what is left of them is tidied up
 
 _FIGURES = (
+    _Figures("summary", "summary", "summary:summary"),
     _Figures("story", "story", "story:story"),
     _Figures("network", "network", "network:network_figure"),
     _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True),
@@ -131,6 +133,9 @@ def draw_figures(
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
+    if "summary" in only:
+        # always: it names the pictures that are there by now, and costs next to nothing
+        yield Outcome("index", (write_page(run, directory / "figures"),))
 
 
 def figure_of(run: Run, name: str) -> Figure:
