@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from wingcrack_post.arguments import FORMATS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
-from wingcrack_post.page import write_page
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
@@ -134,8 +133,22 @@ def draw_figures(
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
     if "summary" in only:
-        # always: it names the pictures that are there by now, and costs next to nothing
-        yield Outcome("index", (write_page(run, directory / "figures"),))
+        yield _page(run, record, way)
+
+
+def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
+    """Write the page that shows the pictures that are there by now, unless it does."""
+    folder = run.directory / "figures"
+    pictures = sorted(path.name for path in folder.glob("[!.]*.p*"))
+    known = fingerprint_of([*way, *pictures])
+    found = record.find("index", known)
+    if found is not None:
+        return Outcome("index", tuple(found[0]), unchanged=True)
+    record.forget("index")
+    write: Callable[[Run, Path], Path] = import_module("wingcrack_post.page").write_page
+    file = write(run, folder)
+    record.note("index", known, (file,), "")
+    return Outcome("index", (file,))
 
 
 def figure_of(run: Run, name: str) -> Figure:

@@ -106,7 +106,9 @@ def _name_traction(
     away = away / max(float(np.linalg.norm(away)), 1e-300)
     value = float(stress.of(np.linalg.norm(tractions[0])))
     upright = abs(away[0]) > abs(away[1])
-    x, y = unit.of(place + (_ARROW + 0.035) * size * away)
+    largest = float(np.linalg.norm(np.array(loading.tractions), axis=1).max())
+    length = _ARROW * float(np.linalg.norm(tractions[0])) / largest
+    x, y = unit.of(place + (length + 0.04) * size * away)
     axes.text(
         float(x),
         float(y),

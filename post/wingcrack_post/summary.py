@@ -69,7 +69,7 @@ def _draw_head(figure: Figure, place: SubplotSpec, facts: Facts) -> None:
     axes = figure.add_subplot(place)
     axes.set_axis_off()
     title = textwrap.shorten(facts.title, _TITLE, placeholder=" ...")
-    axes.text(0.0, 1.0, title, fontsize=9, va="top", fontweight="bold")
+    axes.text(0.0, 1.0, title, fontsize=9, va="top")
     colour = _STATUS_COLOURS.get(facts.status, _GREY)
     ended = textwrap.shorten(facts.ended, 2 * _LINE, placeholder=" ...")
     axes.text(0.0, 0.05, ended, fontsize=8, va="bottom", color=colour)
@@ -167,11 +167,11 @@ def _words(run: Run, marks: Sequence[Mark]) -> list[str]:
 def _draw_text(figure: Figure, place: SubplotSpec, lines: Sequence[str], title: str) -> None:
     axes = figure.add_subplot(place)
     axes.set_axis_off()
-    axes.set_title(title, fontweight="bold")
+    axes.set_title(title)
     wrapped: list[str] = []
     for line in lines:
         wrapped += textwrap.wrap(line, _LINE, subsequent_indent="   ") or [""]
     if len(wrapped) > _MOST_LINES:
         more = len(wrapped) - _MOST_LINES + 1
         wrapped = [*wrapped[: _MOST_LINES - 1], f"... and {more} lines more: see run.json"]
-    axes.text(0.0, 1.0, "\n".join(wrapped), va="top", fontsize=6.8, linespacing=1.3)
+    axes.text(0.0, 1.0, "\n".join(wrapped), va="top", fontsize=7, linespacing=1.3)
