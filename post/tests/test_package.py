@@ -188,4 +188,4 @@ def test_importing_brings_nothing_else() -> None:
     done = subprocess.run([sys.executable, "-c", code], cwd=TOP / "post", check=False)
     assert done.returncode == 0
     with pytest.raises(AttributeError, match="no attribute 'opens'"):
-        _ = wingcrack.opens  # type: ignore[attr-defined]
+        _ = wingcrack.opens

@@ -79,11 +79,12 @@ def test_runs_in_one_figure(wet_run: Path, own_run: Path) -> None:
     path.write_text("".join(lines[:2]), encoding="utf-8")  # 5 h: by itself it would have hours too
     runs = [wingcrack.open(wet_run), wingcrack.open(own_run)]
     axes = wingcrack.compare(runs, "fracture_length_m")
-    assert axes.lines[0].get_ydata()[-1] == pytest.approx(1e3 * (LENGTH + 2 * LAST_WING)) or (
-        axes.lines[0].get_ydata()[-1] == pytest.approx(LENGTH + 2 * LAST_WING)
-    )
-    assert axes.lines[1].get_xdata()[-1] == pytest.approx(5.0)
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+    length = np.asarray(axes.lines[0].get_ydata())[-1]
+    assert length == pytest.approx(1e3 * (LENGTH + 2 * LAST_WING))  # [mm]
+    assert np.asarray(axes.lines[1].get_xdata())[-1] == pytest.approx(5.0)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [
         f"synthetic ({folder.name})" for folder in (wet_run, own_run)
     ]
 
@@ -91,7 +92,7 @@ def test_runs_in_one_figure(wet_run: Path, own_run: Path) -> None:
 def test_a_profile_shows_the_cells(wet_run: Path) -> None:
     axes = wingcrack.open(wet_run).plot_profile("jump_n_m", 1, times=[times()[-1]])
     cells = fracture_cells(STEPS - 1)
-    drawn = next(line for line in axes.lines if len(line.get_xdata()) == cells.s.size)
+    drawn = next(line for line in axes.lines if np.size(line.get_xdata()) == cells.s.size)
     assert np.max(drawn.get_ydata()) == pytest.approx(1e6 * cells.jump_n.max())
 
 

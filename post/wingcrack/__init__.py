@@ -27,7 +27,7 @@ from wingcrack.errors import (
 if TYPE_CHECKING:
     from wingcrack.comparison import compare
     from wingcrack.fields import Fields
-    from wingcrack.parameters import Parameter, parameters
+    from wingcrack.parameter_table import Parameter, parameters
     from wingcrack.run import Run
     from wingcrack.run import open_run as open  # noqa: A004
     from wingcrack.scenes import Scene
@@ -49,12 +49,12 @@ __all__ = [
 
 _PLACES = {
     "Fields": ("fields", "Fields"),
-    "Parameter": ("parameters", "Parameter"),
+    "Parameter": ("parameter_table", "Parameter"),
     "Run": ("run", "Run"),
     "Scene": ("scenes", "Scene"),
     "compare": ("comparison", "compare"),
     "open": ("run", "open_run"),
-    "parameters": ("parameters", "parameters"),
+    "parameters": ("parameter_table", "parameters"),
 }
 
 
@@ -66,5 +66,5 @@ def __getattr__(name: str) -> Any:
 
     module, attribute = _PLACES[name]
     found = getattr(import_module(f"{__name__}.{module}"), attribute)
-    globals()[name] = found  # a submodule of the same name must not take its place
+    globals()[name] = found
     return found

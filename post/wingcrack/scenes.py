@@ -15,7 +15,7 @@ import f90nml
 import numpy as np
 
 from wingcrack.errors import RunFailedError, SceneError
-from wingcrack.parameters import Parameter, parameter, solver
+from wingcrack.parameter_table import Parameter, parameter, solver
 
 if TYPE_CHECKING:
     from wingcrack.run import Run
@@ -93,10 +93,10 @@ class Scene:
     def __setitem__(self, address: str, value: Any) -> None:
         """Set a value; the solver judges it in `check` and `run`."""
         group, item, name = _parts(address)
-        known = parameter(group, name)
+        shown = _fortran(value, parameter(group, name))
         if not self._groups.get(group) and not item:
             self._groups[group] = [f90nml.Namelist()]
-        self._pick(group, item, address)[name] = _fortran(value, known)
+        self._pick(group, item, address)[name] = shown
 
     def __delitem__(self, address: str) -> None:
         """Take a value away, so that its default holds."""
