@@ -137,7 +137,7 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["check", "nowhere.nml", "other.nml"], "check takes one scene file"),
         (["plot"], "plot needs the directory of a run"),
         (["plot", "nowhere"], "there is no directory nowhere"),
-        (["plot", ".", "--only", "map"], "'map' is none of story, network, maps"),
+        (["plot", ".", "--only", "map"], "'map' is none of summary, story, network, maps"),
         (["bench", "--fast"], "unrecognized arguments: --fast"),
         (["bench", "no_such_scene"], "there is no measurement 'no_such_scene'"),
         (["bench", "--repeat"], "--repeat: expected one argument"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import time
 from pathlib import Path
 
@@ -218,6 +219,31 @@ def test_changed_new_and_removed_sources_are_built(own_tree: Tree) -> None:
     assert "more and more" in words()
     part.unlink()
     assert "more" not in words()
+
+
+def test_python_of_the_environment_finds_the_packages(own_tree: Tree) -> None:
+    def found() -> str:
+        done = subprocess.run(
+            [
+                own_tree.root / ".venv/bin/python",
+                "-c",
+                "import wingcrack_post as p; print(p.__file__)",
+            ],
+            cwd=own_tree.place,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return done.stdout.strip()
+
+    expected = str(own_tree.root / "post" / "wingcrack_post" / "__init__.py")
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    assert found() == expected
+    (path,) = own_tree.root.glob(".venv/lib/python3*/site-packages/wingcrack.pth")
+    path.unlink()
+    assert found() == ""
+    assert own_tree.call("check", own_tree.scene()).returncode == 0
+    assert found() == expected
 
 
 def test_a_changed_requirement_is_installed(own_tree: Tree) -> None:

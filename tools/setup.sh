@@ -7,6 +7,8 @@ readonly venv=$root/.venv
 readonly venv_python=$venv/bin/python
 readonly venv_record=$venv/wingcrack-requirements
 readonly setup_log=$root/build/setup.log
+# The file that lets Python in .venv find the packages of post/.
+readonly path_file=wingcrack.pth
 
 # The lists of packages that the command takes.
 package_lists=("$root/tools/system_packages.txt")
@@ -177,6 +179,16 @@ python_is_ready() {
         [[ $venv_python -ef $interpreter &&
             $record == "$root"$'\n'"$interpreter"$'\n'"$requirements" ]] || return 1
     done
+    finds_packages
+}
+
+# Whether Python in .venv knows where the packages of post/ are.
+finds_packages() {
+    local file
+    for file in "$venv"/lib/python3*/site-packages/"$path_file"; do
+        if [[ -e $file ]]; then return; fi
+    done
+    return 1
 }
 
 # Set record_file: the record of a list, $venv_record for requirements.txt.
@@ -188,10 +200,18 @@ find_record() {
 record_python() {
     local interpreter list
     interpreter=$(readlink -f -- "$venv_python") || return
+    add_packages || return
     for list in "${requirement_lists[@]}"; do
         find_record "$list"
         { printf '%s\n%s\n' "$root" "$interpreter" && cat "$list"; } >"$record_file" || return
     done
+}
+
+# Let whoever uses .venv import the packages of post/: one line, which Python reads as it starts.
+add_packages() {
+    local folder
+    folder=$("$venv_python" -I -c 'import sysconfig; print(sysconfig.get_path("purelib"))') || return
+    printf '%s/post\n' "$root" >"$folder/$path_file"
 }
 
 # The requirements that .venv does not hold, one per line; all of them if it cannot say.

@@ -93,7 +93,13 @@ def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFi
     out = capsys.readouterr().out
     assert "intensities: left out: the run has no tips.csv (stress intensity factors).\n" in out
     figures = sorted(path.name for path in (own_run / "figures").glob("[!.]*"))
-    assert figures == ["balance.png", "development.png", "fracture_1.png"]
+    assert figures == [
+        "balance.png",
+        "development.png",
+        "fracture_1.png",
+        "index.html",
+        "summary.png",
+    ]
 
 
 def test_nothing_to_draw_is_an_error(
@@ -166,7 +172,7 @@ def test_missing_directory() -> None:
         (["plot"], "the following arguments are required: DIR"),
         (
             ["plot", "d", "--only", "map"],
-            "'map' is none of story, network, maps, fractures, tips, wells, probes, view",
+            "'map' is none of summary, story, network, maps, fractures, tips, wells, probes, view",
         ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),

@@ -9,11 +9,23 @@ from typing import NoReturn
 
 from wingcrack_post.durations import parse_times
 
-GROUPS = ("story", "network", "maps", "fractures", "tips", "wells", "probes", "view")
+GROUPS = (
+    "summary",
+    "story",
+    "network",
+    "maps",
+    "fractures",
+    "tips",
+    "wells",
+    "probes",
+    "view",
+)
 FORMATS = ("png", "pdf")
 
 _EPILOG = """\
 groups of figures (--only), written to DIR/figures:
+  summary    any run on one page: body and loads, network by state, pressure or load, length,
+             K_eq over K_IC, errors, warnings; and index.html, which shows all figures
   story      an injection on one page: the network with its slip events, well pressure,
              injectivity, where the fluid is, lengths, seismic moment
   network    the fractures at the start and what has grown, coloured by its order

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wingcrack_post.arguments import FORMATS
-from wingcrack_post.errors import AbsentError, EnvironmentLacksError
+from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
@@ -81,6 +81,7 @@ class _Figures:
 _MANY = 16  # files of figures of a kind, after which what is left of them is tidied up
 
 _FIGURES = (
+    _Figures("summary", "summary", "summary:summary"),
     _Figures("story", "story", "story:story"),
     _Figures("network", "network", "network:network_figure"),
     _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True),
@@ -131,6 +132,45 @@ def draw_figures(
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
+    if "summary" in only:
+        yield _page(run, record, way)
+
+
+def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
+    """Write the page that shows the pictures that are there by now, unless it does."""
+    folder = run.directory / "figures"
+    pictures = sorted(path.name for path in folder.glob("[!.]*.p*"))
+    known = fingerprint_of([*way, *pictures])
+    found = record.find("index", known)
+    if found is not None:
+        return Outcome("index", tuple(found[0]), unchanged=True)
+    record.forget("index")
+    write: Callable[[Run, Path], Path] = import_module("wingcrack_post.page").write_page
+    file = write(run, folder)
+    record.note("index", known, (file,), "")
+    return Outcome("index", (file,))
+
+
+def figure_of(run: Run, name: str) -> Figure:
+    """Give one figure by the name of its files, as ``story`` or ``fracture_1``.
+
+    Raises
+    ------
+    AbsentError
+        If the run does not hold what it needs.
+    RunError
+        If there is no figure of that name.
+    """
+    for figures in _FIGURES:
+        if figures.several and not name.startswith(f"{figures.name}_"):
+            continue
+        if not figures.several and name != figures.name:
+            continue
+        for label, figure in figures.draw(run, ()):
+            if not label or f"{figures.name}_{label}" == name:
+                return figure
+    known = (f"{f.name}_NAME" if f.several else f.name for f in _FIGURES)
+    raise RunError(f"there is no figure '{name}'; there are {', '.join(known)}.")
 
 
 def load_quickly() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -21,9 +22,12 @@ from wingcrack_post.scales import jump_scale, run_length_unit, without_round_off
 from wingcrack_post.states import growth_start, settled_rows
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.tabulated import intensities_table, state_table
-from wingcrack_post.units import MEGAPASCAL, area_unit, displacement_unit, intensity_unit
+from wingcrack_post.units import MEGAPASCAL, Unit, area_unit, displacement_unit, intensity_unit
 
-_MODES = (
+_Mode: TypeAlias = tuple[str, str, str, str | None, str | None]
+
+INTENSITIES = ("k1", "k2", "keq")
+_MODES: tuple[_Mode, ...] = (
     ("mode I", r"$K_\mathrm{I}$", "k1_pa_sqrtm", "k1_dc_pa_sqrtm", "k1_error_pa_sqrtm"),
     ("mode II", r"$K_\mathrm{II}$", "k2_pa_sqrtm", "k2_dc_pa_sqrtm", "k2_error_pa_sqrtm"),
     ("equivalent", r"$K_\mathrm{eq}$", "keq_pa_sqrtm", None, None),
@@ -46,9 +50,7 @@ def intensities(run: Run) -> Figure:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     if run.history.rows == 1:
         return intensities_table(run)
-    time, label = abscissa(run, table.moments())
-    if has_load(run) and growth_start(run) is not None:
-        time, label = tip_steps(run, table), STEP_LABEL
+    time, label = _tip_abscissa(run, table)
     tips = _groups(table, _tips(table))
     unit = intensity_unit(*(table.number(column) for _, _, column, _, _ in _MODES))
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
@@ -58,41 +60,92 @@ def intensities(run: Run) -> Figure:
     legend_rows = -(-len(handles) // columns)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.45 + 0.17 * legend_rows)
     panels = list(figure.subplots(1, len(_MODES)))
-    for axes, (title, symbol, integral, correlation, error) in zip(panels, _MODES, strict=True):
-        for index, (_, rows) in enumerate(tips):
-            look = style.line_look(index)
-            marker = style.lone_marker(int(rows.sum()))
-            values = unit.of(table.number(integral)[rows])
-            axes.plot(time[rows], values, marker=marker, **look)
-            if error is not None and table.has(error):
-                spread = unit.of(table.number(error)[rows])
-                axes.fill_between(
-                    time[rows],
-                    values - spread,
-                    values + spread,
-                    color=look["color"],
-                    alpha=0.25,
-                    linewidth=0.0,
-                )
-            if correlation is not None:
-                every = max(1, int(rows.sum()) // _MOST_MARKERS)
-                axes.plot(
-                    time[rows],
-                    unit.of(table.number(correlation)[rows]),
-                    linestyle="none",
-                    marker="o",
-                    markerfacecolor="none",
-                    markeredgecolor=look["color"],
-                    markeredgewidth=0.7,
-                    markevery=every,
-                )
-        _finish(axes, title, f"{symbol} [{unit.name}]", label)
-        style.steady(axes, [unit.of(table.number(integral))])
+    for axes, mode in zip(panels, _MODES, strict=True):
+        _draw_mode(axes, table, mode, [rows for _, rows in tips], (time, label), unit)
     if toughness is not None:
         panels[-1].axhline(float(unit.of(toughness)), color="#555555", linewidth=0.8, ls="--")
     style.letter(panels)
     style.outside_legend(figure, handles, columns)
     return figure
+
+
+def draw_intensity(axes: Axes, run: Run, quantity: str = "keq") -> list[Artist]:
+    """Draw one stress intensity factor of every tip into axes and give the legend's entries.
+
+    Parameters
+    ----------
+    axes : Axes
+    run : Run
+    quantity : {'k1', 'k2', 'keq'}
+
+    Raises
+    ------
+    AbsentError
+        If the run has no tips.
+    """
+    table = needed(run.tips, "tips.csv", "stress intensity factors")
+    mode = _MODES[INTENSITIES.index(quantity)]
+    tips = _groups(table, _tips(table))
+    unit = intensity_unit(*(table.number(column) for _, _, column, _, _ in _MODES))
+    _draw_mode(axes, table, mode, [rows for _, rows in tips], _tip_abscissa(run, table), unit)
+    toughness = run.scene.toughness_pa_sqrtm if run.scene and quantity == "keq" else None
+    if toughness is not None:
+        axes.axhline(float(unit.of(toughness)), color="#555555", linewidth=0.8, ls="--")
+    handles = _tip_handles(run, tips, toughness)
+    return handles if mode[3] else [handle for handle in handles if not _of_methods(handle)]
+
+
+def _of_methods(handle: Artist) -> bool:
+    """Whether an entry of the legend tells methods apart, which K_eq does not show."""
+    return str(handle.get_label()).startswith(("lines:", "circles:", "bands:"))
+
+
+def _tip_abscissa(run: Run, table: Table) -> tuple[FloatArray, str]:
+    if has_load(run) and growth_start(run) is not None:
+        return tip_steps(run, table), STEP_LABEL
+    return abscissa(run, table.moments())
+
+
+def _draw_mode(
+    axes: Axes,
+    table: Table,
+    mode: _Mode,
+    tips: Sequence[BoolArray],
+    below: tuple[FloatArray, str],
+    unit: Unit,
+) -> None:
+    """Curves of one stress intensity factor, a line for the rows of each tip."""
+    title, symbol, integral, correlation, error = mode
+    time, label = below
+    for index, rows in enumerate(tips):
+        look = style.line_look(index)
+        marker = style.lone_marker(int(rows.sum()))
+        values = unit.of(table.number(integral)[rows])
+        axes.plot(time[rows], values, marker=marker, **look)
+        if error is not None and table.has(error):
+            spread = unit.of(table.number(error)[rows])
+            axes.fill_between(
+                time[rows],
+                values - spread,
+                values + spread,
+                color=look["color"],
+                alpha=0.25,
+                linewidth=0.0,
+            )
+        if correlation is not None:
+            every = max(1, int(rows.sum()) // _MOST_MARKERS)
+            axes.plot(
+                time[rows],
+                unit.of(table.number(correlation)[rows]),
+                linestyle="none",
+                marker="o",
+                markerfacecolor="none",
+                markeredgecolor=look["color"],
+                markeredgewidth=0.7,
+                markevery=every,
+            )
+    _finish(axes, title, f"{symbol} [{unit.name}]", label)
+    style.steady(axes, [unit.of(table.number(integral))])
 
 
 @style.styled
@@ -101,22 +154,42 @@ def development(run: Run) -> Figure:
     table = run.history
     if table.rows == 1:
         return state_table(run)
-    time, label = abscissa(run, table.moments())
     fluid = table.has("well_pressure_pa")
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
     panels = list((figure.subplots(2, 2) if fluid else figure.subplots(1, 3)).flat)
-    length, jumps, states = panels[0], panels[-2], panels[-1]
-    unit = run_length_unit(run)
-    values = unit.of(table.number("fracture_length_m"))
-    length.plot(time, values, color=style.CYCLE[0])
-    style.steady(length, [values])
-    _finish(length, "fracture length", f"total length [{unit.name}]", label)
+    draw_length(panels[0], run)
     if fluid:
-        values = MEGAPASCAL.of(table.number("well_pressure_pa"))
-        panels[1].plot(time, values, color=style.CYCLE[0])
-        _finish(panels[1], "well pressure", "pressure [MPa]", label)
+        draw_pressure(panels[1], run)
+    draw_jumps(panels[-2], run)
+    draw_states(panels[-1], run)
+    style.outside_legend(figure, mark_moments(run, panels), 3)
+    style.letter(panels)
+    return figure
+
+
+def draw_length(axes: Axes, run: Run) -> None:
+    """Draw the length of all fractures into axes."""
+    time, label = abscissa(run, run.history.moments())
+    unit = run_length_unit(run)
+    values = unit.of(run.history.number("fracture_length_m"))
+    axes.plot(time, values, color=style.CYCLE[0])
+    style.steady(axes, [values])
+    _finish(axes, "fracture length", f"total length [{unit.name}]", label)
+
+
+def draw_pressure(axes: Axes, run: Run) -> None:
+    """Draw the mean pressure of the cells with wells into axes."""
+    time, label = abscissa(run, run.history.moments())
+    values = MEGAPASCAL.of(run.history.number("well_pressure_pa"))
+    axes.plot(time, values, color=style.CYCLE[0])
+    _finish(axes, "well pressure", "pressure [MPa]", label)
+
+
+def draw_jumps(axes: Axes, run: Run) -> None:
+    """Draw largest slip and opening into axes."""
+    time, label = abscissa(run, run.history.moments())
     slip, opening = (
-        without_round_off(table.number(name), jump_scale(run))
+        without_round_off(run.history.number(name), jump_scale(run))
         for name in ("max_slip_m", "max_opening_m")
     )
     unit = displacement_unit(slip, opening)
@@ -125,17 +198,14 @@ def development(run: Run) -> Figure:
         ("slip", slip, style.STATE_COLOURS["slip"], "-"),
         ("opening", opening, style.STATE_COLOURS["open"], "--"),
     ):
-        jumps.plot(time, unit.of(jump), dashes, color=colour, label=name)
-    jumps.legend()
-    _finish(jumps, "largest slip and opening", f"displacement jump [{unit.name}]", label)
-    _draw_states(states, run, time)
-    _finish(states, "contact state", "fracture cells [-]", label)
-    style.outside_legend(figure, mark_moments(run, panels), 3)
-    style.letter(panels)
-    return figure
+        axes.plot(time, unit.of(jump), dashes, color=colour, label=name)
+    axes.legend()
+    _finish(axes, "largest slip and opening", f"displacement jump [{unit.name}]", label)
 
 
-def _draw_states(axes: Axes, run: Run, time: FloatArray) -> None:
+def draw_states(axes: Axes, run: Run) -> None:
+    """Draw how many fracture cells stick, slip and are open into axes."""
+    time, label = abscissa(run, run.history.moments())
     rows = settled_rows(run)  # in the short steps after growth fractures stick that slip else
     for state, dashes in zip(style.STATES, ("-", "-", "--"), strict=True):
         # a state holds for the step that ends at its time
@@ -150,6 +220,7 @@ def _draw_states(axes: Axes, run: Run, time: FloatArray) -> None:
     axes.set_ylim(bottom=0.0)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend()
+    _finish(axes, "contact state", "fracture cells [-]", label)
 
 
 @style.styled

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -71,14 +72,11 @@ def load_figure(run: Run) -> Figure:
     steps = np.arange(1, load.size + 1)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.5)
     against, rising, growing = figure.subplots(1, 3)
-    against.plot(unit.of(length), load, color=style.CYCLE[0], marker=".", markersize=2)
-    against.set_title("load against length")
-    against.set_xlabel(f"total length [{unit.name}]")
+    draw_load(against, run)
     rising.plot(steps, load, color=style.CYCLE[0])
     rising.set_title("load")
-    for axes in (against, rising):
-        axes.set_ylabel(LOAD_LABEL)
-        axes.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)
+    rising.set_ylabel(LOAD_LABEL)
+    rising.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)
     growing.plot(steps, unit.of(length), color=style.CYCLE[1])
     growing.set_title("growth")
     growing.set_ylabel(f"total length [{unit.name}]")
@@ -87,3 +85,23 @@ def load_figure(run: Run) -> Figure:
         axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     style.letter([against, rising, growing])
     return figure
+
+
+def draw_load(axes: Axes, run: Run) -> None:
+    """Draw the load factor against the fractures' length into axes.
+
+    Raises
+    ------
+    AbsentError
+        If no load factor drives the run.
+    """
+    if not has_load(run):
+        raise AbsentError("no load factor drives the run")
+    load = run.history.number("load_factor")
+    unit = run_length_unit(run)
+    length = unit.of(run.history.number("fracture_length_m"))
+    axes.plot(length, load, color=style.CYCLE[0], marker=".", markersize=2)
+    axes.set_title("load against length")
+    axes.set_xlabel(f"total length [{unit.name}]")
+    axes.set_ylabel(LOAD_LABEL)
+    axes.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)

@@ -43,6 +43,28 @@ def network_figure(run: Run) -> Figure:
     AbsentError
         If the run has no network, or none with fractures.
     """
+    growths = grown_network(run)
+    assert run.network is not None
+    box = network_box(growths, run.scene)
+    ratio = (box[3] - box[2]) / (box[1] - box[0])
+    beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
+    width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
+    figure = style.new_figure(width + beside, width * ratio + _BESIDE[1])
+    axes = figure.add_subplot()
+    handles = draw_network(axes, growths, run.network, run.history, run.scene)
+    # a region's entry is as long as two others
+    style.outside_legend(figure, handles, 2 if any(isinstance(h, Patch) for h in handles) else 3)
+    return figure
+
+
+def grown_network(run: Run) -> list[Growth]:
+    """Growth of all fractures.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no network, or none with fractures.
+    """
     if run.network is None:
         raise AbsentError("the run has no network.json")
     if not run.network.get("steps"):
@@ -50,14 +72,7 @@ def network_figure(run: Run) -> Figure:
     growths = read_growth(run.network)
     if not growths:
         raise AbsentError("the scene has no fractures")
-    box = network_box(growths, run.scene)
-    ratio = (box[3] - box[2]) / (box[1] - box[0])
-    beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
-    width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
-    figure = style.new_figure(width + beside, width * ratio + _BESIDE[1])
-    axes = figure.add_subplot()
-    draw_network(axes, growths, run.network, run.history, run.scene)
-    return figure
+    return growths
 
 
 def draw_network(
@@ -66,8 +81,8 @@ def draw_network(
     network: Mapping[str, Any],
     history: Table,
     scene: Scene | None,
-) -> None:
-    """Draw a network into axes, with colour bar and labels.
+) -> list[Artist]:
+    """Draw a network into axes, with colour bar and labels, and give the legend's entries.
 
     Colours count the increments of growth; the load factor (in scenes with a fluid the time) at
     which each came stands beside the number.
@@ -123,7 +138,7 @@ def draw_network(
     axes.locator_params(nbins=5)
     if order:
         _colour_bar(axes, norm, order, growths, network, history)
-    _legend(axes, regions, has_growth=bool(order), has_joints=bool(network.get("joints")))
+    return _handles(regions, has_growth=bool(order), has_joints=bool(network.get("joints")))
 
 
 def _order(growths: Sequence[Growth]) -> dict[tuple[int, int, int], int]:
@@ -192,7 +207,7 @@ def _constant_from(values: Mapping[int, float]) -> str:
     return f", constant from {changed[-1] + 1} on"
 
 
-def _legend(axes: Axes, regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> None:
+def _handles(regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> list[Artist]:
     handles: list[Artist] = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
     if has_growth:
         colour = style.time_colours()(0.5)
@@ -200,10 +215,7 @@ def _legend(axes: Axes, regions: Sequence[Patch], *, has_growth: bool, has_joint
     if has_joints:
         look: dict[str, Any] = {"mfc": "white", "mec": "#D55E00", "mew": 0.9, "ms": 4}
         handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))
-    figure = axes.get_figure()
-    assert isinstance(figure, Figure)
-    # a region's entry is as long as two others
-    style.outside_legend(figure, [*handles, *regions], 2 if regions else 3)
+    return [*handles, *regions]
 
 
 def network_box(

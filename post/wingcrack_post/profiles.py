@@ -24,6 +24,7 @@ from wingcrack_post.scales import (
 from wingcrack_post.states import select_states
 from wingcrack_post.table import BoolArray, FloatArray, Table
 from wingcrack_post.units import Unit, displacement_unit, stress_unit
+from wingcrack_post.vtu import IntArray
 
 DEFAULT_COUNT = 8
 _DASHED: dict[str, Any] = {"linestyle": (0, (3, 2)), "linewidth": 0.8}
@@ -60,10 +61,8 @@ def fracture_profiles(run: Run, wanted_s: Sequence[float] = ()) -> Iterator[tupl
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     labels = table.text("fracture")
-    # in the order of the file, which is the order of the scene
-    first_rows = np.unique(labels, return_index=True)[1]
-    for label in labels[np.sort(first_rows)]:
-        yield str(label), _profile(run, table, str(label), labels == label, wanted_s)
+    for label in fracture_labels(table):
+        yield label, _profile(run, table, label, labels == label, wanted_s)
 
 
 def state_numbers(moments: FloatArray, s: FloatArray) -> FloatArray:
@@ -105,10 +104,91 @@ def _arc_length_at(point: FloatArray, s: FloatArray, xy: FloatArray) -> float:
     return float(s[nearest] + share[nearest] * (s[nearest + 1] - s[nearest]))
 
 
+@dataclass(frozen=True)
+class _Lines:
+    """The chosen states of one fracture: where its cells are, and which rows belong to which."""
+
+    run: Run
+    label: str
+    table: Table
+    mine: BoolArray
+    place: FloatArray  # arc length in the unit of the axes
+    initial: FloatArray  # that of the first state
+    rows: list[IntArray]  # of each chosen state, along the fracture
+    names: list[str]  # of the chosen states
+    colours: list[tuple[float, float, float, float]]
+
+
+def fracture_labels(table: Table) -> list[str]:
+    """Fractures of fractures.csv in the order of the file, which is the order of the scene."""
+    return [str(label) for label in dict.fromkeys(table.text("fracture").tolist())]
+
+
 @style.styled
 def _profile(
     run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
 ) -> Figure:
+    lines = _lines(run, table, label, mine, wanted_s)
+    panels = _panels(table)
+    columns = len(panels) // 2
+    figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
+    axes = list(figure.subplots(2, columns, sharex=True).flat)
+    for panel, axis in zip(panels, axes, strict=True):
+        _draw_panel(axis, lines, panel)
+    friction = _draw_bound(axes[-1], lines)
+    for axis in axes[columns:]:
+        axis.set_xlabel(f"distance along the fracture [{run_length_unit(run).name}]")
+    style.letter(axes)
+    figure.suptitle(run.fracture_name(label), fontsize=9)
+    style.outside_legend(figure, _time_handles(lines.names, lines.colours, friction), 4)
+    return figure
+
+
+def draw_profile(
+    axes: Axes, run: Run, column: str, label: str, wanted_s: Sequence[float] = ()
+) -> list[Line2D]:
+    """Draw a column of fractures.csv along one fracture into axes; gives the legend's entries.
+
+    Parameters
+    ----------
+    axes : Axes
+    run : Run
+    column : str
+        One of `profile_columns`.
+    label : str
+        The fracture in fractures.csv.
+    wanted_s : sequence of float
+        Moments, in the unit of the tables; the nearest written ones are drawn. Default: see
+        `select_states`.
+
+    Raises
+    ------
+    AbsentError
+        If the run has no fracture cells.
+    """
+    table = needed(run.fractures, "fractures.csv", "the state along fractures")
+    panel = next(panel for panel in _panels(table) if panel.column == column)
+    lines = _lines(run, table, label, table.text("fracture") == label, wanted_s)
+    _draw_panel(axes, lines, panel)
+    friction = _draw_bound(axes, lines) if column == "traction_t_pa" else None
+    axes.set_xlabel(f"distance along the fracture [{run_length_unit(run).name}]")
+    return _time_handles(lines.names, lines.colours, friction)
+
+
+def profile_columns(table: Table) -> list[str]:
+    """Columns of fractures.csv that can be drawn along a fracture."""
+    return [panel.column for panel in _panels(table)]
+
+
+def _panels(table: Table) -> list[_Panel]:
+    if table.has("pressure_pa", "aperture_m"):
+        return [_FLUID_PANELS[0], *_PANELS[:2], _FLUID_PANELS[1], *_PANELS[2:]]
+    return list(_PANELS)
+
+
+def _lines(
+    run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
+) -> _Lines:
     moments, s = table.moments()[mine], table.number("s_m")[mine]
     xy = np.column_stack((table.number("x_m")[mine], table.number("y_m")[mine]))
     told = table.number("history_row")[mine] if table.has("history_row") else None
@@ -116,49 +196,56 @@ def _profile(
     if told is not None:
         states = np.searchsorted(np.unique(told), told).astype(float)
     s = arc_length(states, s, xy)
-    panels = list(_PANELS)
-    if table.has("pressure_pa", "aperture_m"):
-        panels = [_FLUID_PANELS[0], *_PANELS[:2], _FLUID_PANELS[1], *_PANELS[2:]]
-    columns = len(panels) // 2
-    figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
-    axes = list(figure.subplots(2, columns, sharex=True).flat)
     firsts = np.searchsorted(states, np.unique(states))
     written = moments[firsts]
     in_history = [] if told is None else [int(row) - 1 for row in told[firsts]]
     chosen = select_states(run, written, DEFAULT_COUNT, wanted_s, rows=in_history)
-    colours = style.ordered_colours(len(chosen))
     length = run_length_unit(run)
-    initial = length.of(s[states == 0.0])
-    lines = [np.flatnonzero(states == state) for state in chosen]
-    lines = [rows[np.argsort(s[rows])] for rows in lines]
-    place = length.of(s)
-    for panel, axis in zip(panels, axes, strict=True):
-        scale = traction_scale(run) if panel.stress else jump_scale(run)
-        values = without_round_off(table.number(panel.column)[mine], scale)
-        shown = [values[rows] for rows in lines]
-        unit = stress_unit(*shown) if panel.stress else _jump_unit(panel, axis, shown)
-        for rows, colour in zip(lines, colours, strict=True):
-            marker = style.lone_marker(rows.size)
-            axis.plot(place[rows], unit.of(values[rows]), color=colour, marker=marker)
-        axis.set_title(panel.title)
-        axis.set_ylabel(f"{panel.label} [{unit.name}]")
-        style.steady(axis, [unit.of(value) for value in shown])
-        _mark_initial_ends(axis, initial)
-    friction = _friction(run, label)
-    if friction is not None:
-        bound = _bound(run, table, mine, friction)
-        for rows, colour in zip(lines, colours, strict=True):
-            axes[-1].plot(place[rows], unit.of(bound[rows]), color=colour, **_DASHED)
-    for axis in axes[columns:]:
-        axis.set_xlabel(f"distance along the fracture [{length.name}]")
-    style.letter(axes)
-    figure.suptitle(run.fracture_name(label), fontsize=9)
+    rows = [np.flatnonzero(states == state) for state in chosen]
     names = [
         moment_label(run, float(written[state]), in_history[state] if in_history else None)
         for state in chosen
     ]
-    style.outside_legend(figure, _time_handles(names, colours, friction), 4)
-    return figure
+    return _Lines(
+        run,
+        label,
+        table,
+        mine,
+        place=length.of(s),
+        initial=length.of(s[states == 0.0]),
+        rows=[one[np.argsort(s[one])] for one in rows],
+        names=names,
+        colours=style.ordered_colours(len(chosen)),
+    )
+
+
+def _draw_panel(axis: Axes, lines: _Lines, panel: _Panel) -> None:
+    """Draw one quantity, a line for each state."""
+    scale = traction_scale(lines.run) if panel.stress else jump_scale(lines.run)
+    values = without_round_off(lines.table.number(panel.column)[lines.mine], scale)
+    shown = [values[rows] for rows in lines.rows]
+    unit = stress_unit(*shown) if panel.stress else _jump_unit(panel, axis, shown)
+    for rows, colour in zip(lines.rows, lines.colours, strict=True):
+        marker = style.lone_marker(rows.size)
+        axis.plot(lines.place[rows], unit.of(values[rows]), color=colour, marker=marker)
+    axis.set_title(panel.title)
+    axis.set_ylabel(f"{panel.label} [{unit.name}]")
+    style.steady(axis, [unit.of(value) for value in shown])
+    _mark_initial_ends(axis, lines.initial)
+
+
+def _draw_bound(axis: Axes, lines: _Lines) -> float | None:
+    """Draw the bound of friction beside the tangential traction; gives the coefficient."""
+    friction = _friction(lines.run, lines.label)
+    if friction is not None:
+        values = lines.table.number("traction_t_pa")[lines.mine]
+        unit = stress_unit(
+            *(without_round_off(values[rows], traction_scale(lines.run)) for rows in lines.rows)
+        )
+        bound = _bound(lines.run, lines.table, lines.mine, friction)
+        for rows, colour in zip(lines.rows, lines.colours, strict=True):
+            axis.plot(lines.place[rows], unit.of(bound[rows]), color=colour, **_DASHED)
+    return friction
 
 
 def _jump_unit(panel: _Panel, axis: Axes, shown: Sequence[FloatArray]) -> Unit:

@@ -24,7 +24,7 @@ from wingcrack_post.units import MEGAPASCAL, area_unit, time_unit
 from wingcrack_post.wells import MOST_WELLS, well_rows
 
 _SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
-_COLUMNS = (
+COLUMNS = (
     "injectivity_m2_s_pa",
     "fracture_fluid_m2",
     "rock_fluid_m2",
@@ -51,7 +51,7 @@ _LENGTHS = (
 
 
 @dataclass(frozen=True)
-class _Mark:
+class Mark:
     """A moment that all panels show."""
 
     moment: float  # [s]
@@ -72,7 +72,7 @@ def story(run: Run) -> Figure:
     table = run.history
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
-    if not table.has(*_COLUMNS):
+    if not table.has(*COLUMNS):
         raise AbsentError("history.csv tells no injectivity (no well, or of an earlier version)")
     if table.rows == 1:
         raise AbsentError("the run has one state, so nothing has flowed yet")
@@ -86,12 +86,12 @@ def story(run: Run) -> Figure:
     )
     handles = draw_map(network, run, cells)
     network.set_title("network at the end")
-    marks = _marks(run)
+    marks = find_marks(run)
     _draw_facts(figure, above[0, 1], handles, "\n".join(_facts(run, marks)))
-    _draw_pressure(pressure, run)
+    draw_pressure(pressure, run)
     _draw_injectivity(injectivity, run)
     _draw_fluid(fluid, run)
-    _draw_lengths(lengths, run)
+    draw_lengths(lengths, run)
     _draw_moment(moment, run)
     _draw_events(events, run)
     panels = [pressure, injectivity, fluid, lengths, moment, events]
@@ -100,17 +100,17 @@ def story(run: Run) -> Figure:
         axes.set_xlim(0.0, end)
     for axes in panels[-2:]:
         axes.set_xlabel(abscissa(run, table.moments())[1])
-    _draw_marks(panels, [pressure, injectivity, moment, events], run, marks)
+    draw_marks(panels, [pressure, injectivity, moment, events], run, marks)
     style.letter([network, *panels])
     return figure
 
 
-def _marks(run: Run) -> list[_Mark]:
+def find_marks(run: Run) -> list[Mark]:
     """First growth, and what fractures have met since the start, numbered in this order."""
     marks = []
     growth = growth_start(run)
     if growth is not None:
-        marks.append(_Mark(growth, "g", "growth begins", (0, (1, 1.5))))
+        marks.append(Mark(growth, "g", "growth begins", (0, (1, 1.5))))
     found: dict[float, list[str]] = {}
     for joint in (run.network or {}).get("joints", []):
         if float(joint["time_s"]) > 0.0:
@@ -118,14 +118,21 @@ def _marks(run: Run) -> list[_Mark]:
             beside = " at the boundary" if joint["kind"] == "boundary" else " meet"
             found.setdefault(float(joint["time_s"]), []).append(names + beside)
     for k, moment in enumerate(sorted(found)[:_MOST_MARKS], start=1):
-        marks.append(_Mark(moment, str(k), "; ".join(found[moment]), (0, (4, 2))))
+        marks.append(Mark(moment, str(k), "; ".join(found[moment]), (0, (4, 2))))
     return marks
 
 
-def _draw_marks(
-    panels: Sequence[Axes], named: Sequence[Axes], run: Run, marks: Sequence[_Mark]
+def draw_marks(
+    panels: Sequence[Axes],
+    named: Sequence[Axes],
+    run: Run,
+    marks: Sequence[Mark],
+    near: float = _NEAR,
 ) -> None:
-    """Thin lines in all panels, with their names at the top of some."""
+    """Thin lines in all panels, with their names at the top of some.
+
+    Those nearer to the one before than a share of the axis, `near`, get no name.
+    """
     ordered = sorted(marks, key=lambda mark: mark.moment)
     places = abscissa(run, np.array([mark.moment for mark in ordered]))[0]
     end = panels[0].get_xlim()[1]
@@ -133,7 +140,7 @@ def _draw_marks(
     for mark, place in zip(ordered, places, strict=True):
         for axes in panels:
             axes.axvline(float(place), color=_GREY, linewidth=0.7, linestyle=mark.dashes, zorder=1)
-        if place - before < _NEAR * end:
+        if place - before < near * end:
             continue  # its name would run into the one before
         before = float(place)
         for axes in named:
@@ -151,7 +158,7 @@ def _draw_marks(
             )
 
 
-def _draw_pressure(axes: Axes, run: Run) -> None:
+def draw_pressure(axes: Axes, run: Run) -> None:
     """Pressure and rate of the only well, or pressures of each by name."""
     if run.wells is not None and len(list(well_rows(run.wells))) > 1:
         _draw_pressures(axes, run, run.wells)
@@ -234,7 +241,8 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
     axes.legend(loc="upper left")
 
 
-def _draw_lengths(axes: Axes, run: Run) -> None:
+def draw_lengths(axes: Axes, run: Run) -> None:
+    """Draw lengths: all, connected with a well, stimulated, both."""
     time = abscissa(run, run.history.moments())[0]
     unit = run_length_unit(run)
     for name, column, colour, dashes in _LENGTHS:
@@ -327,7 +335,7 @@ def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], f
     text.text(0.0, 1.0, facts, transform=text.transAxes, va="top", fontsize=7, linespacing=1.35)
 
 
-def _facts(run: Run, marks: Sequence[_Mark]) -> list[str]:
+def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
     table = run.history
     clock = time_unit(float(table.moments()[-1]))
     pressure = MEGAPASCAL.of(table.number("well_pressure_pa"))

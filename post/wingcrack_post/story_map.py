@@ -56,7 +56,7 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     if joints:
         axes.plot(*unit.of(np.array(joints)).T, "o", zorder=6, ls="none", **_JOINT)
         handles.append(Line2D([], [], ls="none", marker="o", label="joint", **_JOINT))
-    handles += _draw_wells(axes, run, unit)
+    handles += draw_wells(axes, run, unit)
     handles += _draw_events(axes, run, unit)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
@@ -168,7 +168,7 @@ def _name(
         )
 
 
-def _draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
+def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
     """Wells at their point; those along a whole fracture near its middle, as the scene has it."""
     wells = run.scene.wells if run.scene else ()
     network = run.network or {}

@@ -1,0 +1,175 @@
+"""Each figure function in a script of five lines, and what its axes show then."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+
+import wingcrack
+from synthetic_run import LAST_WING, LENGTH, STEPS, fracture_cells, times, well_pressure
+
+POST = Path(__file__).resolve().parents[1]
+SCRIPT = """\
+import matplotlib, wingcrack; matplotlib.use("agg")
+run = wingcrack.open({run!r})
+ax = {call}
+ax.figure.savefig("figure.png")
+print(len(ax.lines) + len(ax.collections))
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "run.plot_history()",
+        "run.plot_history('max_slip_m', color='red')",
+        "run.plot_tips('k1')",
+        "run.plot_map('pressure', 3600, close=True)",
+        "run.plot_map('displacement.x')",
+        "run.plot_profile('jump_t_m', 'flaw')",
+        "run.plot_states()",
+        "wingcrack.compare([run, run], 'fracture_length_m', labels=['a', 'b'])",
+    ],
+)
+def test_five_lines_make_a_figure(wet_run: Path, tmp_path: Path, call: str) -> None:
+    code = SCRIPT.format(run=str(wet_run), call=call)
+    assert code.count("\n") == 5
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(POST)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) > 0
+    assert float(imread(tmp_path / "figure.png").std()) > 0.02
+
+
+@pytest.fixture(autouse=True)
+def _without_windows() -> None:
+    matplotlib.use("agg")
+    pyplot.close("all")
+
+
+def test_axes_of_the_user_are_used(wet_run: Path) -> None:
+    run = wingcrack.open(wet_run)
+    mine = Figure().subplots()
+    assert run.plot_history("well_pressure_pa", mine, label="mine") is mine
+    assert pyplot.get_fignums() == []
+    (line,) = mine.lines
+    assert np.allclose(line.get_xdata(), times() / 3600.0)
+    assert np.allclose(line.get_ydata(), [well_pressure(k) / 1e6 for k in range(STEPS)])
+    assert (mine.get_ylabel(), line.get_label()) == ("well pressure [MPa]", "mine")
+
+
+def test_runs_in_one_figure(wet_run: Path, own_run: Path) -> None:
+    path = own_run / "history.csv"
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join(lines[:2]), encoding="utf-8")  # 5 h: by itself it would have hours too
+    runs = [wingcrack.open(wet_run), wingcrack.open(own_run)]
+    axes = wingcrack.compare(runs, "fracture_length_m")
+    length = np.asarray(axes.lines[0].get_ydata())[-1]
+    assert length == pytest.approx(1e3 * (LENGTH + 2 * LAST_WING))  # [mm]
+    assert np.asarray(axes.lines[1].get_xdata())[-1] == pytest.approx(5.0)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [
+        f"synthetic ({folder.name})" for folder in (wet_run, own_run)
+    ]
+
+
+def test_a_profile_shows_the_cells(wet_run: Path) -> None:
+    axes = wingcrack.open(wet_run).plot_profile("jump_n_m", 1, times=[times()[-1]])
+    cells = fracture_cells(STEPS - 1)
+    drawn = next(line for line in axes.lines if np.size(line.get_xdata()) == cells.s.size)
+    assert np.max(drawn.get_ydata()) == pytest.approx(1e6 * cells.jump_n.max())
+
+
+def test_a_map_has_its_colours_in_mpa(wet_run: Path) -> None:
+    axes = wingcrack.open(wet_run).plot_map()
+    values = axes.collections[0].get_array()
+    assert values is not None
+    assert 6.8 <= values.min() < values.max() <= well_pressure(STEPS - 1) / 1e6
+    assert "pore pressure [MPa]" in [other.get_ylabel() for other in axes.figure.axes]
+
+
+def test_without_a_fluid(dry_run: Path) -> None:
+    run = wingcrack.open(dry_run)
+    assert run.plot_history().get_ylabel().startswith("fracture length")
+    assert run.plot_map("stress.mean").collections
+    with pytest.raises(wingcrack.AbsentError, match="no field 'pressure' here"):
+        run.plot_map()
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        ("run.plot_tips('k3')", "RunError", "quantity 'k3' cannot be drawn; there are k1, k2"),
+        ("run.plot_profile('state')", "RunError", "column 'state' cannot be drawn"),
+        ("run.plot_profile(fracture=7)", "RunError", "there is no fracture '7'; the run has flaw"),
+        ("run.plot_network('depth')", "RunError", "colour 'depth' cannot be drawn"),
+        ("run.plot_network()", "AbsentError", "does not tell how the network has grown"),
+        ("run.plot_wells()", "AbsentError", "the run has no wells.csv"),
+        ("run.plot_load()", "AbsentError", "no load factor drives the run"),
+        ("wingcrack.compare([])", "RunError", "at least one run"),
+        ("wingcrack.compare([run], labels=['a', 'b'])", "RunError", "1 runs and 2 labels"),
+        ("run.movie('a.avi')", "RunError", "a movie's name ends with .gif or .mp4"),
+        ("run.movie('no/where.gif')", "RunError", "there is no folder no"),
+        ("run.movie('a.gif', frames_per_second=0)", "RunError", "0 states per second"),
+        ("run.movie('a.gif', size=(10, 10))", "RunError", "64 to 4096 pixels"),
+    ],
+)
+def test_refusals_are_a_sentence_and_leave_no_figure(
+    wet_run: Path, call: str, error: str, message: str
+) -> None:
+    run = wingcrack.open(wet_run)
+    with pytest.raises(getattr(wingcrack, error), match=message.replace(".", r"\.")) as caught:
+        eval(call, {"run": run, "wingcrack": wingcrack})
+    assert "\n" not in str(caught.value)
+    assert pyplot.get_fignums() == []
+
+
+def test_a_movie_without_a_display(own_run: Path, tmp_path: Path) -> None:
+    from PIL import Image
+
+    for name in ("matrix", "fractures"):  # three states are enough
+        path = own_run / f"{name}.pvd"
+        lines = path.read_text(encoding="utf-8").splitlines()
+        path.write_text("\n".join(lines[:6] + lines[-2:]), encoding="utf-8")
+    code = (
+        "import wingcrack\n"
+        f"run = wingcrack.open({str(own_run)!r})\n"
+        "run.movie('movie.gif', size=(200, 150), progress=False)\n"
+        "run.scene3d(time=0.0).screenshot('scene.png')\n"
+    )
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=tmp_path,
+        env={**environment, "PYTHONPATH": str(POST)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if "drawing without a display needs" in done.stderr:
+        pytest.skip("no EGL here")
+    assert (done.returncode, done.stderr) == (0, "")
+    with Image.open(tmp_path / "movie.gif") as movie:
+        assert (movie.n_frames, movie.size) == (3, (200, 150))  # type: ignore[attr-defined]
+        movie.seek(2)
+        last = np.asarray(movie.convert("RGB"), dtype=float)
+    assert last.std() > 20.0
+    assert imread(tmp_path / "scene.png").shape[:2] == (720, 960)
+    assert sorted(path.name for path in tmp_path.glob("*")) != []
+    assert not list(tmp_path.glob(".movie*"))

@@ -1,0 +1,70 @@
+"""Runs and scenes of wingcrack in Python: tables, fields, figures, movies.
+
+>>> import wingcrack
+>>> run = wingcrack.open("out/wing_crack")  # doctest: +SKIP
+>>> run.history["well_pressure_pa"].max()  # doctest: +SKIP
+>>> run.plot_history("well_pressure_pa").figure.savefig("pressure.png")  # doctest: +SKIP
+
+Whatever cannot be done is said in one sentence by one of these exceptions:
+
+* `RunError`: files are missing, damaged or not what was asked for;
+* `AbsentError`: a sound run that does not hold what is asked of it, such as pressure or tips;
+* `SceneError`: a scene that is refused, or an address in it that leads nowhere;
+* `RunFailedError`: a run that was started and ended without its results;
+* `EnvironmentLacksError`: this machine lacks a library or the solver.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from wingcrack.errors import (
+    AbsentError,
+    EnvironmentLacksError,
+    RunError,
+    RunFailedError,
+    SceneError,
+)
+
+if TYPE_CHECKING:
+    from wingcrack.comparison import compare
+    from wingcrack.fields import Fields
+    from wingcrack.parameter_table import Parameter, parameters
+    from wingcrack.run import Run
+    from wingcrack.run import open_run as open  # noqa: A004
+    from wingcrack.scenes import Scene
+
+__all__ = [
+    "AbsentError",
+    "EnvironmentLacksError",
+    "Fields",
+    "Parameter",
+    "Run",
+    "RunError",
+    "RunFailedError",
+    "Scene",
+    "SceneError",
+    "compare",
+    "open",
+    "parameters",
+]
+
+_PLACES = {
+    "Fields": ("fields", "Fields"),
+    "Parameter": ("parameter_table", "Parameter"),
+    "Run": ("run", "Run"),
+    "Scene": ("scenes", "Scene"),
+    "compare": ("comparison", "compare"),
+    "open": ("run", "open_run"),
+    "parameters": ("parameter_table", "parameters"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is asked for: importing the package alone costs a few milliseconds."""
+    if name not in _PLACES:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    from importlib import import_module
+
+    module, attribute = _PLACES[name]
+    found = getattr(import_module(f"{__name__}.{module}"), attribute)
+    globals()[name] = found
+    return found
