@@ -33,7 +33,7 @@ module scene_sheet
       character(len=:), allocatable :: path
       type(record_t), allocatable :: records(:)
       integer :: length = 0  !< records in use
-      type(constant_t), allocatable :: constants(:)  !< named values, in order; unallocated: none yet
+      type(constant_t), allocatable :: constants(:)  !< named values, in their order
    contains
       procedure :: find
       procedure :: has
