@@ -80,7 +80,7 @@ def _results(run: Run) -> list[str]:
     name, _, unit = below.partition(" [")
     unit = unit.strip("-]")
     lines = [f"{name} at the end: {moments[-1]:.4g} {unit}".rstrip()]
-    lines[0] += f" after {history.rows} states"
+    lines[0] += f" after {history.rows} state{'s' if history.rows != 1 else ''}"
     if "cells" in record:
         cells = f"{record['cells']} cells"
         if "fracture_cells" in record:

@@ -53,8 +53,12 @@ def summary(run: Run) -> Figure:
     middle = grid[3, :].subgridspec(1, 3)
     drive, length, ratio = (figure.add_subplot(middle[0, k]) for k in range(3))
     marks = [] if has_load(run) else find_marks(run)
-    _draw_drive(drive, run)
-    _draw_length(length, run)
+    if run.history.rows > 1:
+        _draw_drive(drive, run)
+        _draw_length(length, run)
+    else:
+        _say(drive, "one state:")
+        _say(length, "no curves")
     _draw_ratio(ratio, run)
     if marks and run.history.rows > 1:
         _draw_marks([drive, length, ratio], run, marks)
@@ -81,10 +85,15 @@ def _draw_network(axes: Axes, run: Run) -> list[Artist]:
     network = run.network or {}
     drawn = bool(network.get("steps")) and bool(read_growth(network))
     if not drawn or run.fractures is None or run.fractures.rows == 0:
-        axes.text(0.5, 0.5, "no fractures written", transform=axes.transAxes, ha="center")
-        axes.set_axis_off()
+        _say(axes, "no fractures written")
         return []
     return draw_map(axes, run, run.fractures)
+
+
+def _say(axes: Axes, words: str) -> None:
+    """Put words in the place of a panel."""
+    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", color=_GREY)
+    axes.set_axis_off()
 
 
 def _legend(figure: Figure, place: SubplotSpec, handles: Sequence[Artist]) -> None:
@@ -127,8 +136,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     if run.tips is None or run.tips.rows == 0 or not toughness:
         why = "no toughness" if not toughness else "no tips"
-        axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", color=_GREY)
-        axes.set_axis_off()
+        _say(axes, why)
         return
     if has_load(run) and growth_start(run) is not None:
         place, below = tip_steps(run, run.tips), STEP_LABEL
@@ -142,7 +150,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     axes.axhline(1.0, color=_GREY, linewidth=0.8, linestyle="--")
     axes.set_ylabel("ratio [-]")
     axes.set_xlabel(below)
-    axes.set_ylim(bottom=min(0.0, float(largest.min())))
+    axes.set_ylim(min(0.0, float(largest.min())), 1.08 * max(1.0, float(largest.max())))
 
 
 def _draw_marks(panels: Sequence[Axes], run: Run, marks: Sequence[Mark]) -> None:
