@@ -27,7 +27,8 @@ prepare() {
 
 # prepare_developer: see to the environment with the tools of a developer, who tests studies too.
 prepare_developer() {
-    requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt")
+    requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt"
+        "$root/requirements_maps.txt")
     prepare
 }
 
