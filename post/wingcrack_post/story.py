@@ -20,7 +20,7 @@ from wingcrack_post.scales import run_length_unit
 from wingcrack_post.states import growth_start
 from wingcrack_post.story_map import HALO, draw_map
 from wingcrack_post.table import FloatArray, Table
-from wingcrack_post.units import MEGAPASCAL, area_unit, time_unit
+from wingcrack_post.units import MEGAPASCAL, area_unit, rate_unit, time_unit
 from wingcrack_post.wells import MOST_WELLS, well_rows
 
 _SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
@@ -170,13 +170,13 @@ def draw_pressure(axes: Axes, run: Run) -> None:
     axes.set_title("well pressure and rate")
     rate = run.history.number("injection_rate_m2_s")
     beside = axes.twinx()
+    unit = rate_unit(rate)
+    rate = unit.of(rate)
     beside.step(time, rate, "--", where="pre", color=style.CYCLE[1], lw=1.0, label="rate")
     beside.spines.right.set_visible(True)
     beside.grid(visible=False)
     beside.set_ylim(min(0.0, 1.25 * float(rate.min())), max(1.25 * float(rate.max()), 1e-300))
-    beside.set_ylabel("rate [m²/s]")
-    beside.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
-    beside.yaxis.get_offset_text().set_fontsize(6)
+    beside.set_ylabel(f"rate [{unit.name}]")
     lines = [axes.lines[0], beside.lines[0]]
     axes.legend(handles=lines, loc="lower center")
 

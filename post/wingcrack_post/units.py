@@ -29,6 +29,10 @@ MEGAPASCAL = Unit("MPa", 1e6)
 _SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9), Unit("pm", 1e-12))
 _STRESSES = (MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
 _AREAS = (Unit("m²", 1.0), Unit("cm²", 1e-4), Unit("mm²", 1e-6))
+_RATES = (
+    Unit("m²/s", 1.0),
+    *(Unit(rf"$10^{{-{power}}}$ m²/s", 10.0**-power) for power in (3, 6, 9, 12)),
+)
 _TIMES = tuple(Unit(name, SECONDS[name]) for name in ("h", "min", "s"))
 
 
@@ -51,6 +55,11 @@ def displacement_unit(*values: npt.ArrayLike) -> Unit:
 def stress_unit(*values: npt.ArrayLike) -> Unit:
     """Unit in which the largest stress is at least one tenth."""
     return _fitting(_STRESSES, values)
+
+
+def rate_unit(*values: npt.ArrayLike) -> Unit:
+    """Unit in which the largest rate is at least one tenth."""
+    return _fitting(_RATES, values)
 
 
 def intensity_unit(*values: npt.ArrayLike) -> Unit:
