@@ -9,7 +9,7 @@ module verification_cracks
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use tips_intensity, only: tip_intensity
+   use tips_intensity, only: intensity_of_tip
    use tips_types, only: intensity_t
    use verification_files, only: stop_on, table_t
    implicit none(type, external)
@@ -81,7 +81,7 @@ contains
       call stop_on(error)
    call table%open("tips.csv", "tip,fracture,end,x_m,y_m,k1,k2,k1_dc,k2_dc,k1_inner,k2_inner,cells")
       do tip = 1, model%mesh%fracture%n_tips
-         call tip_intensity(model, loads, displacement, tip, intensity, error)
+         call intensity_of_tip(model, loads, displacement, tip, intensity, error)
          call stop_on(error)
          associate (fracture => model%mesh%fracture)
             call table%row([real(tip, rk), real(fracture%tip_fracture(tip), rk), &
