@@ -379,7 +379,7 @@ def test_figures_of_a_run(growing: Path) -> None:
     drawings = {path.stem for path in (growing / "figures").glob("*.pdf")}
     assert drawings == pictures
     for path in (growing / "figures").glob("[!.]*"):
-        magic = {".png": b"\x89PNG", ".pdf": b"%PDF"}[path.suffix]
+        magic = {".png": b"\x89PNG", ".pdf": b"%PDF", ".html": b"<!DOCTYPE html>"}[path.suffix]
         assert path.read_bytes().startswith(magic)
 
 
