@@ -373,14 +373,15 @@ contains
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
+      type(tip_probe_t) :: probe(self%mesh%fracture%n_tips)
       integer(ik) :: tip
 
-      allocate (self%probe(self%mesh%fracture%n_tips))
       do tip = 1, self%mesh%fracture%n_tips
          call refuse_interface(self, scene, tip, error)
-         if (.not. allocated(error)) call probe_of_tip(self%model, tip, self%probe(tip), error)
+         if (.not. allocated(error)) call probe_of_tip(self%model, tip, probe(tip), error)
          if (allocated(error)) return
       end do
+      self%probe = probe
    end subroutine find_probes
 
    !> Errors of the intensities from that of the whole solution, where no faces touch.

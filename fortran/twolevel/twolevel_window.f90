@@ -373,14 +373,15 @@ contains
       class(window_t), intent(inout) :: self
       type(window_tip_t), intent(in) :: tips(:)
       type(error_t), allocatable, intent(out) :: error
+      type(tip_probe_t) :: probe(size(self%serves))
       integer(ik) :: i
 
-      allocate (self%probe(size(self%serves)))
       do i = 1, size(self%serves, kind=ik)
          if (tips(self%serves(i))%at == 0) cycle
-         call probe_of_tip(self%model, tips(self%serves(i))%at, self%probe(i), error)
+         call probe_of_tip(self%model, tips(self%serves(i))%at, probe(i), error)
          if (allocated(error)) return
       end do
+      self%probe = probe
    end subroutine find_probes
 
    !> The window's edge with displacements that are quadratic in each coarse cell: linear between
