@@ -37,12 +37,14 @@ module algebra_fronts
 contains
 
    !> Find the fronts.
-   subroutine find_fronts(first_unknown, elements, kept, fronts, error)
+   subroutine find_fronts(first_unknown, elements, kept, fronts, error, given)
       integer(ik), intent(in) :: first_unknown(:)  !< (blocks + 1) where each begins
       type(lists_t), intent(in) :: elements  !< their blocks
       integer(ik), intent(in) :: kept(:)  !< unknowns that are not eliminated: whole blocks
       type(fronts_t), intent(out) :: fronts
       type(error_t), allocatable, intent(out) :: error
+      !> The blocks one after another, the kept ones last; where it is absent CAMD finds an order.
+      integer(ik), intent(in), optional :: given(:)
       type(elimination_t) :: elimination
       integer(ik), allocatable :: order(:), place(:)
       integer(ik), allocatable :: head(:)  ! the last block of the front that each one belongs to
@@ -54,8 +56,12 @@ contains
       allocate (fronts%number(first_unknown(n_blocks + 1) - 1), source=0_ik)
       fronts%number(kept) = 1
       is_kept = [(fronts%number(first_unknown(b)) > 0, b=1, n_blocks)]
-      call minimum_degree(later_neighbours(elements, n_blocks), is_kept, order, error)
-      if (allocated(error)) return
+      if (present(given)) then
+         order = given
+      else
+         call minimum_degree(later_neighbours(elements, n_blocks), is_kept, order, error)
+         if (allocated(error)) return
+      end if
       allocate (place(n_blocks))
       do b = 1, n_blocks
          place(order(b)) = b

@@ -9,9 +9,20 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyrk, dtrsm
+   public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyrk, dtrsm
 
    interface
+      !> C := alpha op(A) op(B) + beta C.
+      subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+         import :: ik, rk
+         implicit none(type, external)
+         character(len=1), intent(in) :: transa, transb
+         integer(ik), intent(in) :: m, n, k, lda, ldb, ldc
+         real(rk), intent(in) :: alpha, beta
+         real(rk), intent(in) :: a(lda, *), b(ldb, *)
+         real(rk), intent(inout) :: c(ldc, *)
+      end subroutine dgemm
+
       !> Solve A X = B by LU factors with row exchanges. On return A holds the factors, B is X.
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: ik, rk

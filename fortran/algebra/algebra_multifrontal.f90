@@ -1,6 +1,9 @@
 !> Symmetric positive definite systems that are sums of small dense matrices, such as those of
 !! finite elements, by the multifrontal method (Duff and Reid 1983): the matrix as a whole is never
 !! formed.
+!! With a sign given for each unknown also quasi-definite ones, [K B; B^T -C] with definite K and C:
+!! they have factors A = L S L^T, S the signs, in any order without exchange (Vanderbei 1995). How
+!! far rounding grows the caller has to judge.
 !! On request condensed onto a few unknowns, which need not be definite.
 !!
 !! A front is a small dense matrix: its elements and what its children have left are added up, its
@@ -9,7 +12,7 @@
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
    use algebra_fronts, only: find_fronts, fronts_t
-   use algebra_partial_cholesky, only: eliminate
+   use algebra_partial_cholesky, only: eliminate, eliminate_signed
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
@@ -46,6 +49,8 @@ module algebra_multifrontal
       real(rk), allocatable :: factor(:)  !< the columns of the fronts' pivots
       real(rk), allocatable :: schur(:, :)
       real(rk), allocatable :: eliminated(:)  !< (n) what `condense` leaves for `expand`
+      !> (n) signs of the pivots in the order of elimination; not allocated: all are positive
+      real(rk), allocatable :: signs(:)
       logical :: is_factorized = .false.
    contains
       procedure :: analyse
@@ -71,24 +76,33 @@ module algebra_multifrontal
 contains
 
    !> Order the unknowns and find the fronts.
-   subroutine analyse(self, first_unknown, elements, error, kept)
+   subroutine analyse(self, first_unknown, elements, error, kept, order, is_negative)
       class(multifrontal_t), intent(inout) :: self
       !> (blocks + 1) Unknowns that occur in the same elements follow each other and are a block.
       integer(ik), intent(in) :: first_unknown(:)
       type(lists_t), intent(in) :: elements  !< the blocks of each
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: kept(:)  !< unknowns to condense onto: whole blocks
+      !> (blocks) one after another, the kept ones last; where it is absent an order is found
+      integer(ik), intent(in), optional :: order(:)
+      logical, intent(in), optional :: is_negative(:)  !< (unknowns) those with negative pivots
       integer(ik), parameter :: none(0) = [integer(ik) ::]
       integer(ik) :: b, e, i, k, n, u
 
       self%is_factorized = .false.
       self%n = first_unknown(size(first_unknown)) - 1
       if (present(kept)) then
-         call find_fronts(first_unknown, elements, kept, self%fronts, error)
+         call find_fronts(first_unknown, elements, kept, self%fronts, error, order)
       else
-         call find_fronts(first_unknown, elements, none, self%fronts, error)
+         call find_fronts(first_unknown, elements, none, self%fronts, error, order)
       end if
       if (allocated(error)) return
+      if (allocated(self%signs)) deallocate (self%signs)
+      if (present(is_negative)) then
+         allocate (self%signs(self%n))
+         self%signs(self%fronts%number) = merge(-1.0_rk, 1.0_rk, is_negative)
+         self%signs(self%fronts%n_free + 1:) = 1.0_rk
+      end if
       n = 0
       do k = 1, size(elements%item, kind=ik)
          b = elements%item(k)
@@ -160,11 +174,13 @@ contains
          call eliminate_front(self, matrices, i, work, place)
          if (place > 0) then
             call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
-                             "indefinite, or has an entry that is not a finite number")
+                             "indefinite (or not quasi-definite), or has an entry that is not "// &
+                             "a finite number")
             return
          end if
       end do
 
+      deallocate (work%front)  ! it may be as large as what follows
       n_kept = self%n - self%fronts%n_free
       if (allocated(self%schur)) deallocate (self%schur)
       allocate (self%schur(n_kept, n_kept), source=0.0_rk)
@@ -224,7 +240,7 @@ contains
       class(element_matrices_t), intent(in) :: matrices
       integer(ik), intent(in) :: i
       type(workspace_t), intent(inout) :: work
-      integer(ik), intent(out) :: place  !< of a pivot that is not positive; 0: none
+      integer(ik), intent(out) :: place  !< of a pivot of the wrong sign; 0: none
       integer(ik) :: child, k, m, n, n_pivots
 
       n_pivots = pivots_of(self, i)
@@ -243,7 +259,12 @@ contains
             if (m == 0) cycle
             call add_triangle(m, work%places, work%stack(work%top + 1), n, work%front)
          end do
-         call eliminate(work%front, n, n_pivots, place)
+         if (allocated(self%signs)) then
+            call eliminate_signed(work%front, n, self%signs(fronts%first_pivot(i): &
+                                                            fronts%first_pivot(i + 1) - 1), place)
+         else
+            call eliminate(work%front, n, n_pivots, place)
+         end if
          if (place > 0) return
          self%factor(self%first_entry(i):self%first_entry(i + 1) - 1) &
             = work%front(:int(n, int64)*n_pivots)
@@ -384,6 +405,7 @@ contains
       if (allocated(error)) return
       y(self%fronts%number) = x
       call substitute_forwards(self, y)
+      if (allocated(self%signs)) y = self%signs*y
       call substitute_backwards(self, y)
       x = y(self%fronts%number)
    end subroutine solve
@@ -406,6 +428,7 @@ contains
       self%eliminated(self%fronts%number) = rhs
       call substitute_forwards(self, self%eliminated)
       reduced = self%eliminated(self%fronts%n_free + 1:)
+      if (allocated(self%signs)) self%eliminated = self%signs*self%eliminated
    end subroutine condense
 
    !> Back substitution after `condense`: all unknowns from the kept ones.

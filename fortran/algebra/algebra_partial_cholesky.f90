@@ -1,16 +1,20 @@
-!> Cholesky elimination of the first unknowns of a dense symmetric positive definite matrix.
+!> Cholesky elimination of the first unknowns of a dense symmetric matrix that is positive definite
+!! or, with a sign for each pivot, quasi-definite (Vanderbei 1995): A = L S L^T, S the signs.
 module algebra_partial_cholesky
-   use algebra_lapack, only: dpotrf, dsyrk, dtrsm
+   use algebra_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: eliminate
+   public :: eliminate, eliminate_signed
 
    integer(ik), parameter :: panel = 4  !< pivots that are taken together
 
    !> With fewer pivots or rows than these the plain loops are faster than the calls.
    integer(ik), parameter :: pivots_for_blas = 16, rows_for_blas = 160
+
+   !> Columns that are taken together where signs stand between two factors.
+   integer(ik), parameter :: columns_together = 64
 
 contains
 
@@ -26,7 +30,7 @@ contains
 
       rest = n - n_pivots
       if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
-         call eliminate_in_panels(matrix, n, n_pivots, place)
+         call eliminate_in_panels(matrix, n, n, spread(1.0_rk, 1, n_pivots), place)
          return
       end if
       call dpotrf("L", n_pivots, matrix, n, place)
@@ -37,39 +41,81 @@ contains
                  matrix(n_pivots + 1, n_pivots + 1), n)
    end subroutine eliminate
 
-   !> The same in plain loops, a few pivots at a time.
-   pure subroutine eliminate_in_panels(matrix, n, n_pivots, place)
+   !> The same for pivots of given signs. The diagonal of the factor is positive.
+   subroutine eliminate_signed(matrix, n, signs, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)
-      integer(ik), intent(in) :: n_pivots
+      real(rk), intent(in) :: signs(:)  !< (pivots) 1 or -1
+      integer(ik), intent(out) :: place  !< of the first pivot that has not its sign; 0: none
+      real(rk) :: opposite(size(signs), columns_together)
+      integer(ik) :: at, first, k, m, n_pivots, n_together
+
+      n_pivots = size(signs, kind=ik)
+      if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
+         call eliminate_in_panels(matrix, n, n, signs, place)
+         return
+      end if
+      do first = 1, n_pivots, columns_together
+         m = min(columns_together, n_pivots - first + 1)
+         associate (own => signs(first:first + m - 1), after => first + m)
+            call eliminate_in_panels(matrix(first, first), n, m, own, place)
+            if (place > 0) then
+               place = first - 1 + place
+               return
+            end if
+            if (after > n) exit
+            call dtrsm("R", "L", "T", "N", n - after + 1, m, 1.0_rk, matrix(first, first), n, &
+                       matrix(after, first), n)
+            do k = 1, m
+               if (own(k) < 0.0_rk) matrix(after:, first + k - 1) = -matrix(after:, first + k - 1)
+            end do
+            do at = after, n, columns_together
+               n_together = min(columns_together, n - at + 1)
+               do k = 1, n_together
+                  opposite(:m, k) = own*matrix(at + k - 1, first:first + m - 1)
+               end do
+               call dgemm("N", "N", n - at + 1, n_together, m, -1.0_rk, matrix(at, first), n, &
+                          opposite, n_pivots, 1.0_rk, matrix(at, at), n)
+            end do
+         end associate
+      end do
+   end subroutine eliminate_signed
+
+   !> The same in plain loops, a few pivots at a time.
+   pure subroutine eliminate_in_panels(matrix, n_stored, n, signs, place)
+      integer(ik), intent(in) :: n_stored  !< rows of the matrix that this one is part of
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n_stored, *)
+      real(rk), intent(in) :: signs(:)  !< (pivots)
       integer(ik), intent(out) :: place
       real(rk) :: factor(2, panel)
-      integer(ik) :: first, j, k, last
+      integer(ik) :: first, j, k, last, n_pivots
 
+      n_pivots = size(signs, kind=ik)
       place = 0
       do first = 1, n_pivots, panel
          last = min(first + panel - 1, n_pivots)
          do k = first, last
-            if (.not. matrix(k, k) > 0.0_rk) then
+            if (.not. signs(k)*matrix(k, k) > 0.0_rk) then
                place = k
                return
             end if
-            matrix(k, k) = sqrt(matrix(k, k))
-            call divide(n - k, matrix(k, k), matrix(min(k + 1, n), k))
+            matrix(k, k) = sqrt(signs(k)*matrix(k, k))
+            call divide(n - k, signs(k)*matrix(k, k), matrix(min(k + 1, n), k))
             do j = k + 1, last
-               call subtract_one(n - j + 1, matrix(j, k), matrix(j, k), matrix(j, j))
+               call subtract_one(n - j + 1, signs(k)*matrix(j, k), matrix(j, k), matrix(j, j))
             end do
          end do
          if (last - first + 1 < panel) then
             do k = first, last
                do j = last + 1, n
-                  call subtract_one(n - j + 1, matrix(j, k), matrix(j, k), matrix(j, j))
+                  call subtract_one(n - j + 1, signs(k)*matrix(j, k), matrix(j, k), matrix(j, j))
                end do
             end do
          else
             do j = last + 1, n - 1, 2
                do k = first, last
-                  factor(:, k - first + 1) = [matrix(j, k), matrix(j + 1, k)]
+                  factor(:, k - first + 1) = signs(k)*[matrix(j, k), matrix(j + 1, k)]
                end do
                call subtract_four_twice(n - j + 1, factor, &
                                         matrix(j, first), matrix(j, first + 1), &
@@ -78,7 +124,7 @@ contains
             end do
             if (modulo(n - last, 2) == 1) then
                do k = first, last
-                  call subtract_one(1, matrix(n, k), matrix(n, k), matrix(n, n))
+                  call subtract_one(1, signs(k)*matrix(n, k), matrix(n, k), matrix(n, n))
                end do
             end if
          end if

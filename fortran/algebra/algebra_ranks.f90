@@ -6,7 +6,7 @@ module algebra_ranks
    implicit none(type, external)
    private
 
-   public :: announce, begin_ranks, communicator_of, new_share
+   public :: announce, are_shared, begin_ranks, communicator_of, new_share
 
    interface
       !> To be called once, before anything is solved. Only the first rank comes back; the others
@@ -14,6 +14,13 @@ module algebra_ranks
       subroutine begin_ranks() bind(c, name="algebra_begin_ranks")
          implicit none(type, external)
       end subroutine begin_ranks
+
+      !> Whether the ranks would share a matrix of so many unknowns: 1, or 0.
+      pure integer(c_int) function are_shared(n) bind(c, name="algebra_are_shared")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value :: n  !< number of unknowns
+      end function are_shared
 
       !> A number for a new matrix if the ranks are to share it, or 0.
       integer(c_int) function new_share(n) bind(c, name="algebra_new_share")

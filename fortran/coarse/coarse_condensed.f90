@@ -15,10 +15,9 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_indefinite, mumps_t
-   use algebra_ordering, only: dissect, expand_order, neighbours_of
    use coarse_coupling, only: coupling_t, find_coupling, find_coupling_values
-   use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
+   use coarse_factors, only: coarse_factors_t
+   use coarse_layout, only: condensed_layout, condensed_layout_t
    use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -43,12 +42,10 @@ module coarse_condensed
       real(rk), allocatable :: length(:)  !< (n) [m]
       integer(ik) :: n = 0  !< fracture cells
       type(condensed_layout_t) :: layout  !< of q
-      type(mumps_t) :: solver
-      logical :: analysed = .false.
-      !> (3 n_blocks) unknown = scale * scaled unknown [m], [m], [Pa] block by block
-      real(rk), allocatable :: scale(:)
-      integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
+      type(coarse_factors_t) :: factors
+      logical :: analysed = .false.  !< the mesh is known
    contains
+      procedure :: forget
       procedure :: factorize
       procedure :: support
       procedure :: condense
@@ -59,50 +56,42 @@ module coarse_condensed
 
 contains
 
-   !> Factorize for a time step and condense. The pattern is analysed at the first call.
+   !> Begin anew with another mesh.
+   subroutine forget(self, is_full)
+      class(condensed_t), intent(inout) :: self
+      logical, intent(in) :: is_full  !< whether S is to be formed
+
+      call self%factors%release()
+      self%is_full = is_full
+      self%analysed = .false.
+      self%dt = -1.0_rk
+   end subroutine forget
+
+   !> Factorize for a time step and condense.
    subroutine factorize(self, mesh, matrix, dt, error)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: row(:), col(:), schur(:), place(:)
-      real(rk), allocatable :: values(:)
-      integer(ik) :: i, n, n_blocks
 
       self%dt = -1.0_rk
       self%factorizations = self%factorizations + 1
-      n_blocks = merge(matrix%n_blocks, matrix%n_cells, self%is_full)
       if (.not. self%analysed) then
          if (allocated(self%rock)) deallocate (self%rock)  ! of another mesh
          self%n = mesh%fracture%n_cells
          self%layout = condensed_layout(self%n)
-         self%at_fractures = at_component(matrix%n_cells + 1, 1)
          call find_frames(mesh, self%normal, self%length)
-         call triplet_pattern(matrix, n_blocks, row, col)
-         n = 3*n_blocks
-         schur = [(i, i=self%at_fractures, n)]
-         call dissect(neighbours_of(matrix%columns, matrix%n_cells), place, error)
-         if (allocated(error)) return
-         place = expand_order(place, 3_ik, n_blocks)
-         call self%solver%analyse(n, row, col, mumps_indefinite, error, schur=schur, place=place)
-         if (allocated(error)) return
-         deallocate (row, col, place)  ! of the size of the matrix: not to be there with the factors
          if (.not. self%is_full) call find_coupling(matrix, self%coupling)
          self%analysed = .true.
       end if
-      call find_scale(matrix, dt, self%scale)
-      call triplet_values(matrix, n_blocks, self%scale, dt, values)
       if (self%is_full) then
-         if (allocated(self%stiffness)) deallocate (self%stiffness)
-         allocate (self%stiffness(self%layout%count(), self%layout%count()))
-         call self%solver%factorize(values, error, self%stiffness)
-         if (.not. allocated(error)) call find_stiffness(self)
+         call self%factors%factorize(matrix, dt, error, self%stiffness)
+         if (allocated(error)) return
+         call find_stiffness(self)
       else
-         call self%solver%factorize(values, error)
-      end if
-      if (allocated(error)) return
-      if (.not. self%is_full) then
+         call self%factors%factorize(matrix, dt, error)
+         if (allocated(error)) return
          call find_coupling_values(matrix, self%normal, dt, self%coupling)
          self%spring = spread(0.0_rk, 1, self%layout%count())
          self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
@@ -121,16 +110,16 @@ contains
 
       if (self%n == 0) return
       if (self%is_full) then
-         all = reshape(rhs, [size(rhs)])*self%scale
-         call self%solver%condense(all, g, error)
-         g = g/self%scale(self%at_fractures:)
+         all = reshape(rhs, [size(rhs)])*self%factors%scale
+         call self%factors%condense(all, g, error)
+         g = g/self%factors%scale(self%factors%at_fractures:)
          call turn_to_normals(self, g)
       else
          all = reshape(rhs, [size(rhs)])
          b = all(:self%coupling%n_bulk)
          call solve_rock(self, b, error)
          call self%coupling%forces(b, spread(0.0_rk, 1, size(g)), g)
-         associate (own => all(self%at_fractures:))
+         associate (own => all(self%factors%at_fractures:))
             call turn_to_normals(self, own)
             g = own - g
          end associate
@@ -149,23 +138,23 @@ contains
 
       x(:, 1) = reshape(rhs, [size(rhs)])
       if (self%n == 0) then
-         x(:, 1) = x(:, 1)*self%scale
-         call self%solver%solve(x, error)
-         unknowns = reshape(x(:, 1)*self%scale, shape(unknowns))
+         x(:, 1) = x(:, 1)*self%factors%scale
+         call self%factors%solve(x, error)
+         unknowns = reshape(x(:, 1)*self%factors%scale, shape(unknowns))
          return
       end if
       jumps = q
       call turn_to_axes(self, jumps)
       if (self%is_full) then
-         call self%solver%expand(jumps/self%scale(self%at_fractures:), x(:, 1), error)
-         x(:, 1) = x(:, 1)*self%scale
+      call self%factors%expand(jumps/self%factors%scale(self%factors%at_fractures:), x(:, 1), error)
+         x(:, 1) = x(:, 1)*self%factors%scale
       else
          allocate (b(self%coupling%n_bulk))
          call self%coupling%bulk_load(q, b)
          b = x(:size(b), 1) - b
          call solve_rock(self, b, error)
          x(:size(b), 1) = b
-         x(self%at_fractures:, 1) = jumps
+         x(self%factors%at_fractures:, 1) = jumps
       end if
       unknowns = reshape(x(:, 1), shape(unknowns))
    end subroutine expand
@@ -219,7 +208,7 @@ contains
       integer(ik) :: first, i, n
 
       q = 0.0_rk
-      associate (scale => self%scale(:self%coupling%n_bulk))
+      associate (scale => self%factors%scale(:self%coupling%n_bulk))
          do first = 1, size(at), together
             n = min(together, size(at, kind=ik) - first + 1)
             allocate (row(size(scale), n))
@@ -230,7 +219,7 @@ contains
                row(:, i) = row(:, i)*scale
             end do
             answer = row
-            call self%solver%solve(answer, error)
+            call self%factors%solve(answer, error)
             if (allocated(error)) return
             do i = 1, n
                associate (place => at(first + i - 1))
@@ -250,10 +239,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: x(:, :)
 
-      associate (scale => self%scale(:size(b)))
+      associate (scale => self%factors%scale(:size(b)))
          allocate (x(size(b), 1))
          x(:, 1) = b*scale
-         call self%solver%solve(x, error)
+         call self%factors%solve(x, error)
          b = x(:, 1)*scale
       end associate
    end subroutine solve_rock
@@ -264,7 +253,7 @@ contains
       integer(ik) :: at, cell, end, i
       real(rk), allocatable :: first(:)
 
-      associate (s => self%scale(self%at_fractures:), stiffness => self%stiffness)
+      associate (s => self%factors%scale(self%factors%at_fractures:), stiffness => self%stiffness)
          do i = 1, size(s)
             stiffness(:, i) = stiffness(:, i)/(s*s(i))
             call turn_to_normals(self, stiffness(:, i))
@@ -321,26 +310,6 @@ contains
       call turn_to_normals(self, v)
    end subroutine turn_to_axes
 
-   !> Units in which the matrix has ones and minus ones on its diagonal.
-   pure subroutine find_scale(matrix, dt, scale)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), allocatable, intent(out) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
-      real(rk) :: diagonal
-      integer(ik) :: a, entry, i
-
-      allocate (scale(3*matrix%n_blocks))
-      do i = 1, matrix%n_blocks
-         entry = matrix%columns%last(i)
-         do a = 1, 3
-            diagonal = matrix%elastic(a, a, entry)
-            if (a == 3) diagonal = diagonal + dt*matrix%flow(entry)
-            scale(at_component(i, a)) = 1.0_rk
-            if (abs(diagonal) > 0.0_rk) scale(at_component(i, a)) = 1.0_rk/sqrt(abs(diagonal))
-         end do
-      end do
-   end subroutine find_scale
-
    !> Normal (from side + to side -) and length of each fracture cell.
    subroutine find_frames(mesh, normal, length)
       type(mesh_t), intent(in) :: mesh
@@ -358,65 +327,5 @@ contains
          normal(:, i) = [-tangent(2), tangent(1)]/length(i)
       end do
    end subroutine find_frames
-
-   !> Where the numbers of the lower triangle stand, one by one.
-   subroutine triplet_pattern(matrix, n_blocks, row, col)
-      type(matrix_t), intent(in) :: matrix
-      integer(ik), intent(in) :: n_blocks  !< so many of them
-      integer(ik), allocatable, intent(out) :: row(:), col(:)
-      integer(ik) :: a, b, block, entry, i, n
-
-      n = triplet_count(matrix, n_blocks)
-      allocate (row(n), col(n))
-      n = 0
-      do i = 1, n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            block = matrix%columns%item(entry)
-            do b = 1, 3
-               do a = merge(b, 1_ik, block == i), 3
-                  n = n + 1
-                  row(n) = at_component(i, a)
-                  col(n) = at_component(block, b)
-               end do
-            end do
-         end do
-      end do
-   end subroutine triplet_pattern
-
-   !> The numbers themselves, for scaled unknowns and equations.
-   subroutine triplet_values(matrix, n_blocks, scale, dt, values)
-      type(matrix_t), intent(in) :: matrix
-      integer(ik), intent(in) :: n_blocks  !< so many of them
-      real(rk), intent(in) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), allocatable, intent(out) :: values(:)  !< [-]
-      integer(ik) :: a, at_col, at_row, b, entry, i, n
-      real(rk) :: block(3, 3)
-
-      allocate (values(triplet_count(matrix, n_blocks)))
-      n = 0
-      do i = 1, n_blocks
-         at_row = at_component(i, 1) - 1
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            at_col = at_component(matrix%columns%item(entry), 1) - 1
-            block = matrix%elastic(:, :, entry)
-            block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
-            do b = 1, 3
-               do a = merge(b, 1_ik, at_col == at_row), 3
-                  n = n + 1
-                  values(n) = block(a, b)*scale(at_row + a)*scale(at_col + b)
-               end do
-            end do
-         end do
-      end do
-   end subroutine triplet_values
-
-   !> How many numbers the lower triangle has: six in a diagonal block, nine in another.
-   pure integer(ik) function triplet_count(matrix, n_blocks)
-      type(matrix_t), intent(in) :: matrix
-      integer(ik), intent(in) :: n_blocks  !< so many of them
-
-      triplet_count = 9*(matrix%columns%last(n_blocks) - n_blocks) + 6*n_blocks
-   end function triplet_count
 
 end module coarse_condensed

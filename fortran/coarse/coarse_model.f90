@@ -122,12 +122,9 @@ contains
          end if
       end if
       self%ends = free_ends(mesh%fracture)
-      call self%condensed%solver%release()
+      call self%condensed%forget(is_full(mesh, scene%discretization%condensation))
       call self%factors%release()
       call self%guess%forget()
-      self%condensed%analysed = .false.
-      self%condensed%is_full = is_full(mesh, scene%discretization%condensation)
-      self%condensed%dt = -1.0_rk
       call timers%stop(phase_discretize)
    end subroutine set_mesh
 

@@ -65,16 +65,16 @@ contains
       real(rk), allocatable :: rock(:)
       integer(ik) :: at, k, n, n_bulk, q
 
-      call condensed%solver%get_entries(rock_row, rock_col, rock)
+      call condensed%factors%get_entries(rock_row, rock_col, rock)
       n_bulk = condensed%coupling%n_bulk
       n = 2*count(rock_row /= rock_col) + count(rock_row == rock_col) &
           + count(condensed%coupling%col <= n_bulk)
       allocate (row(n), col(n), values(n))
       ! Pressures and flows of the fluid in the units of the rock's pressures at the fractures.
-      allocate (col_scale(n_bulk + n_rows), source=minval(condensed%scale(n_bulk + 3 :: 3)))
-      col_scale(:n_bulk) = condensed%scale(:n_bulk)
+      allocate (col_scale(n_bulk + n_rows), source=minval(condensed%factors%scale(n_bulk + 3 :: 3)))
+      col_scale(:n_bulk) = condensed%factors%scale(:n_bulk)
       do q = 1, size(x_of_q)
-         col_scale(n_bulk + x_of_q(q)) = condensed%scale(n_bulk + q)/q_per_x(q)
+         col_scale(n_bulk + x_of_q(q)) = condensed%factors%scale(n_bulk + q)/q_per_x(q)
       end do
       n = 0
       do k = 1, size(rock)

@@ -1,6 +1,11 @@
 // One process: nothing is shared (algebra_ranks.f90).
 void algebra_begin_ranks(void) {}
 
+int algebra_are_shared(int n) {
+    (void)n;
+    return 0;
+}
+
 int algebra_new_share(int n) {
     (void)n;
     return 0;

@@ -60,7 +60,9 @@ void algebra_begin_ranks(void) {
     atexit(end_ranks);
 }
 
-int algebra_new_share(int n) { return n < least_shared ? 0 : ++n_shares; }
+int algebra_are_shared(int n) { return n >= least_shared; }
+
+int algebra_new_share(int n) { return algebra_are_shared(n) ? ++n_shares : 0; }
 
 int algebra_communicator(int share) { return (int)MPI_Comm_c2f(share == 0 ? MPI_COMM_SELF : MPI_COMM_WORLD); }
 

@@ -3,7 +3,7 @@
 program test_algebra_multifrontal
    use testing_checks, only: checks_t
    use testing_random, only: random_t
-   use algebra_lapack, only: dpotrf, dpotrs
+   use algebra_lapack, only: dgesv
    use algebra_multifrontal, only: multifrontal_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -17,6 +17,12 @@ program test_algebra_multifrontal
    call agrees_with_dense(8_ik, 3_ik, 0_ik)
    call agrees_with_dense(40_ik, 60_ik, 5_ik)
    call agrees_with_dense(150_ik, 300_ik, 40_ik)
+   call agrees_with_dense(8_ik, 3_ik, 0_ik, every=2_ik)
+   call agrees_with_dense(40_ik, 60_ik, 5_ik, every=3_ik)
+   call agrees_with_dense(150_ik, 300_ik, 0_ik, every=1_ik)
+   call agrees_with_dense(150_ik, 300_ik, 40_ik, every=3_ik)
+   call agrees_with_dense(150_ik, 300_ik, 40_ik, every=3_ik, size_of_negative=1.0e-2_rk)
+   call refuses_wrong_signs()
    call solves_a_grid(2_ik)
    call solves_a_grid(60_ik)
    call refuses()
@@ -83,19 +89,32 @@ contains
    end subroutine condenses_springs
 
    !> Random blocks of one to three unknowns in random definite elements, and an element of every
-   !! single block.
-   subroutine agrees_with_dense(n_blocks, n_elements, n_kept)
+   !! single block. Where some unknowns have negative pivots, what they have with each other is
+   !! turned negative: such matrices are quasi-definite. The order is then a given one, that in
+   !! which the blocks stand.
+   subroutine agrees_with_dense(n_blocks, n_elements, n_kept, every, size_of_negative)
       integer(ik), intent(in) :: n_blocks, n_elements
       integer(ik), intent(in) :: n_kept  !< blocks
+      integer(ik), intent(in), optional :: every  !< which unknowns have negative pivots
+      real(rk), intent(in), optional :: size_of_negative  !< instead of 1
       type(multifrontal_t) :: solver
       type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk), allocatable :: dense(:, :), free(:, :), load(:), reduced(:), s(:, :), x(:)
-      integer(ik), allocatable :: kept(:), others(:), places(:)
+      integer(ik), allocatable :: kept(:), kept_blocks(:), order(:), others(:), places(:)
+      logical, allocatable :: is_negative(:)
       integer(ik) :: b, e, i, info, n
 
       call random_elements(n_blocks, n_elements, matrices)
       n = matrices%first_unknown(n_blocks + 1) - 1
+      if (present(every)) then
+         is_negative = [(modulo(i, every) == 0, i=1, n)]
+         if (present(size_of_negative)) then
+            call turn_negative(matrices, is_negative, size_of_negative)
+         else
+            call turn_negative(matrices, is_negative, 1.0_rk)
+         end if
+      end if
       allocate (dense(n, n), load(n), x(n), source=0.0_rk)
       do e = 1, size(matrices%elements%first, kind=ik) - 1
          places = unknowns_of(matrices, matrices%elements%of(e))
@@ -105,9 +124,16 @@ contains
                                            [size(places), size(places)])
       end do
       ! Every third block from the end, in that order.
-      kept = unknowns_of(matrices, [(n_blocks - 3*b, b=0, n_kept - 1)])
+      kept_blocks = [(n_blocks - 3*b, b=0, n_kept - 1)]
+      kept = unknowns_of(matrices, kept_blocks)
       others = pack([(i, i=1, n)], [(all(kept /= i), i=1, n)])
-      call solver%analyse(matrices%first_unknown, matrices%elements, error, kept=kept)
+      if (present(every)) then
+         order = [pack([(b, b=1, n_blocks)], [(all(kept_blocks /= b), b=1, n_blocks)]), kept_blocks]
+         call solver%analyse(matrices%first_unknown, matrices%elements, error, kept=kept, &
+                             order=order, is_negative=is_negative)
+      else
+         call solver%analyse(matrices%first_unknown, matrices%elements, error, kept=kept)
+      end if
       call checks%no_error(error, "analyse blocks")
       call solver%factorize(matrices, error)
       call checks%no_error(error, "factorize blocks")
@@ -142,11 +168,11 @@ contains
       real(rk), intent(in) :: matrix(n, n)
       real(rk), intent(inout) :: x(n, n_sides)
       integer(ik), intent(out) :: info
-      real(rk) :: factor(n, n)
+      real(rk) :: factors(n, n)
+      integer(ik) :: pivots(n)
 
-      factor = matrix
-      call dpotrf("L", n, factor, n, info)
-      call dpotrs("L", n, n_sides, factor, n, x, n, info)
+      factors = matrix
+      call dgesv(n, n_sides, factors, n, pivots, x, n, info)
    end subroutine solve_dense
 
    pure function unknowns_of(matrices, blocks) result(unknowns)
@@ -244,6 +270,53 @@ contains
       call solver%solve(x, error)
       call checks%is_close(maxval(abs(x - 1.0_rk)), 0.0_rk, 1.0e-12_rk, "a grid")
    end subroutine solves_a_grid
+
+   !> Turn what some unknowns have with each other negative, in all elements.
+   subroutine turn_negative(matrices, is_negative, factor)
+      type(matrices_t), intent(inout) :: matrices
+      logical, intent(in) :: is_negative(:)
+      real(rk), intent(in) :: factor
+      integer(ik), allocatable :: places(:)
+      integer(ik) :: a, at, b, e
+
+      at = 0
+      do e = 1, size(matrices%elements%first, kind=ik) - 1
+         places = unknowns_of(matrices, matrices%elements%of(e))
+         do b = 1, size(places, kind=ik)
+            do a = 1, size(places, kind=ik)
+               at = at + 1
+               if (is_negative(places(a)) .and. is_negative(places(b))) then
+                  matrices%entry(at) = -factor*matrices%entry(at)
+               end if
+            end do
+         end do
+      end do
+   end subroutine turn_negative
+
+   !> A definite matrix that is said to be quasi-definite, in small fronts and in a large one.
+   subroutine refuses_wrong_signs()
+      integer(ik), parameter :: sizes(2) = [5_ik, 200_ik]
+      type(multifrontal_t) :: solver
+      type(error_t), allocatable :: error
+      type(matrices_t) :: matrices
+      integer(ik) :: i, j, k, n
+
+      do k = 1, size(sizes)
+         n = sizes(k)
+         matrices%first_unknown = [1_ik, n + 1]
+         matrices%elements%first = [1_ik, 2_ik]
+         matrices%elements%item = [1_ik]
+         matrices%first = [1_ik, n*n + 1]
+         matrices%entry = [((merge(2.0_rk, 1.0_rk/n, i == j), i=1, n), j=1, n)]
+         call solver%analyse(matrices%first_unknown, matrices%elements, error, order=[1_ik], &
+                             is_negative=[(i == n, i=1, n)])
+         call solver%factorize(matrices, error)
+         call checks%fails_with(error, "quasi-definite", "a pivot of the wrong sign")
+         matrices%entry(n*n) = -2.0_rk
+         call solver%factorize(matrices, error)
+         call checks%no_error(error, "a pivot of the right sign")
+      end do
+   end subroutine refuses_wrong_signs
 
    subroutine refuses()
       type(multifrontal_t) :: solver
