@@ -30,6 +30,16 @@ def test_larger_errors_and_small_savings_do_not_count(rival: Point) -> None:
     assert front([point("default", 100.0, 0.1), rival], 0.8).good
 
 
+def test_a_run_that_is_worse_in_another_quantity_does_not_beat_the_default() -> None:
+    runs = [point("default", 100.0, 0.1), point("a", 70.0, 0.1), point("b", 60.0, 0.09)]
+    other = [point("default", 100.0, 3.0), point("a", 70.0, 2.0), point("b", 60.0, 3.1)]
+    assert front(runs, 0.8, [other]).rival is runs[1]
+    assert front(runs, 0.8, [other, other]).rival is runs[1]
+    found = front(runs, 0.8, [other, [point("default", 100.0, 1.0), point("b", 60.0, 0.5)]])
+    assert found.good
+    assert "its 3 errors" in found.reason
+
+
 def test_without_one_default_that_tells_its_work_nothing_is_good() -> None:
     assert not front([point("a", 1.0, 0.1)], 0.8).good
     assert not front([point("default", None, 0.1)], 0.8).good

@@ -1,4 +1,7 @@
-"""Whether the default setting lies on the Pareto front of error against work.
+"""Whether the default setting lies on the Pareto front of errors against work.
+
+A setting serves all quantities of its scene, so one that makes one of them cheaper and another one
+worse does not beat it: all checks of a case that ask for the front of the same runs count together.
 
 Work is unknowns times accepted states: it goes with the run time (within a third for the scenes of
 `verification/default_settings`), but is the same on every machine, however busy.
@@ -44,8 +47,8 @@ def work_of(output: Path) -> float | None:
     return unknowns * states
 
 
-def front(points: Sequence[Point], share: float) -> Front:
-    """Look for a run that has at most the default's error with less than a share of its work.
+def front(points: Sequence[Point], share: float, others: Sequence[Sequence[Point]] = ()) -> Front:
+    """Look for a run that has at most the default's errors with less than a share of its work.
 
     Parameters
     ----------
@@ -53,6 +56,9 @@ def front(points: Sequence[Point], share: float) -> Front:
         Runs that solve the same problem; one of them is the default.
     share : float
         Of the work, from 0 to 1: savings that are smaller do not count.
+    others : sequence of sequences of Point, optional
+        The errors of the same runs in other quantities. A run of which one of them tells nothing
+        does not count.
     """
     defaults = [point for point in points if point.default]
     if len(defaults) != 1 or defaults[0].work is None:
@@ -62,14 +68,21 @@ def front(points: Sequence[Point], share: float) -> Front:
         (point.work, point)
         for point in points
         if point.work is not None
-        and point.error <= default.error
+        and all(_is_as_good(point.run, default.run, quantity) for quantity in (points, *others))
         and point.work < share * (default.work or 0.0)
     ]
     if not cheaper:
-        text = f"no other setting has its error with less than {share:g} of its work"
+        what = "its error" if not others else f"its {1 + len(others)} errors"
+        text = f"no other setting has {what} with less than {share:g} of its work"
         return Front(default, None, share, f"{default.run}: {text}")
     work, rival = min(cheaper, key=lambda item: item[0])
     ratio = work / (default.work or math.inf)
     errors = f"{rival.error:.3g} for {default.error:.3g}"
     reason = f"{default.run} is off the front: {rival.run} has {ratio:.2f} of its work ({errors})"
     return Front(default, rival, share, reason)
+
+
+def _is_as_good(run: str, default: str, points: Sequence[Point]) -> bool:
+    """Whether a run's error in a quantity is at most that of the default run."""
+    errors = {point.run: point.error for point in points}
+    return run in errors and default in errors and errors[run] <= errors[default]

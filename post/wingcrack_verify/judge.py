@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -127,21 +127,51 @@ def worst_of(verdicts: list[str]) -> str:
 
 def judge_case(case: Case, outcomes: Mapping[str, Outcome]) -> CaseReport:
     """Measure and judge all checks of a case; `outcomes` by the runs' names."""
+    measured = [_measure_check(case, check, outcomes) for check in case.checks]
     return CaseReport(
         name=case.name,
         title=case.title,
         source=case.source,
         folder=case.folder,
-        checks=tuple(judge_check(case, check, outcomes) for check in case.checks),
+        checks=tuple(
+            judge_check(check, found, _on_one_front(case.checks, measured, check))
+            for check, found in zip(case.checks, measured, strict=True)
+        ),
         figures=tuple(_figure(case, request, outcomes) for request in case.figures),
         outcomes=outcomes,
     )
 
 
-def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> CheckReport:
-    """Measure and judge one check."""
-    runs = [run for run in case.runs if run.name in check.runs]
-    measured = tuple(_measure(case, check, run, outcomes) for run in runs)
+def _measure_check(
+    case: Case, check: Check, outcomes: Mapping[str, Outcome]
+) -> tuple[Measured, ...]:
+    return tuple(
+        _measure(case, check, run, outcomes) for run in case.runs if run.name in check.runs
+    )
+
+
+def _on_one_front(
+    checks: Sequence[Check], measured: Sequence[tuple[Measured, ...]], check: Check
+) -> list[tuple[Point, ...]]:
+    """Errors of the other quantities that ask for the front of the same default run."""
+    return [
+        _points(found)
+        for other, found in zip(checks, measured, strict=True)
+        if other is not check
+        and other.front
+        and check.front
+        and _default_of(found) == _default_of(measured[checks.index(check)])
+    ]
+
+
+def _default_of(measured: tuple[Measured, ...]) -> str | None:
+    return next((item.run.name for item in measured if item.run.default), None)
+
+
+def judge_check(
+    check: Check, measured: tuple[Measured, ...], others: Sequence[Sequence[Point]] = ()
+) -> CheckReport:
+    """Judge one check; `others` are the quantities that share its front."""
     orders = _orders(check, measured)
     reasons = [f"{item.run.name}: {item.broken}" for item in measured if item.broken]
     broken = bool(reasons) or any(order.broken for order in orders)
@@ -160,7 +190,7 @@ def judge_check(case: Case, check: Check, outcomes: Mapping[str, Outcome]) -> Ch
     saved = None if check.economy is None else saving(check.economy, points)
     if saved is not None and not saved.good:
         reasons.append(saved.reason)
-    place = None if check.front is None else front(points, check.front)
+    place = None if check.front is None else front(points, check.front, others)
     if place is not None and not place.good:
         reasons.append(place.reason)
     good = not reasons and all(item.good for item in measured if item.judged)
