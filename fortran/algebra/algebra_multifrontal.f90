@@ -8,10 +8,12 @@
 !!
 !! A front is a small dense matrix: its elements and what its children have left are added up, its
 !! pivots eliminated, and what is left waits on a stack for its parent. Nothing is shared between
-!! systems, so that several can be factorized at the same time.
+!! systems, so that several can be factorized at the same time; in a large one subtrees of fronts
+!! are eliminated side by side, with the same bits for any number of threads.
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
    use algebra_front_kernels, only: add_matrix, add_triangle, backwards, forwards, push
+   use algebra_front_parts, only: find_parts, parts_t
    use algebra_fronts, only: find_fronts, fronts_t
    use algebra_partial_cholesky, only: eliminate, eliminate_signed
    use base_errors, only: error_t, raise_error
@@ -44,6 +46,7 @@ module algebra_multifrontal
    type :: multifrontal_t
       private
       type(fronts_t) :: fronts
+      type(parts_t) :: parts  !< fronts that are eliminated side by side
       type(lists_t) :: unknowns  !< numbers of the unknowns of each element
       integer(ik) :: n = 0  !< unknowns
       integer(int64), allocatable :: first_entry(:)  !< (fronts + 1) in `factor`
@@ -88,6 +91,7 @@ contains
       integer(ik), intent(in), optional :: order(:)
       logical, intent(in), optional :: is_negative(:)  !< (unknowns) those with negative pivots
       integer(ik), parameter :: none(0) = [integer(ik) ::]
+      integer(ik), allocatable :: n_pivots(:), n_rows(:)
       integer(ik) :: b, e, i, k, n, u
 
       self%is_factorized = .false.
@@ -131,6 +135,9 @@ contains
          self%first_entry(i + 1) = self%first_entry(i) &
                                    + int(pivots_of(self, i), int64)*size_of(self, i)
       end do
+      n_pivots = [(pivots_of(self, i), i=1, self%fronts%n)]
+      n_rows = [(self%fronts%rows%length(i), i=1, self%fronts%n)]
+      call find_parts(self%fronts%n_children, n_pivots, n_rows, self%parts)
    end subroutine analyse
 
    !> How many unknowns front i eliminates.
@@ -154,8 +161,10 @@ contains
       class(multifrontal_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
       type(error_t), allocatable, intent(out) :: error
+      type(workspace_t), allocatable :: part(:)
       type(workspace_t) :: work
-      integer(ik) :: i, n_kept, place
+      integer(ik), allocatable :: wrong(:)
+      integer(ik) :: k, n_kept
 
       self%is_factorized = .false.
       if (.not. allocated(self%first_entry)) then
@@ -170,16 +179,19 @@ contains
       if (.not. allocated(self%factor)) then
          allocate (self%factor(self%first_entry(self%fronts%n + 1) - 1))
       end if
-      call prepare(self, work)
-      do i = 1, self%fronts%n
-         call eliminate_front(self, matrices, i, work, place)
-         if (place > 0) then
-            call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
-                             "indefinite (or not quasi-definite), or has an entry that is not "// &
-                             "a finite number")
-            return
-         end if
+      allocate (part(size(self%parts%first)), wrong(size(self%parts%first)))
+      !$omp parallel do schedule(dynamic, 1) if(size(part) > 1)
+      do k = 1, size(part, kind=ik)
+         call eliminate_part(self, matrices, k, part(k), wrong(k))
       end do
+      !$omp end parallel do
+      if (all(wrong == 0)) call eliminate_rest(self, matrices, part, work, wrong)
+      if (any(wrong > 0)) then
+         call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
+                          "indefinite (or not quasi-definite), or has an entry that is not "// &
+                          "a finite number")
+         return
+      end if
 
       deallocate (work%front)  ! it may be as large as what follows
       n_kept = self%n - self%fronts%n_free
@@ -194,26 +206,95 @@ contains
       self%is_factorized = .true.
    end subroutine factorize
 
-   !> Room for the largest front and the highest stack.
-   pure subroutine prepare(self, work)
+   !> Eliminate the fronts of a part: only what its root leaves stays in the workspace.
+   subroutine eliminate_part(self, matrices, k, work, wrong)
+      class(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      integer(ik), intent(in) :: k
+      type(workspace_t), intent(out) :: work
+      integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign; 0: none
+      type(parts_t) :: none
+      integer(ik) :: i
+
+      allocate (none%first(0), none%last(0))
+      call prepare(self, self%parts%first(k), self%parts%last(k), none, work)
+      do i = self%parts%first(k), self%parts%last(k)
+         call eliminate_front(self, matrices, i, work, wrong)
+         if (wrong > 0) return
+      end do
+      deallocate (work%front, work%place, work%places, work%matrix)
+      work%stack = work%stack(:work%top)
+   end subroutine eliminate_part
+
+   !> Eliminate the fronts that are in no part, after these.
+   subroutine eliminate_rest(self, matrices, part, work, wrong)
+      class(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      type(workspace_t), intent(inout) :: part(:)  !< emptied
+      type(workspace_t), intent(out) :: work
+      integer(ik), allocatable, intent(out) :: wrong(:)
+      integer(ik) :: i, k
+
+      allocate (wrong(1), source=0_ik)
+      call prepare(self, 1, self%fronts%n, self%parts, work)
+      i = 0
+      k = 1
+      do while (i < self%fronts%n)
+         i = i + 1
+         if (k <= size(part)) then
+            if (i == self%parts%first(k)) then
+               i = self%parts%last(k)
+               work%stack(work%top + 1:work%top + part(k)%top) = part(k)%stack
+               work%top = work%top + part(k)%top
+               work%n_waiting = work%n_waiting + 1
+               work%waiting(work%n_waiting) = i
+               deallocate (part(k)%stack)
+               k = k + 1
+               cycle
+            end if
+         end if
+         call eliminate_front(self, matrices, i, work, wrong(1))
+         if (wrong(1) > 0) return
+      end do
+   end subroutine eliminate_rest
+
+   !> Room for the largest front and the highest stack in a range of fronts, of which what is in
+   !! parts has been eliminated before.
+   pure subroutine prepare(self, first, last, parts, work)
       type(multifrontal_t), intent(in) :: self
+      integer(ik), intent(in) :: first, last
+      type(parts_t), intent(in) :: parts
       type(workspace_t), intent(out) :: work
       integer(int64) :: highest, largest
-      integer(ik) :: e, i, k, largest_element
+      integer(ik) :: e, i, k, largest_element, next
+      logical :: is_done
 
-      allocate (work%place(self%n), work%waiting(self%fronts%n))
+      allocate (work%place(self%n), work%waiting(last - first + 1))
       highest = 0
       largest = 0
       largest_element = 0
       do e = 1, size(self%unknowns%first, kind=ik) - 1
          largest_element = max(largest_element, self%unknowns%length(e))
       end do
-      do i = 1, self%fronts%n
-         largest = max(largest, int(size_of(self, i), int64)**2)
-         do k = 1, self%fronts%n_children(i)
-            work%top = work%top - triangle_of(self, work%waiting(work%n_waiting))
-            work%n_waiting = work%n_waiting - 1
-         end do
+      i = first - 1
+      next = 1
+      do while (i < last)
+         i = i + 1
+         if (next <= size(parts%first)) then
+            is_done = i == parts%first(next)
+         else
+            is_done = .false.
+         end if
+         if (is_done) then
+            i = parts%last(next)
+            next = next + 1
+         else
+            largest = max(largest, int(size_of(self, i), int64)**2)
+            do k = 1, self%fronts%n_children(i)
+               work%top = work%top - triangle_of(self, work%waiting(work%n_waiting))
+               work%n_waiting = work%n_waiting - 1
+            end do
+         end if
          work%top = work%top + triangle_of(self, i)
          work%n_waiting = work%n_waiting + 1
          work%waiting(work%n_waiting) = i

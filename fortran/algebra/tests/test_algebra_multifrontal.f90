@@ -25,6 +25,7 @@ program test_algebra_multifrontal
    call refuses_wrong_signs()
    call solves_a_grid(2_ik)
    call solves_a_grid(60_ik)
+   call solves_a_grid(110_ik)  ! large enough to be eliminated in parts
    call refuses()
    call checks%finish()
 
