@@ -94,7 +94,7 @@ contains
          call read_signed(reading, other)
          if (operator == "*") then
             value = value*other
-         else if (.not. abs(other) > 0.0_rk) then
+         else if (abs(other) <= 0.0_rk) then
             if (.not. allocated(reading%fault)) reading%fault = "it divides by zero"
          else
             value = value/other

@@ -11,7 +11,7 @@ module scene_sheet
 
    public :: record_t, sheet_t
    public :: add_record, empty_record, group_index, line_text, parameter_index, path_beside
-   public :: path_of, refuse
+   public :: path_of, place, refuse
 
    character(len=*), parameter :: read_about_it = "(see docs/input.md)"
 
@@ -229,5 +229,14 @@ contains
       if (name /= "") message = message//name//" "
       message = message//reason//" "//read_about_it
    end function blame
+
+   !> File and line for messages about the syntax.
+   pure function place(sheet, line) result(words)
+      type(sheet_t), intent(in) :: sheet
+      integer(ik), intent(in) :: line
+      character(len=:), allocatable :: words
+
+      words = sheet%path//":"//integer_text(line)//": "
+   end function place
 
 end module scene_sheet

@@ -8,7 +8,7 @@ module scene_tokens
    implicit none(type, external)
    private
 
-   public :: token_t, token_list_t, tokenize, unquoted
+   public :: begins_value, token_t, token_list_t, tokenize, unquoted
    public :: token_comma, token_end, token_equals, token_group, token_slash, token_text, token_word
 
    integer, parameter :: token_group = 1  !< `&name`; the range holds the name alone
@@ -177,5 +177,12 @@ contains
       tokens%length = tokens%length + 1
       tokens%items(tokens%length) = token
    end subroutine append
+
+   !> A word with `=` behind it; the last token, token_end, is never one.
+   pure logical function begins_value(kind, next_kind)
+      integer, intent(in) :: kind, next_kind
+
+      begins_value = kind == token_word .and. next_kind == token_equals
+   end function begins_value
 
 end module scene_tokens
