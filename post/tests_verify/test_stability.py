@@ -14,6 +14,7 @@ from wingcrack_verify.stability import StabilityReport
 
 _TOML = """\
 title = "Trials"
+group = "stability"
 source = "none"
 scene = "base.nml"
 mass_error_limit = 1.0e-8

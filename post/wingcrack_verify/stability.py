@@ -15,6 +15,7 @@ from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.fields import Fields
+from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
 from wingcrack_verify.selection import read_selection, select
 from wingcrack_verify.sweep import Defaults, read_tables
@@ -71,6 +72,7 @@ class Stability:
     name: str
     folder: Path
     title: str
+    group: str
     source: str
     quick: bool
     mass_error_limit: float
@@ -120,6 +122,7 @@ class StabilityReport:
 
     name: str
     title: str
+    group: str
     source: str
     folder: Path
     trials: tuple[TrialReport, ...] = ()
@@ -140,6 +143,7 @@ def read_stability(folder: Path) -> Stability:
     """Read ``stability.toml``; a `CaseError` tells what is wrong with it."""
     fields = Fields(read_toml(folder / "stability.toml"), "stability.toml")
     title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
+    group = fields.choice("group", tuple(GROUPS))
     base = folder / fields.text("scene")
     if not base.is_file():
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
@@ -157,7 +161,7 @@ def read_stability(folder: Path) -> Stability:
     if not trials:
         raise CaseError("stability.toml: at least one [[trial]] is needed")
     found = Stability(
-        folder.name, folder, title, source, quick, mass, contact, from_files, trials, maps
+        folder.name, folder, title, group, source, quick, mass, contact, from_files, trials, maps
     )
     refuse_doubles([run.name for run in found.runs], "trial")
     return found
@@ -260,6 +264,7 @@ def judge_stability(found: Stability, outcomes: Mapping[str, Outcome]) -> Stabil
     return StabilityReport(
         found.name,
         found.title,
+        found.group,
         found.source,
         found.folder,
         tuple(judge_trial(found, item, outcomes[item.run.name]) for item in found.trials),
