@@ -10,7 +10,7 @@ from typing import Any
 
 import matplotlib
 from fpdf import FPDF, FontFace, TextStyle
-from fpdf.outline import TableOfContents
+from fpdf.outline import OutlineSection
 
 from wingcrack_verify.figures import Drawing
 from wingcrack_verify.illustrate import Illustration
@@ -25,6 +25,7 @@ _FONTS = {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}
 _COLOURS = {PASSED: (26, 127, 55), GAP: (138, 90, 0), FAILED: (179, 38, 30), ERROR: (179, 38, 30)}
 _HEAD = FontFace(emphasis="B", fill_color=(240, 243, 246))
 _MARGIN, _GAP = 15.0, 6.0  # [mm]
+_LINE = 4.2  # [mm], between those of the contents
 _FIGURE_WIDTH = (210.0 - 2.0 * _MARGIN - _GAP) / 2.0  # [mm], two beside each other on A4
 
 
@@ -43,8 +44,8 @@ def write_booklet(
     book = _new_book()
     _title(book, record)
     _summary(book, record)
-    contents = TableOfContents(TextStyle("body", "", 8), line_spacing=1.15)
-    book.insert_toc_placeholder(contents.render_toc, allow_extra_pages=True)
+    book.add_page()
+    book.insert_toc_placeholder(_contents)
     folders = judged.folders
     items = {item["name"]: item for item in (*record["cases"], *record["stability"])}
     for group in record["groups"]:
@@ -129,6 +130,31 @@ def _summary(book: _Book, record: dict[str, Any]) -> None:
         ]
         heads = ("case", "quantity", "error", "tolerance", "share")
         _table(book, heads, shown, (34, 86, 24, 20, 16))
+
+
+def _contents(book: FPDF, outline: Sequence[OutlineSection]) -> None:
+    """A page in two columns, its lines as close as it takes to hold them all."""
+    book.set_xy(_MARGIN, _MARGIN)
+    book.set_font("body", "B", 12)
+    book.cell(0, 8, "Contents", new_x="LMARGIN", new_y="NEXT")
+    top, rows = book.get_y(), -(-len(outline) // 2)
+    height = min(_LINE, (book.eph + _MARGIN - top) / max(rows, 1))
+    for index, section in enumerate(outline):
+        column, row = divmod(index, rows)
+        indent, page = 3.0 * section.level, str(section.page_number)
+        book.set_xy(_MARGIN + column * (_FIGURE_WIDTH + _GAP) + indent, top + row * height)
+        book.set_font("body", "" if section.level else "B", min(7.0, 1.8 * height))
+        words = _cut(book, section.name, _FIGURE_WIDTH - indent - 8.0)
+        link = book.add_link(page=section.page_number)
+        book.cell(_FIGURE_WIDTH - indent - 6.0, height, words, link=link)
+        book.cell(6.0, height, page, align="R", link=link)
+
+
+def _cut(book: FPDF, text: str, width: float) -> str:
+    """Text, or as much of it as there is room for."""
+    while book.get_string_width(text) > width:
+        text = text.removesuffix("...")[:-1] + "..."
+    return text
 
 
 def _settings(book: _Book, record: dict[str, Any]) -> None:
