@@ -171,3 +171,69 @@ def test_pdf_pages_hold_the_words(case: SmallCase) -> None:
         pytest.skip("pdftotext is not installed")
     assert "Parabola" in done.stdout
     assert "pressure half way" in done.stdout
+
+
+def test_cases_stand_in_their_groups_at_places_that_stay(case: SmallCase) -> None:
+    verify(case)
+    page = (case.root / "report" / "index.html").read_text()
+    group = page.index('<h2 id="flow">Flow in fractures</h2>')
+    assert page.index('<section class="case" id="case-parabola" data-verdict="passed">') > group
+    record = json.loads((case.root / "report" / "report.json").read_text())
+    (told,) = record["groups"]
+    assert (told["name"], told["verdict"]) == ("flow", "passed")
+    assert told["counts"] == record["counts"]
+    assert [item["name"] for item in told["cases"]] == ["parabola"]
+    shares = [row["share"] for row in record["nearest"]]
+    assert shares == sorted(shares, reverse=True)
+    assert told["worst"]["share"] == shares[0]
+    row = next(row for row in record["nearest"] if row["error"] == "0.005 Pa")
+    assert row["share"] == pytest.approx(0.005 / 0.02)
+
+
+def test_a_file_that_cannot_be_used_stands_first(case: SmallCase) -> None:
+    case.toml = case.toml.replace('group = "flow"', 'group = "cooking"')
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert "Files that cannot be used" in page
+    assert "is no group; there are: elasticity, contact" in page
+    assert 'id="case-parabola"' in page
+
+
+def test_without_code_everything_is_shown(case: SmallCase) -> None:
+    verify(case)
+    page = (case.root / "report" / "index.html").read_text()
+    assert re.findall(r"<(\w+)[^>]* hidden", page) == ["form"]  # the filter alone, which takes code
+
+
+def test_what_drawings_share_stands_once(case: SmallCase) -> None:
+    verify(case)
+    page = (case.root / "report" / "index.html").read_text()
+    names = re.findall(r' id="([^"]+)"', page)
+    assert len(names) == len(set(names))
+    figures = page.count("<figure>")
+    assert figures >= 2
+    assert page.count('<svg viewBox="') == figures
+    used = set(re.findall(r'(?:href="#|url\(#)(d\d+)', page))
+    assert used
+    assert used <= set(names)
+    looks = set(re.findall(r' class="(s\d+)"', page))
+    assert looks
+    assert all(f".{look}{{" in page for look in looks)
+
+
+@pytest.mark.parametrize(
+    ("picture", "lacking"),
+    [("pressure", "matrix.pvd"), ("states", "fractures.csv"), ("network", "network.json")],
+)
+def test_a_picture_needs_its_files(case: SmallCase, picture: str, lacking: str) -> None:
+    case.toml += f'\n[[figure]]\ntitle = "Seen"\npicture = "{picture}"\nrun = "fine"\n'
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert lacking in page
+
+
+def test_an_unknown_picture_is_an_error(case: SmallCase) -> None:
+    case.toml += '\n[[figure]]\ntitle = "Seen"\npicture = "taste"\nrun = "fine"\n'
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert "is no picture; there are: network, states, pressure" in page

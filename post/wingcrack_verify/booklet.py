@@ -25,6 +25,7 @@ _FONTS = {"": "DejaVuSans", "B": "DejaVuSans-Bold", "I": "DejaVuSans-Oblique"}
 _COLOURS = {PASSED: (26, 127, 55), GAP: (138, 90, 0), FAILED: (179, 38, 30), ERROR: (179, 38, 30)}
 _HEAD = FontFace(emphasis="B", fill_color=(240, 243, 246))
 _MARGIN, _GAP = 15.0, 6.0  # [mm]
+_FIGURE_HEIGHT = 100.0  # [mm], at most
 _LINE = 4.2  # [mm], between those of the contents
 _FIGURE_WIDTH = (210.0 - 2.0 * _MARGIN - _GAP) / 2.0  # [mm], two beside each other on A4
 
@@ -287,18 +288,18 @@ def _trials(book: _Book, item: dict[str, Any]) -> None:
 
 def _figures(book: _Book, drawings: Sequence[Drawing]) -> None:
     """Two beside each other, those of like height together."""
-    drawings = sorted(drawings, key=lambda drawing: -_pixels(drawing)[1])
+    drawings = sorted(drawings, key=lambda drawing: -_size(drawing)[1])
     for index in range(0, len(drawings), 2):
         pair = drawings[index : index + 2]
-        sizes = [_pixels(drawing) for drawing in pair]
-        height = max(_FIGURE_WIDTH * tall / wide for wide, tall in sizes)
+        sizes = [_size(drawing) for drawing in pair]
+        height = max(tall for _, tall in sizes)
         if book.will_page_break(height + 14.0):
             book.add_page()
         top = book.get_y() + 2.0
         bottom = top
         for column, drawing in enumerate(pair):
             left = _MARGIN + column * (_FIGURE_WIDTH + _GAP)
-            book.image(BytesIO(drawing.png), x=left, y=top, w=_FIGURE_WIDTH)
+            book.image(BytesIO(drawing.png), x=left, y=top, w=sizes[column][0])
             book.set_xy(left, top + height + 1.0)
             book.set_font("body", "", 7)
             book.multi_cell(_FIGURE_WIDTH, 3.5, f"{drawing.title}. {drawing.caption}", align="L")
@@ -306,10 +307,12 @@ def _figures(book: _Book, drawings: Sequence[Drawing]) -> None:
         book.set_xy(_MARGIN, bottom + 2.0)
 
 
-def _pixels(drawing: Drawing) -> tuple[int, int]:
-    """Width and height in the header of the PNG file."""
+def _size(drawing: Drawing) -> tuple[float, float]:
+    """Width and height on the page [mm], by those in the header of the PNG file."""
     head = drawing.png[16:24]
-    return int.from_bytes(head[:4], "big"), int.from_bytes(head[4:], "big")
+    wide, tall = int.from_bytes(head[:4], "big"), int.from_bytes(head[4:], "big")
+    width = min(_FIGURE_WIDTH, _FIGURE_HEIGHT * wide / tall)
+    return width, width * tall / wide
 
 
 def _made_with(book: _Book, record: dict[str, Any]) -> None:

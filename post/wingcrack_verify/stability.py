@@ -6,7 +6,7 @@ import itertools
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,7 @@ class Trial:
     causes: tuple[str, ...]  # one of these is part of the reason; none: any reason will do
     note: str
     known_gap: str | None
+    quick: bool = True  # part of --quick, if the file is
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,11 @@ class Stability:
     from_files: bool  # whether every state is judged again from the files
     trials: tuple[Trial, ...]
     maps: tuple[Map, ...]
+
+    @property
+    def quick_part(self) -> Stability:
+        """What of it is part of --quick."""
+        return replace(self, trials=tuple(trial for trial in self.trials if trial.quick))
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -164,6 +170,8 @@ def read_stability(folder: Path) -> Stability:
         folder.name, folder, title, group, source, quick, mass, contact, from_files, trials, maps
     )
     refuse_doubles([run.name for run in found.runs], "trial")
+    if quick and not any(trial.quick for trial in trials):
+        raise CaseError("stability.toml: at least one [[trial]] of a quick file must be quick")
     return found
 
 
@@ -191,6 +199,7 @@ class _Maker:
             causes,
             fields.text("note", ""),
             fields.text("known_gap", None),
+            fields.flag("quick", True),
         )
         fields.done()
         return trial

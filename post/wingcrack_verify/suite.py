@@ -85,7 +85,11 @@ def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
             cases.append(_read_case(folder))
     if quick:
         cases = [item for item in cases if isinstance(item, BrokenCase) or item.quick]
-        stability = [item for item in stability if isinstance(item, BrokenCase) or item.quick]
+        stability = [
+            item if isinstance(item, BrokenCase) else item.quick_part
+            for item in stability
+            if isinstance(item, BrokenCase) or item.quick
+        ]
     if not cases and not stability:
         raise CaseError("there is no case to run")
     return Suite(tuple(cases), tuple(stability))
