@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 from wingcrack_verify.drawings import Sheet
 
+POST = Path(__file__).resolve().parents[1]
 _HEAD = (
     '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
     'viewBox="0 0 30 20">'
@@ -60,3 +64,8 @@ def test_a_title_is_text_whatever_it_says() -> None:
 @pytest.mark.parametrize("dropped", ["<metadata><a/></metadata>", "<title>x</title>", "<style/>"])
 def test_what_is_not_seen_is_left_out(dropped: str) -> None:
     assert Sheet().take(svg(dropped), "x").endswith(">" + "</svg>")
+
+
+def test_reading_cases_does_not_wait_for_what_draws() -> None:
+    code = "import sys, wingcrack_verify.judge; assert 'matplotlib' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], cwd=POST, check=True)

@@ -15,7 +15,7 @@ from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
 from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.metrics import METRICS
-from wingcrack_verify.pictures import PICTURES
+from wingcrack_verify.picture_files import PICTURES
 from wingcrack_verify.selection import Selection, read_selection
 from wingcrack_verify.sweep import Defaults, read_tables
 

@@ -16,7 +16,7 @@ from wingcrack_verify.expressions import Array, evaluate
 from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
-from wingcrack_verify.pictures import require_files
+from wingcrack_verify.picture_files import require_files
 from wingcrack_verify.selection import Selection, Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
