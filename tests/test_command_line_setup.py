@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from launcher_tree import Tree, add_program, make_tree
+from launcher_tree import Tree, add_environment, add_program, make_tree
 
 PACKAGES = """\
 # a remark
@@ -49,8 +49,9 @@ def machine(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def lacking_tree(tmp_path: Path, machine: Path) -> Tree:
-    """A tree whose system packages are not there."""
+    """A tree whose system packages are not there, and nothing else is missing."""
     tree = make_tree(tmp_path, PACKAGES)
+    add_environment(tree)
     tree.environment["PATH"] = f"{machine}:{os.environ['PATH']}"
     return tree
 
@@ -83,6 +84,7 @@ def test_forbidden_to_install_it_still_builds_and_runs(own_tree: Tree) -> None:
 def test_missing_packages_are_named_with_their_purpose_and_installed(
     lacking_tree: Tree, machine: Path
 ) -> None:
+    shutil.rmtree(lacking_tree.root / ".venv")  # a first call makes both
     done = lacking_tree.call("check", lacking_tree.scene())
     assert done.returncode == 0, done.stderr
     assert "solver check" in done.stdout
@@ -364,6 +366,7 @@ def test_help_does_not_wait_for_an_installation(bare_tree: Tree, command: str) -
 
 
 def test_plot_does_not_wait_for_the_build(bare_tree: Tree) -> None:
+    add_environment(bare_tree)
     (bare_tree.root / "CMakeLists.txt").write_text("nonsense\n")
     done = bare_tree.call("plot", bare_tree.place)
     assert done.returncode == 0, done.stderr

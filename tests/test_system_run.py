@@ -316,9 +316,12 @@ def test_growth_is_told_the_same_way_by_all_files(growing: Path) -> None:
     assert -70.5288 <= float(first["angle_deg"]) < -60.0
 
 
-@pytest.mark.parametrize("scene", [SCENE, GROWING], ids=["resting", "growing"])
-def test_the_same_scene_gives_the_same_bits(scene: str, tmp_path: Path) -> None:
-    one, two = run(tmp_path, scene, "one"), run(tmp_path, scene, "two")
+@pytest.mark.parametrize(("which", "scene"), [("resting", SCENE), ("growing", GROWING)])
+def test_the_same_scene_gives_the_same_bits(
+    which: str, scene: str, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    one: Path = request.getfixturevalue(which)
+    two = run(tmp_path, scene)
     names = sorted(path.relative_to(one) for path in one.rglob("*") if path.is_file())
     assert names == sorted(path.relative_to(two) for path in two.rglob("*") if path.is_file())
     told_apart = {Path("run.json"), Path("run.log")}  # they hold times

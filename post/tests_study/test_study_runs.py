@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from small_study import HEAD, ONSET, OVER, PRESSURE, SOUND, SmallStudy, small_study, wait_for
+from small_study import DRAWN, HEAD, ONSET, OVER, PRESSURE, SOUND, SmallStudy, small_study, wait_for
 
 SLOW = '[set]\n"scene.title" = "slow"\n'
 HANG = HEAD + OVER + '[set]\n"scene.title" = "hang"\n'
@@ -21,6 +21,7 @@ def study(tmp_path: Path) -> SmallStudy:
 
 
 def test_a_grid_gives_a_row_and_a_run_for_each_value(study: SmallStudy) -> None:
+    study.write(DRAWN)
     done = study.call()
     assert (done.returncode, done.stderr) == (0, "")
     assert sorted(study.calls) == ["1e-09 plain", "2e-09 plain", "4e-09 plain"]

@@ -27,6 +27,7 @@ _X = [0.125 * i for i in range(9)]
 
 CHECK_TOML = """\
 title = "Parabola"
+group = "flow"
 source = "arithmetic"
 quick = true
 

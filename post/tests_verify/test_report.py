@@ -11,11 +11,22 @@ import pytest
 
 from small_case import CHECKS, SmallCase, small_case
 from wingcrack_verify.cli import main
+from wingcrack_verify.judge import ERROR
 
 
 @pytest.fixture
 def case(tmp_path: Path) -> SmallCase:
     return small_case(tmp_path, "absolute", "ratio", "l2_relative")
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the report of a sound case, which several tests read."""
+    case = small_case(tmp_path_factory.mktemp("sound"), "absolute", "ratio", "l2_relative")
+    with (case.case / "README.md").open("a") as file:
+        file.write("\nSee [the scene](scene.nml) <script>alert(1)</script>.\n")
+    assert verify(case) == 0
+    return case.root / "report"
 
 
 def verify(case: SmallCase, *arguments: str) -> int:
@@ -52,12 +63,11 @@ def test_a_sound_case_gives_a_green_report(
     assert (case.root / "report" / "report.pdf").read_bytes().startswith(b"%PDF-")
 
 
-def test_the_page_needs_nothing_else_and_its_links_lead_somewhere(case: SmallCase) -> None:
-    (case.case / "README.md").write_text("See [the scene](scene.nml) <script>alert(1)</script>.\n")
-    verify(case)
-    page = (case.root / "report" / "index.html").read_text()
+def test_the_page_needs_nothing_else_and_its_links_lead_somewhere(report: Path) -> None:
+    page = (report / "index.html").read_text()
     assert not re.search(r"https?://", page)
-    assert "<script" not in page
+    assert page.count("<script") == 1  # our own; words of a case are never code
+    assert "alert(1)</script" not in page
     assert all(source.startswith("data:") for source in re.findall(r'src="([^"]*)"', page))
     targets = re.findall(r'href="([^"]*)"', page)
     assert "../verification/parabola/scene.nml" in targets
@@ -65,12 +75,11 @@ def test_the_page_needs_nothing_else_and_its_links_lead_somewhere(case: SmallCas
         if target.startswith("#"):
             assert f'id="{target[1:]}"' in page
         else:
-            assert (case.root / "report" / target).exists()
+            assert (report / target).exists()
 
 
-def test_the_report_says_what_the_errors_cost(case: SmallCase) -> None:
-    verify(case)
-    record = json.loads((case.root / "report" / "report.json").read_text())
+def test_the_report_says_what_the_errors_cost(report: Path) -> None:
+    record = json.loads((report / "report.json").read_text())
     (settings,) = record["settings"]
     # size^2 |1 + x| over |2 x^2|: 1.7 times size^2, in all three runs
     runs = [item["setting"] and item["setting"]["run"] for item in settings["targets"]]
@@ -82,9 +91,8 @@ def test_the_report_says_what_the_errors_cost(case: SmallCase) -> None:
     assert order["observed"] == pytest.approx(2.0)
 
 
-def test_the_readme_is_rendered(case: SmallCase) -> None:
-    verify(case)
-    page = (case.root / "report" / "index.html").read_text()
+def test_the_readme_is_rendered(report: Path) -> None:
+    page = (report / "index.html").read_text()
     assert "<h3>Parabola</h3>" in page
     assert "<td>2</td>" in page
 
@@ -157,11 +165,10 @@ def test_without_a_solver_it_exits_with_3(case: SmallCase) -> None:
     assert verify(case) == 3
 
 
-def test_pdf_pages_hold_the_words(case: SmallCase) -> None:
-    verify(case)
+def test_pdf_pages_hold_the_words(report: Path) -> None:
     try:
         done = subprocess.run(
-            ["pdftotext", "-layout", str(case.root / "report" / "report.pdf"), "-"],
+            ["pdftotext", "-layout", str(report / "report.pdf"), "-"],
             capture_output=True,
             text=True,
             check=True,
@@ -170,3 +177,64 @@ def test_pdf_pages_hold_the_words(case: SmallCase) -> None:
         pytest.skip("pdftotext is not installed")
     assert "Parabola" in done.stdout
     assert "pressure half way" in done.stdout
+
+
+def test_cases_stand_in_their_groups_at_places_that_stay(report: Path) -> None:
+    page = (report / "index.html").read_text()
+    group = page.index('<h2 id="flow">Flow in fractures</h2>')
+    assert page.index('<section class="case" id="case-parabola" data-verdict="passed">') > group
+    record = json.loads((report / "report.json").read_text())
+    (told,) = record["groups"]
+    assert (told["name"], told["verdict"]) == ("flow", "passed")
+    assert told["counts"] == record["counts"]
+    assert [item["name"] for item in told["cases"]] == ["parabola"]
+    shares = [row["share"] for row in record["nearest"]]
+    assert shares == sorted(shares, reverse=True)
+    assert told["worst"]["share"] == shares[0]
+    row = next(row for row in record["nearest"] if row["error"] == "0.005 Pa")
+    assert row["share"] == pytest.approx(0.005 / 0.02)
+
+
+def test_a_file_that_cannot_be_used_stands_first(case: SmallCase) -> None:
+    case.toml = case.toml.replace('group = "flow"', 'group = "cooking"')
+    assert verify(case) == 1
+    page = (case.root / "report" / "index.html").read_text()
+    assert "Files that cannot be used" in page
+    assert "is no group; there are: elasticity, contact" in page
+    assert 'id="case-parabola"' in page
+
+
+def test_without_code_everything_is_shown(report: Path) -> None:
+    page = (report / "index.html").read_text()
+    assert re.findall(r"<(\w+)[^>]* hidden", page) == ["form"]  # the filter alone, which takes code
+
+
+def test_what_drawings_share_stands_once(report: Path) -> None:
+    page = (report / "index.html").read_text()
+    names = re.findall(r' id="([^"]+)"', page)
+    assert len(names) == len(set(names))
+    figures = page.count("<figure>")
+    assert figures >= 2
+    assert page.count('<svg viewBox="') == figures
+    used = set(re.findall(r'(?:href="#|url\(#)(d\d+)', page))
+    assert used
+    assert used <= set(names)
+    looks = set(re.findall(r' class="(s\d+)"', page))
+    assert looks
+    assert all(f".{look}{{" in page for look in looks)
+
+
+@pytest.mark.parametrize(
+    ("picture", "lacking"),
+    [("pressure", "matrix.pvd"), ("states", "fractures.csv"), ("network", "network.json")],
+)
+def test_a_picture_needs_its_files(case: SmallCase, picture: str, lacking: str) -> None:
+    case.toml += f'\n[[figure]]\ntitle = "Seen"\npicture = "{picture}"\nrun = "fine"\n'
+    (figure,) = case.judge().figures
+    assert lacking in figure.broken
+    assert case.judge().verdict == ERROR
+
+
+def test_an_unknown_picture_is_an_error(case: SmallCase) -> None:
+    case.toml += '\n[[figure]]\ntitle = "Seen"\npicture = "taste"\nrun = "fine"\n'
+    assert "is no picture; there are: network, states, pressure" in case.judge().broken

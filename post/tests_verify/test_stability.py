@@ -10,10 +10,12 @@ import pytest
 
 from small_case import SmallCase, lines, small_case
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED
-from wingcrack_verify.stability import StabilityReport
+from wingcrack_verify.stability import Stability, StabilityReport
+from wingcrack_verify.suite import BrokenCase, read_suite
 
 _TOML = """\
 title = "Trials"
+group = "stability"
 source = "none"
 scene = "base.nml"
 mass_error_limit = 1.0e-8
@@ -236,3 +238,53 @@ def test_an_unknown_key_is_red(case: SmallCase) -> None:
     report = judged(case)
     assert report.verdict == ERROR
     assert "'expect' is missing" in report.broken
+
+
+def test_a_trial_may_be_too_long_for_the_quick_part(case: SmallCase) -> None:
+    file = case.case.parent / "stability" / "stability.toml"
+    text = _TOML.replace('source = "none"', 'source = "none"\nquick = true')
+    drawn = """
+[[draw]]
+count = 5
+quick = 2
+seed = 1
+ranges = { a = { from = 0.0, to = 1.0 } }
+trial = { name = "drawn {number}", expect = "settled", set = { "m.a" = "{a}" } }
+"""
+    file.write_text(text.replace('expect = "refused"', 'expect = "refused"\nquick = false') + drawn)
+    folder = file.parent.parent
+    (whole,) = read_suite(folder, ["stability"], quick=False).stability
+    (quick,) = read_suite(folder, ["stability"], quick=True).stability
+    assert isinstance(whole, Stability) and isinstance(quick, Stability)
+    names = [trial.run.name for trial in whole.trials]
+    assert names == ["base", "impossible", *(f"drawn {number}" for number in range(1, 6))]
+    assert [trial.run.name for trial in quick.trials] == ["base", "drawn 1", "drawn 2"]
+    assert quick.trials[1] == whole.trials[2]
+    assert quick.maps == whole.maps
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ('expect = "', 'quick = false\nexpect = "', "must be quick"),
+        ("count = 5", "count = 5\nquick = 6", "at most 'count'"),
+        ('group = "stability"', 'group = "cooking"', "is no group"),
+    ],
+)
+def test_a_quick_part_that_is_none_is_an_error(
+    case: SmallCase, old: str, new: str, reason: str
+) -> None:
+    text = _TOML.replace('source = "none"', 'source = "none"\nquick = true')
+    drawn = """
+[[draw]]
+count = 5
+seed = 1
+ranges = { a = { from = 0.0, to = 1.0 } }
+trial = { name = "drawn {number}", expect = "settled", set = { "m.a" = "{a}" } }
+"""
+    file = case.case.parent / "stability" / "stability.toml"
+    text += drawn if "count" in old else ""
+    file.write_text(text.replace(old, new))
+    (broken,) = read_suite(file.parent.parent, ["stability"], quick=True).stability
+    assert isinstance(broken, BrokenCase)
+    assert reason in broken.reason

@@ -13,7 +13,9 @@ from typing import Any
 from wingcrack_verify.economy import Economy, read_economy
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
+from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.metrics import METRICS
+from wingcrack_verify.picture_files import PICTURES
 from wingcrack_verify.selection import Selection, read_selection
 from wingcrack_verify.sweep import Defaults, read_tables
 
@@ -93,7 +95,7 @@ class Line:
 
 @dataclass(frozen=True)
 class FigureRequest:
-    """A further figure: of lines, or of the network of a run."""
+    """A further figure: of lines, or a picture of a run."""
 
     title: str
     caption: str
@@ -103,7 +105,8 @@ class FigureRequest:
     y_log: bool
     equal_axes: bool
     lines: tuple[Line, ...]
-    network: str | None = None
+    picture: str | None = None
+    run: str | None = None  # that the picture is of
 
 
 @dataclass(frozen=True)
@@ -113,6 +116,7 @@ class Case:
     name: str
     folder: Path
     title: str
+    group: str
     source: str
     quick: bool
     constants: dict[str, float]
@@ -142,6 +146,7 @@ def read_case(folder: Path) -> Case:
     data = read_toml(folder / "check.toml")
     fields = Fields(data, "check.toml")
     title, source = fields.text("title"), fields.text("source")
+    group = fields.choice("group", tuple(GROUPS))
     quick, gap = fields.flag("quick"), fields.text("known_gap", None)
     constants = fields.constants("constants")
     defaults = Defaults(fields.mapping("defaults"))
@@ -169,7 +174,7 @@ def read_case(folder: Path) -> Case:
     )
     fields.done()
     defaults.done()
-    return Case(folder.name, folder, title, source, quick, constants, runs, checks, figures)
+    return Case(folder.name, folder, title, group, source, quick, constants, runs, checks, figures)
 
 
 def refuse_doubles(names: list[str], kind: str) -> None:
@@ -352,12 +357,13 @@ def _read_figure(data: Any, place: str, runs: tuple[Run, ...]) -> FigureRequest:
     fields = Fields(data, place)
     title = fields.text("title")
     fields.place = f"figure '{title}'"
-    if fields.has("network"):
-        network, caption = fields.text("network"), fields.text("caption", "")
+    if fields.has("picture"):
+        picture = fields.choice("picture", tuple(PICTURES))
+        run, caption = fields.text("run"), fields.text("caption", "")
         fields.done()
-        if network not in {item.name for item in runs}:
-            raise CaseError(f"{fields.place}: there is no run '{network}'")
-        return FigureRequest(title, caption, "", "", False, False, True, (), network)
+        if run not in {item.name for item in runs}:
+            raise CaseError(f"{fields.place}: there is no run '{run}'")
+        return FigureRequest(title, caption, "", "", False, False, True, (), picture, run)
     lines = tuple(
         _read_line(item, f"{fields.place}: line {index}", runs)
         for index, item in enumerate(fields.tables("lines"), start=1)

@@ -18,10 +18,13 @@ def read_draw(data: Any, place: str) -> list[tuple[str, Table]]:
     The names of its ``ranges`` are used in templates, as those of an ``over`` (`sweep`); `number`
     is that of the trial, from 1. So that each range is covered evenly however few the trials, it is
     cut into as many equal parts as there are trials, and each part is drawn from once (McKay,
-    Beckman and Conover 1979).
+    Beckman and Conover 1979). With `quick` that many of them are part of ``--quick``.
     """
     fields = Fields(data, place)
     count, seed = (_whole(fields, key) for key in ("count", "seed"))
+    quick = _whole(fields, "quick") if fields.has("quick") else count
+    if quick > count:
+        raise CaseError(f"{place}: 'quick' must be at most 'count', {count}")
     ranges = fields.mapping("ranges")
     trial = fields.mapping("trial")
     fields.done()
@@ -34,7 +37,10 @@ def read_draw(data: Any, place: str) -> list[tuple[str, Table]]:
         points[name] = _places(entry, shares.tolist(), f"{place}: ranges.{name}")
     whole = {**trial, "over": {"place": points}}
     tables = read_tables(Fields({"trial": [whole]}, place), "trial", Defaults({}))
-    return [(place, table) for _, table in tables]
+    return [
+        (place, {"quick": number <= quick, **table})
+        for number, (_, table) in enumerate(tables, start=1)
+    ]
 
 
 def _whole(fields: Fields, key: str) -> int:

@@ -13,24 +13,31 @@ from wingcrack_verify.suite import JudgedSuite
 
 
 @dataclass(frozen=True)
-class Illustrations:
-    """Figures by the case's name."""
+class Illustration:
+    """Figures of a case: those that it asks for, and those of each of its checks."""
 
-    by_case: dict[str, Sequence[Drawing]]
+    of_case: Sequence[Drawing]
+    of_checks: Sequence[Sequence[Drawing]]
+
+    @property
+    def all(self) -> Sequence[Drawing]:
+        """In the order of the page."""
+        return [*self.of_case, *(drawing for drawings in self.of_checks for drawing in drawings)]
 
 
-def illustrate(judged: JudgedSuite, jobs: int) -> Illustrations:
-    """Draw the figures of all cases, several cases at a time."""
+def illustrate(judged: JudgedSuite, jobs: int) -> dict[str, Illustration]:
+    """Draw the figures of all cases, several cases at a time; by the case's name."""
     items: list[CaseReport | StabilityReport] = [*judged.stability, *judged.cases]
     names = [item.name for item in items]
     with ProcessPoolExecutor(jobs) as pool:
-        drawn = pool.map(_drawings, items)
-        return Illustrations(dict(zip(names, drawn, strict=True)))
+        return dict(zip(names, pool.map(_drawings, items), strict=True))
 
 
-def _drawings(item: CaseReport | StabilityReport) -> Sequence[Drawing]:
+def _drawings(item: CaseReport | StabilityReport) -> Illustration:
     if isinstance(item, StabilityReport):
-        return [map_drawing(chart) for chart in item.maps]
+        return Illustration([map_drawing(chart) for chart in item.maps], ())
     requested = [requested_drawing(figure) for figure in item.figures]
-    of_checks = [drawing for check in item.checks for drawing in check_drawings(check)]
-    return [*(drawing for drawing in requested if drawing is not None), *of_checks]
+    return Illustration(
+        [drawing for drawing in requested if drawing is not None],
+        [check_drawings(check) for check in item.checks],
+    )

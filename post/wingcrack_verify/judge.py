@@ -16,7 +16,7 @@ from wingcrack_verify.expressions import Array, evaluate
 from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
-from wingcrack_verify.paths import NETWORK, network_table
+from wingcrack_verify.picture_files import require_files
 from wingcrack_verify.selection import Selection, Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
@@ -92,7 +92,7 @@ class DrawnFigure:
     request: FigureRequest
     lines: tuple[DrawnLine, ...]
     broken: str
-    folder: Path | None = None  # of the run whose network is drawn
+    folder: Path | None = None  # of the run that the picture is of
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,7 @@ class CaseReport:
 
     name: str
     title: str
+    group: str
     source: str
     folder: Path
     checks: tuple[CheckReport, ...] = ()
@@ -131,6 +132,7 @@ def judge_case(case: Case, outcomes: Mapping[str, Outcome]) -> CaseReport:
     return CaseReport(
         name=case.name,
         title=case.title,
+        group=case.group,
         source=case.source,
         folder=case.folder,
         checks=tuple(
@@ -340,12 +342,12 @@ def _order(check: Check, method: str, items: list[Measured]) -> MethodOrder:
 
 
 def _figure(case: Case, request: FigureRequest, outcomes: Mapping[str, Outcome]) -> DrawnFigure:
-    if request.network is not None:
-        if outcomes[request.network].status != "finished":
+    if request.picture is not None and request.run is not None:
+        if outcomes[request.run].status != "finished":
             return DrawnFigure(request, (), "")  # the run's own checks say so
-        folder = Path(outcomes[request.network].folder) / "output"
+        folder = Path(outcomes[request.run].folder) / "output"
         try:
-            network_table(folder / NETWORK)
+            require_files(request.picture, folder)
         except CaseError as reason:
             return DrawnFigure(request, (), f"{request.title}: {reason}")
         return DrawnFigure(request, (), "", folder)

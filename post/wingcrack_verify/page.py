@@ -6,7 +6,7 @@ import base64
 import mimetypes
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +14,42 @@ import jinja2
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
+from wingcrack_verify.drawings import Sheet
 from wingcrack_verify.figures import Drawing
-from wingcrack_verify.illustrate import Illustrations
+from wingcrack_verify.illustrate import Illustration
 from wingcrack_verify.suite import JudgedSuite
 
 _MOST_REASONS = 2  # in the summary
 _TEMPLATES = Path(__file__).parent / "templates"
 
+# Heads of the tables; on narrow screens each row is a card, and they stand before its cells.
+_STEPS = ("Newton mean", "Newton max", "cuts")
+_TRIAL = ("trial", "ended", "expected", *_STEPS, "mass error", "contact res.")
+_COLUMNS = {
+    "groups": ("group", "passed", "gaps", "failed", "largest error", "CPU s"),
+    "rows": ("case", "quantity", "error", "tolerance", "verdict"),
+    "nearest": ("case", "quantity", "error", "tolerance", "share"),
+    "runs": ("run", "method", "result", "reference", "error", "judged", "unknowns", "CPU s"),
+    "trials": (*_TRIAL, "verdict", "CPU s"),
+    "estimates": (*_TRIAL, "condition", "error bound", "verdict", "CPU s"),
+}
+
 
 def page_text(
-    judged: JudgedSuite, record: dict[str, Any], pictures: Illustrations, folder: Path
+    judged: JudgedSuite,
+    record: dict[str, Any],
+    pictures: Mapping[str, Illustration],
+    folder: Path,
 ) -> str:
     """Text of index.html; `folder` is where it will be, for the links to the cases' files."""
+    sheet = Sheet()
+    figures = {
+        name: {
+            "of_case": [_figure(drawing, sheet) for drawing in picture.of_case],
+            "of_checks": [[_figure(d, sheet) for d in drawings] for drawings in picture.of_checks],
+        }
+        for name, picture in pictures.items()
+    }
     loader = jinja2.FileSystemLoader(_TEMPLATES)
     templates = jinja2.Environment(
         loader=loader,
@@ -36,16 +60,23 @@ def page_text(
     )
     templates.filters["number"] = number_text
     templates.filters["slug"] = slug
+    templates.filters["anchor"] = anchor
     templates.filters["shortened"] = shortened
     return templates.get_template("report.html.j2").render(
         record=record,
         texts={name: readme_html(path, folder) for name, path in judged.folders.items()},
         links={name: os.path.relpath(path, folder) for name, path in judged.folders.items()},
-        figures={
-            name: [_embedded(drawing) for drawing in drawings]
-            for name, drawings in pictures.by_case.items()
-        },
+        items={item["name"]: item for item in (*record["cases"], *record["stability"])},
+        figures=figures,
+        shared=sheet.definitions(),
+        columns=_COLUMNS | {"settings": _setting_columns(record)},
+        script=(_TEMPLATES / "report.js").read_text(encoding="utf-8"),
     )
+
+
+def _setting_columns(record: dict[str, Any]) -> tuple[str, ...]:
+    targets = record["settings"][0]["targets"] if record["settings"] else ()
+    return ("case", "quantity", "default", *(f"{100 * item['target']:g} %" for item in targets))
 
 
 def number_text(value: float | None, form: str = ".3g") -> str:
@@ -64,12 +95,16 @@ def slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
 
 
-def _embedded(drawing: Drawing) -> dict[str, str]:
-    data = base64.b64encode(drawing.svg).decode()
+def anchor(case: str) -> str:
+    """Name of the place of a case, which other pages may link to."""
+    return f"case-{case}"
+
+
+def _figure(drawing: Drawing, sheet: Sheet) -> dict[str, str]:
     return {
         "title": drawing.title,
         "caption": drawing.caption,
-        "source": f"data:image/svg+xml;base64,{data}",
+        "svg": sheet.take(drawing.svg, drawing.title),
     }
 
 

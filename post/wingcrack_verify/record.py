@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from wingcrack_verify.economy import observed_rate
-from wingcrack_verify.judge import (
-    ERROR,
-    PASSED,
-    VERDICTS,
-    CaseReport,
-    CheckReport,
-    Measured,
-    worst_of,
-)
-from wingcrack_verify.metrics import METRICS
+from wingcrack_verify.judge import CaseReport, CheckReport, Measured
 from wingcrack_verify.orders import Point
+from wingcrack_verify.overview import groups_of, nearest
+from wingcrack_verify.rows import Row, quantity_text, unit_of, worst_text
 from wingcrack_verify.stability import StabilityReport, TrialReport
 from wingcrack_verify.suite import JudgedSuite
 
@@ -36,108 +28,6 @@ class Context:
     call: Mapping[str, float]
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the summary; `error` and `tolerance` as texts with their unit."""
-
-    case: str
-    quantity: str
-    error: str
-    tolerance: str
-    verdict: str
-    cpu_s: float | None
-    reasons: tuple[str, ...]
-
-
-def rows_of(judged: JudgedSuite) -> Iterator[Row]:
-    """Rows of the summary: a row per check, map and table of trials."""
-    for case in judged.cases:
-        if case.broken:
-            yield Row(case.name, "check.toml", "", "", ERROR, None, (case.broken,))
-        for check in case.checks:
-            yield _check_row(case.name, check)
-        for figure in case.figures:
-            if figure.broken:
-                title = figure.request.title
-                yield Row(case.name, title, "", "", ERROR, None, (figure.broken,))
-    for item in judged.stability:
-        if item.broken:
-            yield Row(item.name, "stability.toml", "", "", ERROR, None, (item.broken,))
-        yield from _trial_rows(item)
-        for chart in item.maps:
-            bad = sum(cell.verdict != PASSED for cell in chart.cells)
-            yield Row(
-                item.name,
-                f"map: {chart.chart.title}",
-                f"{bad} of {len(chart.cells)} runs",
-                "0 runs",
-                chart.verdict,
-                sum(cell.cpu_s for cell in chart.cells),
-                _texts(chart.chart.known_gap, chart.reason),
-            )
-
-
-def _check_row(case: str, report: CheckReport) -> Row:
-    check, worst = report.check, report.worst
-    unit = _unit(report)
-    return Row(
-        case,
-        check.quantity,
-        "" if worst is None or worst.error is None else quantity_text(worst.error, unit),
-        quantity_text(check.tolerance, unit),
-        report.verdict,
-        None if worst is None else worst.outcome.cpu_s,
-        _texts(check.known_gap, *report.reasons),
-    )
-
-
-def _trial_rows(item: StabilityReport) -> Iterator[Row]:
-    """A row for all trials that passed, and one for each of the others."""
-    passed = [trial for trial in item.trials if trial.verdict == PASSED]
-    if passed:
-        masses = [trial.mass_error for trial in passed if trial.mass_error is not None]
-        yield Row(
-            item.name,
-            f"{len(passed)} of {len(item.trials)} trials as expected; largest mass error",
-            f"{max(masses, default=0.0):.1e}",
-            f"{item.limits[0]:.0e}",
-            PASSED,
-            sum(trial.cpu_s for trial in passed),
-            (),
-        )
-    for trial in item.trials:
-        if trial.verdict != PASSED:
-            yield Row(
-                item.name,
-                f"trial: {trial.trial.run.name}",
-                trial.status,
-                trial.trial.expect,
-                trial.verdict,
-                trial.cpu_s,
-                _texts(trial.trial.known_gap, trial.reason),
-            )
-
-
-def _texts(*texts: str | None) -> tuple[str, ...]:
-    return tuple(text for text in texts if text)
-
-
-def _unit(report: CheckReport) -> str:
-    return report.check.unit if METRICS[report.check.metric].has_unit else "%"
-
-
-def quantity_text(value: float, unit: str) -> str:
-    """Number for a reader: relative ones in per cent, tiny ones as they are."""
-    if not math.isfinite(value):
-        return "infinite"
-    if unit == "%":
-        if 0.0 < value < 1.0e-5:
-            return f"{value:.1e}"
-        value *= 100.0
-    number = f"{value:.3g}" if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e4 else f"{value:.2e}"
-    return number if unit == "-" else f"{number} {unit}"
-
-
 def record_of(
     judged: JudgedSuite, rows: Sequence[Row], counts: Mapping[str, int], context: Context
 ) -> dict[str, Any]:
@@ -149,7 +39,10 @@ def record_of(
         "counts": dict(counts),
         **asdict(context),
         "cpu_s": sum(item["cpu_s"] for item in (*cases, *stability)),
-        "overview": _overview(rows),
+        "groups": groups_of(
+            judged, rows, {item["name"]: item["cpu_s"] for item in (*cases, *stability)}
+        ),
+        "nearest": [asdict(row) for row in nearest(rows)],
         "summary": [asdict(row) for row in rows],
         "settings": _settings(judged),
         "cases": cases,
@@ -160,25 +53,11 @@ def record_of(
     return cleaned
 
 
-def _overview(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Number of rows of each case by verdict."""
-    found: dict[str, Counter[str]] = {}
-    for row in rows:
-        found.setdefault(row.case, Counter())[row.verdict] += 1
-    return [
-        {
-            "case": case,
-            "verdict": worst_of(list(counts)),
-            "counts": ", ".join(f"{counts[word]} {word}" for word in VERDICTS if counts[word]),
-        }
-        for case, counts in found.items()
-    ]
-
-
 def _case_record(case: CaseReport) -> dict[str, Any]:
     return {
         "name": case.name,
         "title": case.title,
+        "group": case.group,
         "source": case.source,
         "verdict": case.verdict,
         "broken": case.broken,
@@ -196,8 +75,9 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
         "metric": check.metric,
         "normalise": "range" if check.by_range else "magnitude",
         "tolerance": check.tolerance,
-        "tolerance_text": quantity_text(check.tolerance, _unit(report)),
+        "tolerance_text": quantity_text(check.tolerance, unit_of(report)),
         "verdict": report.verdict,
+        "worst": worst_text(report),
         "known_gap": check.known_gap,
         "reasons": list(report.reasons),
         "runs": [_measured_record(report, item) for item in report.measured],
@@ -244,7 +124,7 @@ def _measured_record(report: CheckReport, item: Measured) -> dict[str, Any]:
         "reference": float(single.reference[0]) if single else None,
         "error": item.error,
         "error_relative": relative,
-        "error_text": "" if item.error is None else quantity_text(item.error, _unit(report)),
+        "error_text": "" if item.error is None else quantity_text(item.error, unit_of(report)),
         "good": item.good,
         "cpu_s": item.outcome.cpu_s,
         "wall_s": item.outcome.wall_s,
@@ -289,6 +169,7 @@ def _stability_record(item: StabilityReport) -> dict[str, Any]:
     return {
         "name": item.name,
         "title": item.title,
+        "group": item.group,
         "source": item.source,
         "verdict": item.verdict,
         "broken": item.broken,

@@ -11,10 +11,11 @@ from pathlib import Path
 
 from wingcrack_verify import environment
 from wingcrack_verify.booklet import write_booklet
-from wingcrack_verify.illustrate import Illustrations, illustrate
+from wingcrack_verify.illustrate import illustrate
 from wingcrack_verify.judge import PASSED, VERDICTS
 from wingcrack_verify.page import page_text, shortened
-from wingcrack_verify.record import Context, Row, record_of, rows_of
+from wingcrack_verify.record import Context, record_of
+from wingcrack_verify.rows import Row, rows_of
 from wingcrack_verify.suite import JudgedSuite
 
 TOP = Path(__file__).resolve().parents[2]
@@ -78,7 +79,7 @@ def make_report(report: Report, folder: Path) -> Path:
         },
     )
     record = record_of(report.judged, report.rows, report.counts, context)
-    pictures: Illustrations = illustrate(report.judged, report.jobs)
+    pictures = illustrate(report.judged, report.jobs)
     _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
     _write(page, page_text(report.judged, record, pictures, folder).encode())

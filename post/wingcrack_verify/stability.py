@@ -6,7 +6,7 @@ import itertools
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.fields import Fields
+from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
 from wingcrack_verify.selection import read_selection, select
 from wingcrack_verify.sweep import Defaults, read_tables
@@ -36,6 +37,7 @@ class Trial:
     causes: tuple[str, ...]  # one of these is part of the reason; none: any reason will do
     note: str
     known_gap: str | None
+    quick: bool = True  # part of --quick, if the file is
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class Stability:
     name: str
     folder: Path
     title: str
+    group: str
     source: str
     quick: bool
     mass_error_limit: float
@@ -78,6 +81,11 @@ class Stability:
     from_files: bool  # whether every state is judged again from the files
     trials: tuple[Trial, ...]
     maps: tuple[Map, ...]
+
+    @property
+    def quick_part(self) -> Stability:
+        """What of it is part of --quick."""
+        return replace(self, trials=tuple(trial for trial in self.trials if trial.quick))
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -120,6 +128,7 @@ class StabilityReport:
 
     name: str
     title: str
+    group: str
     source: str
     folder: Path
     trials: tuple[TrialReport, ...] = ()
@@ -140,6 +149,7 @@ def read_stability(folder: Path) -> Stability:
     """Read ``stability.toml``; a `CaseError` tells what is wrong with it."""
     fields = Fields(read_toml(folder / "stability.toml"), "stability.toml")
     title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
+    group = fields.choice("group", tuple(GROUPS))
     base = folder / fields.text("scene")
     if not base.is_file():
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
@@ -157,9 +167,11 @@ def read_stability(folder: Path) -> Stability:
     if not trials:
         raise CaseError("stability.toml: at least one [[trial]] is needed")
     found = Stability(
-        folder.name, folder, title, source, quick, mass, contact, from_files, trials, maps
+        folder.name, folder, title, group, source, quick, mass, contact, from_files, trials, maps
     )
     refuse_doubles([run.name for run in found.runs], "trial")
+    if quick and not any(trial.quick for trial in trials):
+        raise CaseError("stability.toml: at least one [[trial]] of a quick file must be quick")
     return found
 
 
@@ -187,6 +199,7 @@ class _Maker:
             causes,
             fields.text("note", ""),
             fields.text("known_gap", None),
+            fields.flag("quick", True),
         )
         fields.done()
         return trial
@@ -260,6 +273,7 @@ def judge_stability(found: Stability, outcomes: Mapping[str, Outcome]) -> Stabil
     return StabilityReport(
         found.name,
         found.title,
+        found.group,
         found.source,
         found.folder,
         tuple(judge_trial(found, item, outcomes[item.run.name]) for item in found.trials),

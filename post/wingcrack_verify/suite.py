@@ -10,6 +10,7 @@ from wingcrack_verify.arguments import case_folders
 from wingcrack_verify.case import Case, Run, read_case
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome
+from wingcrack_verify.groups import UNREADABLE
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of
 from wingcrack_verify.stability import (
     Stability,
@@ -84,7 +85,11 @@ def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
             cases.append(_read_case(folder))
     if quick:
         cases = [item for item in cases if isinstance(item, BrokenCase) or item.quick]
-        stability = [item for item in stability if isinstance(item, BrokenCase) or item.quick]
+        stability = [
+            item if isinstance(item, BrokenCase) else item.quick_part
+            for item in stability
+            if isinstance(item, BrokenCase) or item.quick
+        ]
     if not cases and not stability:
         raise CaseError("there is no case to run")
     return Suite(tuple(cases), tuple(stability))
@@ -116,13 +121,18 @@ def judge_suite(suite: Suite, outcomes: Mapping[tuple[str, str], Outcome]) -> Ju
     cases = []
     for case in suite.cases:
         if isinstance(case, BrokenCase):
-            cases.append(CaseReport(case.name, case.name, "", case.folder, broken=case.reason))
+            unreadable = CaseReport(
+                case.name, case.name, UNREADABLE, "", case.folder, broken=case.reason
+            )
+            cases.append(unreadable)
         else:
             cases.append(judge_case(case, _of_case(outcomes, case.name)))
     stability = []
     for item in suite.stability:
         if isinstance(item, BrokenCase):
-            broken = StabilityReport(item.name, item.name, "", item.folder, broken=item.reason)
+            broken = StabilityReport(
+                item.name, item.name, UNREADABLE, "", item.folder, broken=item.reason
+            )
             stability.append(broken)
         else:
             stability.append(judge_stability(item, _of_case(outcomes, item.name)))

@@ -27,13 +27,14 @@ _CHECK = {
     *("tolerance", "scale", "order", "economy", "front", "work_precision", "known_gap", "x_label"),
 }
 _FIGURE = {
-    *("title", "caption", "x_label", "y_label", "x_log", "y_log", "equal_axes", "lines", "network"),
+    *("title", "caption", "x_label", "y_label", "x_log", "y_log", "equal_axes", "lines"),
+    *("picture", "run"),
 }
 _LINE = {
     *("label", "run", "points", "file", "column", "columns", "where", "at", "take"),
     *("interpolate", "x", "key"),
 }
-_TRIAL = {"name", "expect", "cause", "note", "known_gap", "set", "unset"}
+_TRIAL = {"name", "expect", "cause", "note", "known_gap", "quick", "set", "unset"}
 _KEYS = {"run": _RUN, "sweep": _RUN, "check": _CHECK, "figure": _FIGURE, "trial": _TRIAL}
 
 # A name, or arithmetic of names, in braces; perhaps with a format, as in Python.
