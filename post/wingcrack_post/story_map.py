@@ -175,7 +175,7 @@ def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
     first = network["steps"][0] if network.get("steps") else network
     fractures = {item["name"]: item for item in first.get("fractures", [])}
     drawn = False
-    for place in {_place(well.fracture, well.place_m, fractures) for well in wells} - {None}:
+    for place in {well_place(well.fracture, well.place_m, fractures) for well in wells} - {None}:
         assert place is not None
         axes.plot(*unit.of(np.array(place)), "v", zorder=8, **_WELL)
         drawn = True
@@ -186,9 +186,10 @@ def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
     return [Line2D([], [], ls="none", marker="v", label=label, **_WELL)]
 
 
-def _place(
+def well_place(
     name: str, place: tuple[float, float] | None, fractures: Mapping[str, Mapping[str, Any]]
 ) -> tuple[float, float] | None:
+    """Where a well is drawn [m]: at its point, or on its fracture; None if that is not there."""
     if place is not None:
         return place
     item = fractures.get(name)
