@@ -24,7 +24,7 @@ from wingcrack.units import column_words
 from wingcrack_post import style
 from wingcrack_post.fields import Snapshot, read_series
 from wingcrack_post.scene import read_scene
-from wingcrack_post.story_map import well_place
+from wingcrack_post.story_map import well_places
 from wingcrack_post.table import FloatArray
 from wingcrack_post.units import length_unit, time_unit
 from wingcrack_view.packing import pack
@@ -245,13 +245,8 @@ class Content:
         }
 
     def _wells(self, run: wingcrack.Run) -> list[list[float]]:
-        scene = read_scene(self._directory / "scene.nml")
-        network = _network(run)
-        first = network["steps"][0] if network.get("steps") else network
-        fractures = {item["name"]: item for item in first.get("fractures", [])}
-        wells = scene.wells if scene else ()
-        places = {well_place(well.fracture, well.place_m, fractures) for well in wells}
-        return sorted((np.array(one) - self._origin).tolist() for one in places if one is not None)
+        places = well_places(read_scene(self._directory / "scene.nml"), _network(run))
+        return [(np.array(place) - self._origin).tolist() for place in places]
 
 
 def _colours(name: Colormap | str) -> list[int]:
