@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from itertools import combinations
 from pathlib import Path
 
@@ -27,7 +28,7 @@ def drawn(lines: dict[str, FloatArray], points: FloatArray | None = None) -> Nam
     marks = np.empty((0, 2)) if points is None else points
     names = Names(list(lines.items()), list(lines.values()), marks)
     axes.add_artist(names)
-    FigureCanvasAgg(figure).draw()
+    FigureCanvasAgg(figure).print_figure(BytesIO())
     for _, box in names.placed:
         assert axes.bbox.x0 <= box.x0 <= box.x1 <= axes.bbox.x1
         assert axes.bbox.y0 <= box.y0 <= box.y1 <= axes.bbox.y1

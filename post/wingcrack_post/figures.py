@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import gc
 import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
+from importlib.util import LazyLoader, find_spec, module_from_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -181,9 +183,32 @@ def figure_of(run: Run, name: str) -> Figure:
 
 
 def load_quickly() -> None:
-    """Keep matplotlib from writing help for each class that it loads, by asking all its methods."""
+    """Load matplotlib without what no figure needs.
+
+    It would write help for each class, by asking all its methods, and load what takes letters out
+    of fonts and tells their names, which is seldom called for (`letters`).
+    """
+    for module in ("fontTools.subset", "fontTools.agl"):
+        load_when_used(module)
     artist: Any = import_module("matplotlib.artist")
     artist.kwdoc = _no_help
+
+
+def load_when_used(name: str) -> None:
+    """Let a module be there at once and be loaded when something of it is asked for."""
+    if name in sys.modules:
+        return
+    spec = find_spec(name)
+    if spec is None or spec.loader is None:
+        return
+    loader = LazyLoader(spec.loader)
+    spec.loader = loader
+    module = module_from_spec(spec)
+    sys.modules[name] = module
+    loader.exec_module(module)
+    parent, _, own = name.rpartition(".")
+    if parent:
+        setattr(import_module(parent), own, module)
 
 
 def _no_help(_artist: object) -> str:

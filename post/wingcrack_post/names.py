@@ -81,7 +81,8 @@ class Names(Artist):
             path_effects=HALO,
             transform=IdentityTransform(),
         )
-        text.set_figure(self.get_figure(root=False))
+        assert self.axes is not None
+        text.set_figure(self.axes.figure)
         return text
 
     def _place(
