@@ -67,8 +67,8 @@ def full_run(wet_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         steps.append({"time_s": times()[step], "fractures": [fracture]})
     network = {**steps[-1], "joints": [], "steps": steps}
     (folder / "network.json").write_text(json.dumps(network), encoding="utf-8")
-    rows = [f"{t},inner,1e-9,{well_pressure(k)}" for k, t in enumerate(times())]
-    head = "time_s,well,flow_m2_s,pressure_pa"
+    rows = [f"{t},inner,1e-9,1e-9,{well_pressure(k)}" for k, t in enumerate(times())]
+    head = "time_s,well,rate_m2_s,flow_m2_s,pressure_pa"
     (folder / "wells.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     return folder
 
