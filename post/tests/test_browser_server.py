@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -238,6 +239,18 @@ def test_states_are_kept_by_the_browser_and_lists_are_not(page: Page) -> None:
     query = {"place": 0, "field": "pressure", "stamp": run["stamps"][0]}
     assert "immutable" in page.answer("/state", **query)[0].headers["Cache-Control"]
     assert page.answer("/overview")[0].headers["Cache-Control"] == "no-store"
+
+
+def test_a_browser_that_goes_away_is_no_news(
+    page: Page, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for sent in (b"", b"GET /overview HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\0\xff nonsense\r\n"):
+        with socket.create_connection(("127.0.0.1", page.port)) as line:
+            # with what is not read yet: the other side hears of a reset
+            line.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            line.sendall(sent)
+    assert page.json("/overview")["status"] == "finished"
+    assert capsys.readouterr().err == ""
 
 
 def cut_series(directory: Path, count: int) -> dict[Path, bytes]:
