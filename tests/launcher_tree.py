@@ -137,6 +137,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     # The real packages understand their arguments; what they do with them is replaced.
     for package in (
         "wingcrack_post",
+        "wingcrack_view",
         "wingcrack_study",
         "wingcrack_verify",
         "wingcrack_bench",

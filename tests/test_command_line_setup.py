@@ -357,7 +357,7 @@ def test_a_wrong_call_is_refused_before_anything_is_set_up(bare_tree: Tree) -> N
     assert not (bare_tree.root / "build").exists()
 
 
-@pytest.mark.parametrize("command", ["verify", "bench", "plot", "new", "import", "network"])
+@pytest.mark.parametrize("command", ["verify", "bench", "plot", "view", "new", "import", "network"])
 def test_help_does_not_wait_for_an_installation(bare_tree: Tree, command: str) -> None:
     done = bare_tree.call(command, "--help")
     assert (done.returncode, done.stderr) == (0, "")

@@ -273,10 +273,8 @@ def _write_fields(root: Path, cells_per_side: int, fluid: bool) -> None:
         fractures = pyvista.UnstructuredGrid({pyvista.CellType.LINE: lines}, ends)
         data = {
             "fracture": np.ones(len(lines), dtype=int),
-            "jump_n": cells.jump_n,
-            "jump_t": cells.jump_t,
-            "traction_n": cells.traction_n,
-            "traction_t": cells.traction_t,
+            "jump": np.column_stack((cells.jump_n, cells.jump_t)),
+            "traction": np.column_stack((cells.traction_n, cells.traction_t)),
             "state": cells.state,
             "arc_length": cells.s,
         }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +17,16 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import wingcrack
-from synthetic_run import LAST_WING, LENGTH, STEPS, fracture_cells, times, well_pressure
+from synthetic_run import (
+    LAST_WING,
+    LENGTH,
+    STEPS,
+    fracture_cells,
+    polyline,
+    times,
+    well_pressure,
+    wing_length,
+)
 
 POST = Path(__file__).resolve().parents[1]
 SCRIPT = """\
@@ -27,21 +38,63 @@ print(len(ax.lines) + len(ax.collections))
 """
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        "run.plot_history()",
-        "run.plot_history('max_slip_m', color='red')",
-        "run.plot_tips('k1')",
-        "run.plot_map('pressure', 3600, close=True)",
-        "run.plot_map('displacement.x')",
-        "run.plot_profile('jump_t_m', 'flaw')",
-        "run.plot_states()",
-        "wingcrack.compare([run, run], 'fracture_length_m', labels=['a', 'b'])",
-    ],
+CALLS = (
+    "run.plot_history()",
+    "run.plot_history('max_slip_m', color='red')",
+    "run.plot_tips('k1')",
+    "run.plot_map('pressure', 3600, close=True)",
+    "run.plot_map('displacement.x')",
+    "run.plot_profile('jump_t_m', 'flaw')",
+    "run.plot_states()",
+    "run.plot_network()",
+    "run.plot_network('state')",
+    "run.plot_wells('flow')",
+    "run.plot_load()",
+    "run.figure('balance').axes[0]",
+    "wingcrack.compare([run, run], 'fracture_length_m', labels=['a', 'b'])",
 )
-def test_five_lines_make_a_figure(wet_run: Path, tmp_path: Path, call: str) -> None:
-    code = SCRIPT.format(run=str(wet_run), call=call)
+
+
+@pytest.fixture(scope="module")
+def full_run(wet_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Add what not every run has: how the network has grown, and a well."""
+    folder = tmp_path_factory.mktemp("full") / "run"
+    shutil.copytree(wet_run, folder, ignore=shutil.ignore_patterns("figures"))
+    steps = []
+    for step in (0, STEPS - 1):
+        (x, y), wing = polyline(step).T.tolist(), wing_length(step)
+        fracture = {"fracture": 1, "name": "flaw", "x_m": x, "y_m": y, "s_start_m": -wing}
+        steps.append({"time_s": times()[step], "fractures": [fracture]})
+    network = {**steps[-1], "joints": [], "steps": steps}
+    (folder / "network.json").write_text(json.dumps(network), encoding="utf-8")
+    rows = [f"{t},inner,1e-9,1e-9,{well_pressure(k)}" for k, t in enumerate(times())]
+    head = "time_s,well,rate_m2_s,flow_m2_s,pressure_pa"
+    (folder / "wells.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def load_run(dry_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Let a load drive the run without a fluid."""
+    folder = tmp_path_factory.mktemp("load") / "run"
+    shutil.copytree(dry_run, folder, ignore=shutil.ignore_patterns("figures"))
+    for table in folder.glob("*.csv"):
+        text = table.read_text(encoding="utf-8")
+        table.write_text(text.replace("time_s", "load_factor", 1), encoding="utf-8")
+    return folder
+
+
+def test_every_figure_function_has_a_script() -> None:
+    functions = {f"run.{name}" for name in dir(wingcrack.Run) if name.startswith("plot_")}
+    assert functions <= {call.partition("(")[0] for call in CALLS}
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_five_lines_make_a_figure(
+    full_run: Path, load_run: Path, tmp_path: Path, call: str
+) -> None:
+    run = load_run if "plot_load" in call else full_run
+    code = SCRIPT.format(run=str(run), call=call)
     assert code.count("\n") == 5
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code],

@@ -13,6 +13,7 @@ from wingcrack_post import read_run
 from wingcrack_post.cli import main
 from wingcrack_post.facts import gather_facts
 from wingcrack_post.loading import read_loading
+from wingcrack_post.page import write_page
 from wingcrack_post.summary import summary
 
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]])
@@ -141,7 +142,7 @@ def test_the_page_shows_what_is_there(own_run: Path) -> None:
     page = own_run / "figures" / "index.html"
     first = _Page()
     first.feed(page.read_text(encoding="utf-8"))
-    assert first.links == ["summary.png", "summary.pdf"]
+    assert first.links == ["summary.png", "summary.png", "summary.pdf"]
     assert "a <script>" in first.text
     assert "<script>" not in page.read_text(encoding="utf-8")
     assert main(["plot", str(own_run), "--only", "tips,summary", "--quiet"]) == 0
@@ -149,3 +150,19 @@ def test_the_page_shows_what_is_there(own_run: Path) -> None:
     second.feed(page.read_text(encoding="utf-8"))
     assert "balance.png" in second.links
     assert all((page.parent / link).is_file() for link in second.links)
+
+
+def test_figures_follow_each_other_by_kind_and_number(wet_run: Path, tmp_path: Path) -> None:
+    for name in ("fracture_10", "balance", "fracture_2", "of_a_user", "story", "summary"):
+        (tmp_path / f"{name}.png").touch()
+    page = _Page()
+    order = ("summary", "story", "fracture", "balance")
+    page.feed(write_page(read_run(wet_run), tmp_path, order).read_text(encoding="utf-8"))
+    assert [link.removesuffix(".png") for link in page.links[::2]] == [
+        "summary",
+        "story",
+        "fracture_2",
+        "fracture_10",
+        "balance",
+        "of_a_user",
+    ]

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from wingcrack.tables import column
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import read_table
 
@@ -89,3 +90,18 @@ def test_text_where_a_number_belongs_is_located(tmp_path: Path) -> None:
         RunError, match=r"some\.csv, line 3: '\*\*\*\*' in column 'a_m' is no number\.$"
     ):
         table.number("a_m")
+
+
+def test_columns_are_read_once_and_not_changed(tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    path.write_text("time_s,kind\n0.0,a\n1.5,b\n", encoding="utf-8")
+    table = read_table(path)
+    numbers = table.number("time_s")
+    assert table.number("time_s") is numbers
+    with pytest.raises(ValueError, match="read-only"):
+        numbers[0] = 1.0
+    mine = column(table, "time_s")
+    mine[0] = 7.0
+    assert table.number("time_s").tolist() == [0.0, 1.5]
+    column(table, "kind")[0] = "c"
+    assert table.text("kind").tolist() == ["a", "b"]

@@ -33,12 +33,12 @@ def column(table: Table, name: str) -> npt.NDArray[Any]:
         raise RunError(f"{table.path}: there is no column '{name}'; {hint}")
     text = table.text(name)
     if name in TEXTS:
-        return text
+        return text.copy()
     if text.size and np.all(np.char.isdecimal(text)):
         return text.astype(np.int64)
     if name in LABELS and text.size:
-        return text
-    return table.number(name)
+        return text.copy()
+    return table.number(name).copy()  # the user's own
 
 
 def frame(table: Table) -> pandas.DataFrame:

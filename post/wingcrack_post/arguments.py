@@ -30,7 +30,8 @@ groups of figures (--only), written to DIR/figures:
              injectivity, where the fluid is, lengths, seismic moment
   network    the fractures at the start and what has grown, coloured by its order
   maps       pore pressure, or without a fluid stress, in up to six states, with the contact states
-  fractures  opening, slip, aperture, pressure and tractions along each fracture
+  fractures  opening, slip, aperture, pressure and tractions along each fracture; of more than 12
+             those with a well, that grow, that are longest, unless --only names this group
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, its displacements drawn larger than they are

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import gc
 import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
+from importlib.util import LazyLoader, find_spec, module_from_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wingcrack_post.arguments import FORMATS
+from wingcrack_post.arguments import FORMATS, GROUPS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
@@ -65,13 +67,15 @@ class _Figures:
     of_fields: bool = False
     several: bool = False
 
-    def draw(self, run: Run, times_s: Sequence[float]) -> Iterator[tuple[str, Figure]]:
-        """Give each figure with its label."""
+    def draw(
+        self, run: Run, times_s: Sequence[float], *, every: bool = True
+    ) -> Iterator[tuple[str, Figure]]:
+        """Give each figure with its label; of several that are many, `every` one if wanted."""
         module, _, function = self.maker.partition(":")
         load_quickly()
         make: Callable[..., Any] = getattr(import_module(f"wingcrack_post.{module}"), function)
         if self.several:
-            yield from make(run, times_s)
+            yield from make(run, times_s, every=every)
         elif self.of_fields:
             yield "", make(run, times_s)
         else:
@@ -114,21 +118,25 @@ def draw_figures(
     record = Drawn(directory / "figures")
     way = [program(), tables, str(directory.resolve()), repr(tuple(formats)), repr(tuple(times_s))]
     fields: str | None = None
+    every = tuple(only) != GROUPS  # who names groups wants all of them
     for figures in _FIGURES:
         if figures.group not in only:
             continue
         if figures.of_fields and fields is None:
             fields = fields_of(s.path for s in (*run.matrix, *run.fracture_fields))
         used = [*way, fields or ""] if figures.of_fields else way
+        used = [*used, str(every)] if figures.several else used
         known = "" if figures.of_fields and not fields else fingerprint_of(used)
         found = record.find(figures.name, known)
         if found is not None:
             yield Outcome(figures.name, tuple(found[0]), found[1], unchanged=True)
             continue
-        record.forget(figures.name)
+        before = record.forget(figures.name)
         # what needs no fields does not get them, so that it cannot come to depend on them
         given = run if figures.of_fields else replace(run, matrix=(), fracture_fields=())
-        outcome = _drawn(given, figures, directory / "figures", formats, times_s)
+        outcome = _drawn(given, figures, directory / "figures", formats, times_s, every=every)
+        for file in before.difference(outcome.files):
+            file.unlink(missing_ok=True)  # it shows what is no more
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
@@ -145,8 +153,9 @@ def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
     if found is not None:
         return Outcome("index", tuple(found[0]), unchanged=True)
     record.forget("index")
-    write: Callable[[Run, Path], Path] = import_module("wingcrack_post.page").write_page
-    file = write(run, folder)
+    write: Callable[[Run, Path, Sequence[str]], Path]
+    write = import_module("wingcrack_post.page").write_page
+    file = write(run, folder, [figures.name for figures in _FIGURES])
     record.note("index", known, (file,), "")
     return Outcome("index", (file,))
 
@@ -174,9 +183,32 @@ def figure_of(run: Run, name: str) -> Figure:
 
 
 def load_quickly() -> None:
-    """Keep matplotlib from writing help for each class that it loads, by asking all its methods."""
+    """Load matplotlib without what no figure needs.
+
+    It would write help for each class, by asking all its methods, and load what takes letters out
+    of fonts and tells their names, which is seldom called for (`letters`).
+    """
+    for module in ("fontTools.subset", "fontTools.agl"):
+        load_when_used(module)
     artist: Any = import_module("matplotlib.artist")
     artist.kwdoc = _no_help
+
+
+def load_when_used(name: str) -> None:
+    """Let a module be there at once and be loaded when something of it is asked for."""
+    if name in sys.modules:
+        return
+    spec = find_spec(name)
+    if spec is None or spec.loader is None:
+        return
+    loader = LazyLoader(spec.loader)
+    spec.loader = loader
+    module = module_from_spec(spec)
+    sys.modules[name] = module
+    loader.exec_module(module)
+    parent, _, own = name.rpartition(".")
+    if parent:
+        setattr(import_module(parent), own, module)
 
 
 def _no_help(_artist: object) -> str:
@@ -184,11 +216,17 @@ def _no_help(_artist: object) -> str:
 
 
 def _drawn(
-    run: Run, figures: _Figures, folder: Path, formats: Sequence[str], times_s: Sequence[float]
+    run: Run,
+    figures: _Figures,
+    folder: Path,
+    formats: Sequence[str],
+    times_s: Sequence[float],
+    *,
+    every: bool,
 ) -> Outcome:
     files: list[Path] = []
     try:
-        for label, figure in figures.draw(run, times_s):
+        for label, figure in figures.draw(run, times_s, every=every):
             from wingcrack_post.style import save
 
             name = f"{figures.name}_{label}" if label else figures.name

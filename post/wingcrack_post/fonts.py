@@ -9,16 +9,22 @@ The pictures stay the same.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
-from fontTools import subset
-from fontTools.ttLib import TTFont
+from matplotlib.artist import Artist
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontPath, fontManager
 from matplotlib.text import Text
+from matplotlib.ticker import LogFormatter, ScalarFormatter
+
+if TYPE_CHECKING:
+    from fontTools.ttLib import TTFont
 
 _FAMILY, _WHOLE = "DejaVu Sans", "DejaVu Sans whole"
 
@@ -37,6 +43,7 @@ _LETTERS = (
 _KNOWN = frozenset(chr(letter) for letters in _LETTERS for letter in letters)
 _FEATURES = ["kern", "liga", "ccmp", "mark", "mkmk"]
 _RULES = ("GDEF", "GPOS", "GSUB", "MATH")  # tables for setting letters side by side
+_NUMBERS = (ScalarFormatter, LogFormatter)
 _FILES = ("DejaVuSans.ttf", "DejaVuSans-Oblique.ttf")
 
 
@@ -44,10 +51,25 @@ def fall_back(figure: Figure) -> None:
     """Let texts with other letters, as names of a scene may have, look in the whole font too."""
     if not small_fonts():
         return
-    for text in figure.findobj(Text):
-        assert isinstance(text, Text)
+    for text in _texts(figure):
         if not _KNOWN.issuperset(text.get_text().replace("\n", "")):
             text.set_fontfamily([_FAMILY, _WHOLE])
+
+
+def _texts(artist: Artist) -> Iterator[Text]:
+    """Texts of a figure; of axes with numbers only their labels.
+
+    Ticks are made when they are asked for, which takes long, and not all of those that there are
+    now will be drawn.
+    """
+    if isinstance(artist, Text):
+        yield artist
+    if isinstance(artist, Axis) and isinstance(artist.get_major_formatter(), _NUMBERS):
+        yield artist.label
+        yield artist.offsetText
+        return
+    for child in artist.get_children():
+        yield from _texts(child)
 
 
 @cache
@@ -97,6 +119,8 @@ def _copy(whole: Path, small: Path) -> Path:
     if small.exists():
         return small
     small.parent.mkdir(parents=True, exist_ok=True)
+    from fontTools import subset
+
     options = subset.Options(glyph_names=True, recommended_glyphs=True)
     options.drop_tables += ["FFTM"]
     options.layout_features = _FEATURES
@@ -112,6 +136,8 @@ def _bare_copy(small: Path, bare: Path) -> Path:
     """Give the copy without rules."""
     if bare.exists():
         return bare
+    from fontTools.ttLib import TTFont
+
     with TTFont(small) as font:
         for rules in _RULES:
             if rules in font:

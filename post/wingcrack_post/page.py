@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import os
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from string import Template
@@ -14,7 +15,6 @@ from wingcrack_post.facts import Facts, gather_facts
 from wingcrack_post.read import Run
 
 NAME = "index.html"
-_FIRST = "summary.png"
 _COSTS = (
     ("wall_s", "wall time", "s"),
     ("cpu_s", "processor time", "s"),
@@ -36,7 +36,7 @@ h2 { font-size: 1rem; margin: 1rem 0 .2rem; }
 .finished { color: #00724f; } .stopped { color: #8a5a00; } .failed, .warning { color: #b34700; }
 .parts { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 0 2rem; }
 ul { margin: 0; padding-left: 1.1rem; overflow-wrap: anywhere; }
-figure { margin: 1rem 0; } figcaption { font-size: .85rem; }
+figure { margin: 1rem 0; break-inside: avoid; } figcaption { font-size: .85rem; }
 img { max-width: 100%; height: auto; }
 </style>
 </head>
@@ -52,7 +52,7 @@ $figures
 """)
 
 
-def write_page(run: Run, folder: Path) -> Path:
+def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
     """Write the page beside the figures that are there; it appears whole.
 
     Parameters
@@ -60,11 +60,16 @@ def write_page(run: Run, folder: Path) -> Path:
     run : Run
     folder : Path
         Where the figures are.
+    order : sequence of str
+        Names of figures, or their beginnings, as they shall follow each other.
     """
     facts = gather_facts(run)
-    pictures = sorted(
-        (path.name for path in folder.glob("[!.]*.png")), key=lambda name: (name != _FIRST, name)
-    )
+
+    def place(name: str) -> tuple[int, list[tuple[int, str]]]:
+        kinds = [k for k, kind in enumerate(order) if name.startswith(kind)]
+        return min(kinds, default=len(order)), _natural(name)
+
+    pictures = sorted((path.name for path in folder.glob("[!.]*.png")), key=place)
     text = _PAGE.substitute(
         name=html.escape(run.name),
         title=html.escape(_plain(facts.title)),
@@ -106,9 +111,15 @@ def _figures(folder: Path, pictures: Sequence[str]) -> Iterable[str]:
             link = f' (<a href="{quote(stem)}.pdf">PDF</a>)'
         words = html.escape(stem.replace("_", " "))
         yield (
-            f'<figure><img src="{quote(name)}" alt="{words}" loading="lazy">'
+            f'<figure><a href="{quote(name)}"><img src="{quote(name)}" alt="{words}"'
+            ' loading="lazy"></a>'
             f"<figcaption>{words}{link}</figcaption></figure>"
         )
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Key of a name in which numbers count as such: fracture_2 comes before fracture_10."""
+    return [(int(part or 0), words) for words, part in re.findall(r"(\D*)(\d*)", name)]
 
 
 def _costs(directory: Path) -> list[str]:

@@ -13,6 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
 from wingcrack_post import style
+from wingcrack_post.errors import AbsentError
+from wingcrack_post.foremost import MOST, foremost
+from wingcrack_post.growth import read_growth
 from wingcrack_post.load import moment_label
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import (
@@ -51,18 +54,39 @@ _FLUID_PANELS = (
 )
 
 
-def fracture_profiles(run: Run, wanted_s: Sequence[float] = ()) -> Iterator[tuple[str, Figure]]:
+def fracture_profiles(
+    run: Run, wanted_s: Sequence[float] = (), *, every: bool = True
+) -> Iterator[tuple[str, Figure]]:
     """Draw one figure per fracture; yields its label in the files and the figure.
+
+    Of many fractures only the foremost get one, unless `every` one shall.
 
     Raises
     ------
     AbsentError
-        If the run has no fracture cells.
+        If the run has no fracture cells; at the end, if fractures were left out.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     labels = table.text("fracture")
-    for label in fracture_labels(table):
+    all_labels = fracture_labels(table)
+    chosen = all_labels if every else _foremost_labels(run, all_labels)
+    for label in chosen:
         yield label, _profile(run, table, label, labels == label, wanted_s)
+    if len(chosen) < len(all_labels):
+        raise AbsentError(
+            f"{len(all_labels) - len(chosen)} of {len(all_labels)} fractures: they have no well and"
+            " are not among those that have grown or are the longest; --only fractures draws all"
+        )
+
+
+def _foremost_labels(run: Run, labels: Sequence[str]) -> Sequence[str]:
+    """Labels of the fractures that matter most, in the order of the file."""
+    if len(labels) <= MOST:
+        return labels
+    network = run.network or {}
+    growths = read_growth(network) if network.get("steps") else []
+    first = {str(item.number) for item in foremost(growths, run.scene)}
+    return [label for label in labels if label in first] or labels[:MOST]
 
 
 def state_numbers(moments: FloatArray, s: FloatArray) -> FloatArray:

@@ -15,10 +15,11 @@ from matplotlib.ticker import MaxNLocator
 from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import abscissa
+from wingcrack_post.names import HALO
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import run_length_unit
 from wingcrack_post.states import growth_start
-from wingcrack_post.story_map import HALO, draw_map
+from wingcrack_post.story_map import draw_map
 from wingcrack_post.table import FloatArray, Table
 from wingcrack_post.units import MEGAPASCAL, area_unit, rate_unit, time_unit
 from wingcrack_post.wells import MOST_WELLS, well_rows

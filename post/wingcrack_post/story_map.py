@@ -12,10 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from wingcrack_post import style
+from wingcrack_post.foremost import foremost
 from wingcrack_post.growth import Growth, read_growth
+from wingcrack_post.names import Names
 from wingcrack_post.network import network_box
 from wingcrack_post.read import Run
 from wingcrack_post.regions import draw_regions
+from wingcrack_post.scene import Scene
 from wingcrack_post.table import FloatArray, Table
 from wingcrack_post.units import Unit, length_unit
 
@@ -29,7 +32,6 @@ _WING: dict[str, Any] = {"mfc": "#000000", "mec": "#000000", "ms": 2.6}
 _EVENT: dict[str, Any] = {"mfc": "none", "mec": "#CC79A7", "mew": 1.2}
 _EVENT_SIZES = (6.0, 20.0)  # [points] of the smallest and the largest event
 _EVENT_RANGE = 2.0  # magnitudes between these, at least
-HALO = [effects.withStroke(linewidth=1.8, foreground="white")]
 
 
 def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
@@ -46,8 +48,6 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     if body is not None:
         axes.plot(*unit.of(body).T, color="#888888", linewidth=0.8, zorder=1)
     handles = [*_draw_states(axes, network, cells, unit), *handles]
-    for item in growths:
-        _name(axes, item.name, unit.of(item.initial), box, unit)
     begins = [points[0] for g in growths for points in (g.start, g.end) if len(points) > 1]
     if begins:
         axes.plot(*unit.of(np.array(begins)).T, "s", zorder=5, ls="none", **_WING)
@@ -57,6 +57,10 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
         axes.plot(*unit.of(np.array(joints)).T, "o", zorder=6, ls="none", **_JOINT)
         handles.append(Line2D([], [], ls="none", marker="o", label="joint", **_JOINT))
     handles += draw_wells(axes, run, unit)
+    wells = well_places(scene, network)
+    named = [(item.name, unit.of(item.initial)) for item in foremost(growths, scene)]
+    lines = [unit.of(np.concatenate((g.start[::-1], g.initial, g.end))) for g in growths]
+    axes.add_artist(Names(named, lines, unit.of(np.array(wells).reshape(-1, 2))))
     handles += _draw_events(axes, run, unit)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
@@ -141,49 +145,26 @@ def _draw_piece(axes: Axes, points: FloatArray, state: str) -> None:
     axes.plot(*points.T, zorder=3, path_effects=_effects(state), **_look(state))
 
 
-def _name(
-    axes: Axes, name: str, points: FloatArray, box: tuple[float, float, float, float], unit: Unit
-) -> None:
-    """Write a fracture's name beside its first end, away from the fracture."""
-    along = points[0] - points[-1]
-    along = along / max(float(np.linalg.norm(along)), 1e-300)
-    aside = np.array([-along[1], along[0]])
-    aside = aside if aside[1] > 0.0 or (aside[1] == 0.0 and aside[0] > 0.0) else -aside
-    inside = all(
-        unit.of(low) <= value <= unit.of(high)
-        for value, low, high in zip(points[0], box[::2], box[1::2], strict=True)
-    )
-    if inside:
-        offset = 7.0 * aside - 4.0 * along
-        axes.annotate(
-            name,
-            (float(points[0][0]), float(points[0][1])),
-            xytext=(float(offset[0]), float(offset[1])),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=7,
-            zorder=7,
-            path_effects=HALO,
-        )
-
-
 def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
     """Wells at their point; those along a whole fracture near its middle, as the scene has it."""
     wells = run.scene.wells if run.scene else ()
-    network = run.network or {}
-    first = network["steps"][0] if network.get("steps") else network
-    fractures = {item["name"]: item for item in first.get("fractures", [])}
-    drawn = False
-    for place in {_place(well.fracture, well.place_m, fractures) for well in wells} - {None}:
-        assert place is not None
+    places = well_places(run.scene, run.network or {})
+    for place in places:
         axes.plot(*unit.of(np.array(place)), "v", zorder=8, **_WELL)
-        drawn = True
-    if not drawn:
+    if not places:
         return []
     whole = any(well.place_m is None for well in wells)
     label = "well, along its fracture" if whole else "well"
     return [Line2D([], [], ls="none", marker="v", label=label, **_WELL)]
+
+
+def well_places(scene: Scene | None, network: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """Where wells are drawn [m]: at their points, or on their fractures at the start of the run."""
+    wells = scene.wells if scene else ()
+    first = network["steps"][0] if network.get("steps") else network
+    fractures = {item["name"]: item for item in first.get("fractures", [])}
+    places = {_place(well.fracture, well.place_m, fractures) for well in wells}
+    return sorted(place for place in places if place is not None)
 
 
 def _place(

@@ -50,7 +50,7 @@ def summary(run: Run) -> Figure:
     geometry.set_title("body, loads, wells")
     _legend(figure, grid[2, 0], entries)
     _legend(figure, grid[2, 1], _draw_network(network, run))
-    middle = grid[3, :].subgridspec(1, 3)
+    middle = grid[3, :].subgridspec(1, 3, wspace=0.1)
     drive, length, ratio = (figure.add_subplot(middle[0, k]) for k in range(3))
     marks = [] if has_load(run) else find_marks(run)
     if run.history.rows > 1:

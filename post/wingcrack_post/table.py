@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,7 @@ from wingcrack_post.errors import RunError
 FloatArray = npt.NDArray[np.float64]
 TextArray = npt.NDArray[np.str_]
 BoolArray = npt.NDArray[np.bool_]
+Shared = TypeVar("Shared", bound=npt.NDArray[Any])
 
 
 @dataclass(frozen=True)
@@ -35,32 +37,45 @@ class Table:
     path: Path
     cells: dict[str, Sequence[str]]
     rows: int
+    _texts: dict[str, TextArray] = field(default_factory=dict, init=False, repr=False)
+    _numbers: dict[str, FloatArray] = field(default_factory=dict, init=False, repr=False)
 
     def has(self, *names: str) -> bool:
         """Whether all the named columns are there."""
         return all(name in self.cells for name in names)
 
     def text(self, name: str) -> TextArray:
-        """Column as text; a missing one is a `RunError` that names file and column."""
+        """Column as text, not to be changed; a missing one is a `RunError` that names it."""
         if name not in self.cells:
             raise RunError(
                 f"{self.path}: the column '{name}' is missing (there are: {', '.join(self.cells)})."
             )
-        return np.asarray(self.cells[name], dtype=np.str_)
+        if name not in self._texts:
+            self._texts[name] = _shared(np.asarray(self.cells[name], dtype=np.str_))
+        return self._texts[name]
 
     def moments(self) -> FloatArray:
         """Time of each row [s], or in a mechanics-only run its load factor."""
         return self.number("load_factor" if self.has("load_factor") else "time_s")
 
     def number(self, name: str) -> FloatArray:
-        """Column as numbers in the unit of its name; an empty cell is nan."""
+        """Column as numbers in the unit of its name, not to be changed; an empty cell is nan."""
+        if name in self._numbers:
+            return self._numbers[name]
         text = self.text(name)
         try:
-            return np.where(text == "", "nan", text).astype(np.float64)
+            numbers = np.where(text == "", "nan", text).astype(np.float64)
+            return self._numbers.setdefault(name, _shared(numbers))
         except ValueError:
             for row, value in enumerate(text):
                 _check_number(self.path, name, row, str(value))
             raise
+
+
+def _shared(values: Shared) -> Shared:
+    """Values that all readers have in common: read from their text once."""
+    values.setflags(write=False)
+    return values
 
 
 def _check_number(path: Path, name: str, row: int, value: str) -> None:

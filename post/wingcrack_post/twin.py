@@ -14,22 +14,20 @@ import matplotlib
 import numpy as np
 import numpy.typing as npt
 from matplotlib.backend_bases import FigureCanvasBase, RendererBase
-from matplotlib.backends import backend_agg, backend_pdf
+from matplotlib.backends import backend_pdf
 from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 
 from wingcrack_post.fonts import letters_alone
+from wingcrack_post.letters import FontLetters
 from wingcrack_post.png import write_png
-from wingcrack_post.texts import FormulasInPoints, texts
-
-# matplotlib gives these no types
-_Pixels: Any = backend_agg.RendererAgg
-_Vectors: Any = backend_pdf.RendererPdf
+from wingcrack_post.texts import FormulasInPoints, Pixels, Vectors, texts
 
 _POINTS_PER_INCH = 72.0
 
 
 _PdfFile: Any = backend_pdf.PdfFile
+_fonts: Any = backend_pdf._backend_pdf_ps  # type: ignore[attr-defined]
 
 
 class _File(_PdfFile):  # type: ignore[misc]
@@ -38,9 +36,30 @@ class _File(_PdfFile):  # type: ignore[misc]
     def embedTTF(self, filename: Any, subset_index: int, charmap: Any) -> Any:  # noqa: N802
         """Write what is used of a font; matplotlib's name for it."""
         letters = letters_alone(filename)
+        if letters is filename:
+            return super().embedTTF(filename, subset_index, charmap)
         numbers = self._character_tracker.glyph_maps
         numbers[letters] = numbers[filename]
-        return super().embedTTF(letters, subset_index, charmap)
+        theirs = _fonts.get_glyphs_subset, _fonts.font_as_file
+        _fonts.get_glyphs_subset = lambda font, glyphs: _Taken(FontLetters(Path(font.path), glyphs))
+        _fonts.font_as_file = FontLetters.file
+        try:
+            return super().embedTTF(letters, subset_index, charmap)
+        finally:
+            _fonts.get_glyphs_subset, _fonts.font_as_file = theirs
+
+
+class _Taken:
+    """Letters of a font as matplotlib's PDF takes them."""
+
+    def __init__(self, font: FontLetters) -> None:
+        self.font = font
+        self.glyph_index_map = font.glyph_index_map
+
+    def __enter__(self) -> _Taken:
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
 
 
 def draw_twins(figure: Figure, png: Path, pdf: Path, dpi: float) -> None:
@@ -57,14 +76,15 @@ def draw_twins(figure: Figure, png: Path, pdf: Path, dpi: float) -> None:
     """
     width, height = figure.get_size_inches()
     figure.set_dpi(dpi)
-    pixels = _Pixels(*(int(size * dpi + 1.0e-6) for size in (width, height)), dpi)
+    pixels = Pixels(int(width * dpi + 1.0e-6), int(height * dpi + 1.0e-6), dpi)
     file = _File(pdf, metadata={"CreationDate": None})
     try:
         file.newPage(width, height)
-        vectors = _Vectors(file, dpi, height, width)
+        vectors = Vectors(file, dpi, height, width)
         renderer = TwinRenderer(pixels, vectors)
-        _lay_out(figure, renderer)
-        figure.draw(renderer)
+        with texts(dpi).boxes_kept():
+            _lay_out(figure, renderer)
+            figure.draw(renderer)
         vectors.finalize()
         file.finalize()
     finally:

@@ -64,10 +64,17 @@ class Drawn:
         }
         self._write()
 
-    def forget(self, name: str) -> None:
-        """Say that a figure is about to be drawn: whoever interrupts that leaves no false word."""
-        if self._entries.pop(name, None) is not None:
-            self._write()
+    def forget(self, name: str) -> set[Path]:
+        """Say that a figure is about to be drawn: whoever interrupts that leaves no false word.
+
+        Gives the files that it had.
+        """
+        entry = self._entries.pop(name, None)
+        if entry is None:
+            return set()
+        self._write()
+        files = entry.get("files") if isinstance(entry, dict) else None
+        return {self._path.parent / file for file in files} if isinstance(files, dict) else set()
 
     def _write(self) -> None:
         aside = self._path.with_name(f"{RECORD}.{os.getpid()}")
