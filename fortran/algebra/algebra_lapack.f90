@@ -19,7 +19,10 @@ module algebra_lapack
          character(len=1), intent(in) :: transa, transb
          integer(ik), intent(in) :: m, n, k, lda, ldb, ldc
          real(rk), intent(in) :: alpha, beta
+         ! Parts of larger matrices, whose last column may end early.
+         ! allow(C071)
          real(rk), intent(in) :: a(lda, *), b(ldb, *)
+         ! allow(C071)
          real(rk), intent(inout) :: c(ldc, *)
       end subroutine dgemm
 

@@ -85,6 +85,8 @@ contains
    pure subroutine eliminate_in_panels(matrix, n_stored, n, signs, place)
       integer(ik), intent(in) :: n_stored  !< rows of the matrix that this one is part of
       integer(ik), intent(in) :: n
+      ! A part of a larger matrix, whose last column ends early.
+      ! allow(C071)
       real(rk), intent(inout) :: matrix(n_stored, *)
       real(rk), intent(in) :: signs(:)  !< (pivots)
       integer(ik), intent(out) :: place

@@ -1,8 +1,8 @@
 !> Factors of the coarse level's matrix, all of it condensed onto the unknowns of the fractures, or
 !! that of the cells alone, for one time step.
 !!
-!! The matrix is quasi-definite: the rock's stiffness and minus what its pressures store and pass on.
-!! So it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
+!! The matrix is quasi-definite: the rock's stiffness, minus what its pressures store and pass on. So
+!! it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
 !! `algebra_multifrontal`. How far rounding grows is judged on a solution that is known; where that
 !! is too far (a fluid or rock that hardly stores), MUMPS, which exchanges pivots, takes over for
 !! good. It also has the cells alone, whose entries it keeps, and what ranks share.
@@ -207,8 +207,8 @@ contains
 
    !> Judge how far rounding has grown by a solution that is known: an error is raised if it is not
    !! that of a stable elimination. Its pressure is the same everywhere: that is what is lost first
-   !! where pressures even out so fast that a flow says little of the fluid that is stored. Seen from
-   !! the fractures it is lost if what the rock takes up then is not known.
+   !! where pressures even out so fast that a flow says little of the stored fluid. Seen from the
+   !! fractures it is lost if what the rock takes up then is not known.
    subroutine check_factors(self, schur, error)
       class(coarse_factors_t), intent(inout) :: self
       real(rk), intent(in) :: schur(:, :)

@@ -283,8 +283,8 @@ contains
    end subroutine test_without_full_matrix
 
    !> Cells that hardly store fluid or let it pass leave next to nothing on the diagonal of the
-   !! pressures, and eliminating these first would lose all digits: the run must go on with exchanges
-   !! of pivots, for good, as if it had never tried without. What is well posed is then solved as
+   !! pressures, and eliminating these first would lose all digits: the run must go on with
+   !! exchanges of pivots, for good, as if it had never tried without. What is well posed is then solved as
    !! well as ever.
    subroutine test_nearly_incompressible()
       type(mesh_t) :: mesh
