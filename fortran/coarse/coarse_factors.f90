@@ -1,8 +1,8 @@
 !> Factors of the coarse level's matrix, all of it condensed onto the unknowns of the fractures, or
 !! that of the cells alone, for one time step.
 !!
-!! The matrix is quasi-definite: the rock's stiffness, minus what its pressures store and pass on. So
-!! it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
+!! The matrix is quasi-definite: the rock's stiffness, minus what its pressures store and pass on.
+!! So it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
 !! `algebra_multifrontal`. How far rounding grows is judged on a solution that is known; where that
 !! is too far (a fluid or rock that hardly stores), MUMPS, which exchanges pivots, takes over for
 !! good. It also has the cells alone, whose entries it keeps, and what ranks share.

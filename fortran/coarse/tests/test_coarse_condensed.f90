@@ -284,8 +284,8 @@ contains
 
    !> Cells that hardly store fluid or let it pass leave next to nothing on the diagonal of the
    !! pressures, and eliminating these first would lose all digits: the run must go on with
-   !! exchanges of pivots, for good, as if it had never tried without. What is well posed is then solved as
-   !! well as ever.
+   !! exchanges of pivots, for good, as if it had never tried without. What is well posed is then
+   !! solved as well as ever.
    subroutine test_nearly_incompressible()
       type(mesh_t) :: mesh
       type(mesher_t) :: mesher
