@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import subprocess
-import tomllib
 from pathlib import Path
 
 import pytest
 from launcher_tree import TOP
+
+from wingcrack_post import __version__
 
 LAUNCHER = TOP / "wingcrack"
 SCENE = TOP / "inputs" / "paper_c" / "onset.nml"
@@ -26,6 +27,7 @@ COMMANDS = (
     "build",
     "format",
     "lint",
+    "docs",
 )
 MAP = TOP / "inputs" / "examples" / "outcrop.geojson"
 LAWS = ["--box", "0,0,9,9", "--density", "p20=1", "--length", "constant:1"]

@@ -30,9 +30,7 @@ quiet: true
 The rooms and how they use each other are explained on the page
 [Architecture](../architecture.html).
 """
-_MATHS = re.compile(
-    r'<script[^>]*(?:x-mathjax-config|MathJax\.js)[^>]*>.*?</script>', re.DOTALL
-)
+_MATHS = re.compile(r"<script[^>]*(?:x-mathjax-config|MathJax\.js)[^>]*>.*?</script>", re.DOTALL)
 _GUARDS = re.compile(r'\s+(?:integrity="[^"]*"|crossorigin="[^"]*")')
 _BOOTSTRAP = re.compile(r'https://[^"]*/(css|js)/(bootstrap[^"/]*)')
 _THEIRS = ("css/bootstrap.min.css", "js/bootstrap.bundle.min.js")

@@ -56,9 +56,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-def on_page_markdown(
-    markdown: str, *, page: Page, config: MkDocsConfig, files: Files
-) -> str:
+def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Let links lead to the places in the site, and lists be lists."""
     del config, files
     place = PurePosixPath(page.file.src_uri)
@@ -158,8 +156,10 @@ def _source(place: PurePosixPath) -> PurePosixPath | None:
         if str(place) == page:
             return PurePosixPath(source)
     if place.parts[0] == "cases":
-        return None if place.stem == "index" else PurePosixPath(
-            "verification", place.stem, "README.md"
+        return (
+            None
+            if place.stem == "index"
+            else PurePosixPath("verification", place.stem, "README.md")
         )
     if str(place) == "python_api.md":
         return None
