@@ -1,4 +1,4 @@
-"""Commands that pages show: which of them are run here, and whether the others can be understood."""
+"""Commands that pages show: which are run here, and whether the others can be understood."""
 
 from __future__ import annotations
 

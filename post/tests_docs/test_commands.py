@@ -7,12 +7,19 @@ import shlex
 from pathlib import Path
 
 import pytest
+
 from calls import launch, short_form, stand_in, understand, understand_other
 from documents import NAMES, TOP, blocks, spans
-
 from wingcrack_scenes import solver
+from workplaces import make_workplace
 
 _WRITTEN = re.compile(r"Write this into `([\w.]+)`")
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder where the pages' code is run."""
+    return make_workplace(tmp_path_factory.mktemp("workplace"))
 
 
 @pytest.mark.parametrize("page", NAMES)

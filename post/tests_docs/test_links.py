@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 
 import pytest
-from documents import NAMES, TOP
 
+from documents import NAMES, TOP
 from wingcrack_docs.dialect import to_python_markdown
 from wingcrack_docs.links import anchors, change_links, find_links, is_elsewhere, resolve
 
@@ -36,7 +36,8 @@ def test_links_lead_somewhere(page: str) -> None:
 
 
 def test_broken_links_are_found() -> None:
-    text = "[a](none.md) `[b](not.md)` [c](maps.md#nowhere) [d](maps.md#faults-and-repairs)\n\n    [e](x)\n"
+    text = "[a](none.md) `[b](not.md)` [c](maps.md#nowhere) [d](maps.md#faults-and-repairs)\n"
+    text += "\n    [e](x)\n"
     assert [fault.partition(": ")[2] for fault in broken_links("docs/x.md", text)] == [
         "there is no none.md",
         "docs/maps.md has no heading #nowhere",

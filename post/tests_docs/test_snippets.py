@@ -8,11 +8,12 @@ from pathlib import Path
 import f90nml
 import matplotlib
 import pytest
-from calls import launch
-from documents import NAMES, TOP, Block, blocks, spans
 
 import wingcrack
+from calls import launch
+from documents import NAMES, TOP, Block, blocks, spans
 from wingcrack_scenes import solver
+from workplaces import make_workplace
 
 SNIPPETS = [block for page in NAMES for block in blocks(page)]
 PYTHON = [block for block in SNIPPETS if block.language == "python"]
@@ -22,6 +23,16 @@ SCENES = [
     for block in SNIPPETS
     if block.language == "fortran" or (not block.language and block.text.startswith("&"))
 ]
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder where the pages' code is run."""
+    return make_workplace(tmp_path_factory.mktemp("workplace"))
+
+
+def _last_two(run: wingcrack.Run) -> list[float]:
+    return [snapshot.time_s for snapshot in run._matrix][-2:]
 
 
 def _name(block: Block) -> str:
@@ -40,9 +51,8 @@ def test_python_runs(block: Block, workplace: Path, monkeypatch: pytest.MonkeyPa
     matplotlib.use("agg")
     from matplotlib import pyplot
 
-    moments = wingcrack.Run.field_moments.fget
     # a movie of two states shows as much
-    monkeypatch.setattr(wingcrack.Run, "field_moments", property(lambda run: moments(run)[-2:]))
+    monkeypatch.setattr(wingcrack.Run, "field_moments", property(_last_two))
     mine = workplace / "out" / "mine"
     if not mine.exists():
         mine.symlink_to(workplace / "out" / "onset")

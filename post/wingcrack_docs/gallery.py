@@ -7,9 +7,9 @@ from pathlib import Path
 
 import wingcrack
 from wingcrack_docs.cases import cases_of
-from wingcrack_docs.errors_of_run import describe_errors
 from wingcrack_docs.errors import PicturesError
-from wingcrack_docs.places import DOCS, PICTURES, SCENES, TOP
+from wingcrack_docs.errors_of_run import describe_errors
+from wingcrack_docs.places import DOCS, PICTURES, TOP
 from wingcrack_docs.thumbnail import draw_thumbnail
 
 _SECTIONS = {
@@ -24,14 +24,15 @@ _SECTIONS = {
 _HEAD = """\
 # Gallery
 
-Every scene that comes with the program: what it looks like at its end, what it costs, how far it errs.
-`./wingcrack docs --pictures` runs them and writes this page; CPU times are those of one core of the
-machine that it was written on ({processor}), which did other work, too.
+Every scene that comes with the program: what it looks like at its end, what it costs, how far it
+errs. `./wingcrack docs --pictures` runs them and writes this page; CPU times are those of one core
+of the machine that it was written on ({processor}), which did other work, too.
 
-Pictures show the pore pressure, or without a fluid the mean stress, and the fractures in the colour of
-their state: black sticks, orange slips, blue is open. **Errors** are the run's own estimates
-([K and its error](howto_intensities.md)), at the end of the run or, of K, the largest of all its growing tips;
-what they are worth is measured by the verification cases beside which a scene is held.
+Pictures show the pore pressure, or without a fluid the mean stress, and the fractures in the
+colour of their state: black sticks, orange slips, blue is open. **Errors** are the run's own
+estimates ([K and its error](howto_intensities.md)), at the end of the run or, of K, the largest of
+all its growing tips, over K; what they are worth is measured by the verification cases that run the
+scene, with its settings or others.
 """
 
 
@@ -89,7 +90,7 @@ def _entry(scene: Path, run: wingcrack.Run, picture: str) -> str:
         f"{title}. [{place}](../{place})\n",
         f"- **Cost**: {_cost(record)}",
         f"- **Errors**: {describe_errors(run)}",
-        f"- **Held beside others in**: {held or 'no case of its own'}",
+        f"- **Verification cases**: {held or 'none'}",
     ]
     return "\n".join(lines) + "\n"
 

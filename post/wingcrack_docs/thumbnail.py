@@ -25,7 +25,7 @@ def new_figure(width: float = _INCHES[0], height: float = _INCHES[1]) -> Figure:
 
 
 def draw_thumbnail(run: wingcrack.Run, path: Path) -> None:
-    """Draw the end of a run: its field with the fractures, or its history where it has no fields."""
+    """Draw the end of a run: its field with the fractures, or, without fields, its history."""
     figure = new_figure()
     _draw_end(run, figure.add_subplot())
     save_small(figure, path)
@@ -34,7 +34,7 @@ def draw_thumbnail(run: wingcrack.Run, path: Path) -> None:
 def draw_story(run: wingcrack.Run, path: Path) -> None:
     """Draw a run with a fluid and growth: its end, its pressure and its length over time."""
     figure = new_figure(9.0, 3.6)
-    left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
+    left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0), squeeze=False)[0]
     _draw_end(run, left.add_subplot())
     above, below = right.subplots(2, 1, sharex=True)
     run.plot_history("well_pressure_pa", ax=above)

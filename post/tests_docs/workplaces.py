@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import pytest
+
 from documents import TOP
-
 from wingcrack_scenes import solver
-
 
 _TRACES = (((0.0, 0.0), (9.0, 6.0)), ((2.0, 7.0), (8.0, 0.0)))  # [m] from the origin
 _MAP = {
@@ -26,10 +24,8 @@ _MAP = {
 }
 
 
-@pytest.fixture(scope="session")
-def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the shipped scenes and the run of C1 that pages speak of."""
-    place = tmp_path_factory.mktemp("workplace")
+def make_workplace(place: Path) -> Path:
+    """Put the shipped scenes and the run of C1 that pages speak of into a folder; return it."""
     for name in ("inputs", "packaging", "verification"):
         (place / name).symlink_to(TOP / name)
     (place / "map.geojson").write_text(json.dumps(_MAP))
