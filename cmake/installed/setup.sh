@@ -17,6 +17,8 @@ case ${1:-} in
         ;;
 esac
 
+has_command() { command -v "$1" >/dev/null; }
+
 prepare() {
     if [[ ! -x $solver ]]; then
         fail "$exit_environment" "the solver $solver is missing: install wingcrack anew"
@@ -37,7 +39,7 @@ need() {
 # From here to the end of this call Python is used: it is there, and has the packages.
 hold_python() {
     local missing
-    if [[ ! -x $venv_python ]] && ! command -v "$venv_python" >/dev/null; then
+    if [[ ! -x $venv_python ]] && ! has_command "$venv_python"; then
         fail "$exit_environment" "there is no Python ${WINGCRACK_PYTHON:-python3}:" \
             'name one of 3.11 or newer by WINGCRACK_PYTHON'
     fi
@@ -48,9 +50,11 @@ import sys
 missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
 if sys.version_info < (3, 11):
     missing.insert(0, "Python 3.11")
-print(*missing, sep=", ")
+print("lacks:", ", ".join(missing))
 PYTHON
-    ) || fail "$exit_environment" "$venv_python cannot be used as a Python"
+    )
+    if [[ $missing != lacks:* ]]; then fail "$exit_environment" "$venv_python is no Python"; fi
+    missing=${missing#lacks: }
     if [[ -n $missing ]]; then
         fail "$exit_environment" "$venv_python lacks $missing: install" \
             "$(cd -- "$share" && pwd -P)/$needed_list with its pip, or name another Python by" \
