@@ -1,6 +1,7 @@
 # In place of tools/setup.sh where wingcrack is installed (cmake/Install.cmake): nothing is installed
 # or built from here, what is missing is named. Sourced by the launcher.
 # shellcheck shell=bash
+# shellcheck disable=SC2034,SC2154 # names of the launcher
 
 # Where caches go, and the Python that has the packages.
 readonly venv=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/wingcrack
