@@ -131,6 +131,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     (root / "requirements_developer.txt").write_text("")
     (root / "requirements_study.txt").write_text("")
     (root / "requirements_maps.txt").write_text("")
+    (root / "requirements_docs.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)

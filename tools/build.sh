@@ -11,6 +11,16 @@ readonly ranks_solver=$root/build/release/fortran/app/$ranks_target
 # the result.
 build_failure=$exit_environment
 
+version() {
+    local line
+    while IFS= read -r line; do
+        if [[ $line =~ ^project\(.*\ VERSION\ ([0-9.]+) ]]; then
+            printf 'wingcrack %s\n' "${BASH_REMATCH[1]}"
+            return
+        fi
+    done <"$root/CMakeLists.txt"
+}
+
 # build_is_current PRESET TARGET: nothing that the build reads is newer than its record, and the
 # tree has not moved since (library paths) nor the processor changed (whose instructions are used).
 build_is_current() {

@@ -41,7 +41,7 @@ format_sources() {
     step 'ruff format' format_python
 }
 
-check_shell() { "$venv/bin/shellcheck" --external-sources wingcrack .ci/run; }
+check_shell() { "$venv/bin/shellcheck" --external-sources wingcrack .ci/run cmake/installed/setup.sh; }
 
 # Fortran ----------------------------------------------------------------------------------------
 

@@ -25,10 +25,11 @@ prepare() {
     if [[ -n $target ]]; then with_lock build release "$target"; fi
 }
 
-# prepare_developer: see to the environment with the tools of a developer, who tests studies too.
+# prepare_developer: see to the environment with the tools of a developer, who tests studies and
+# the documentation too.
 prepare_developer() {
     requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt"
-        "$root/requirements_maps.txt")
+        "$root/requirements_maps.txt" "$root/requirements_docs.txt")
     prepare
 }
 
@@ -47,6 +48,13 @@ prepare_study() {
 # prepare_maps: see to what fracture maps and random networks take, beside the rest.
 prepare_maps() {
     requirement_lists+=("$root/requirements_maps.txt")
+    prepare "$solver_target"
+}
+
+# prepare_docs: see to what the site takes, beside the rest; the gallery and the Python pages ask the
+# solver.
+prepare_docs() {
+    requirement_lists+=("$root/requirements_docs.txt")
     prepare "$solver_target"
 }
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from wingcrack_post.read import Run, read_run
     from wingcrack_post.table import Table, read_table
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "AbsentError",

@@ -1,0 +1,1 @@
+"""The documentation as a site: its pages, those of the Fortran modules, the gallery."""

@@ -1,0 +1,56 @@
+"""Command line: ``python -m wingcrack_docs``."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+
+from wingcrack_docs.arguments import parse
+from wingcrack_docs.places import SITE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status: 0 done, 1 failed, 3 something lacks."""
+    given = parse(arguments)
+    if given.pictures:
+        return _pictures()
+    from wingcrack_docs.errors import PagesError, SiteError
+    from wingcrack_docs.fortran import make_fortran_pages
+    from wingcrack_docs.site import build_site, serve_site
+
+    out = given.out or SITE
+    begin = time.perf_counter()
+    try:
+        if not given.no_fortran and make_fortran_pages():
+            print(f"pages of the Fortran modules: {time.perf_counter() - begin:.0f} s", flush=True)
+        build_site(out, fortran=not given.no_fortran)
+    except (PagesError, SiteError) as reason:
+        print(f"wingcrack docs: {reason}", file=sys.stderr)
+        return 1
+    print(f"{out / 'index.html'} is built ({time.perf_counter() - begin:.0f} s)", flush=True)
+    if given.serve:
+        try:
+            serve_site(out, given.port)
+        except OSError as reason:
+            said = f"port {given.port} cannot be served: {reason.strerror}; --port takes another"
+            print(f"wingcrack docs: {said}", file=sys.stderr)
+            return 1
+    return 0
+
+
+def _pictures() -> int:
+    from wingcrack_docs.errors import PicturesError
+    from wingcrack_docs.pictures import make_pictures
+    from wingcrack_scenes.errors import SolverLackingError
+
+    try:
+        make_pictures()
+    except PicturesError as reason:
+        print(f"wingcrack docs: {reason}", file=sys.stderr)
+        return 1
+    except SolverLackingError as reason:
+        print(f"wingcrack docs: {reason}", file=sys.stderr)
+        return 3
+    print("docs/gallery.md and docs/pictures are written", flush=True)
+    return 0

@@ -1,0 +1,105 @@
+"""Links and headings in a Markdown text, as hosts of plain files and the site understand them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+_FENCE = re.compile(r"^ *(```|~~~)")
+_CODE = re.compile(r"(`+)(?:.*?[^`])?\1(?!`)")
+_LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^()\s]+)(\))")
+_HEADING = re.compile(r"^#{1,6} +(.*?)(?: +#+)? *$")
+
+
+class Link(NamedTuple):
+    """A link: its line in the text, from 1, and where it leads."""
+
+    line: int
+    target: str
+
+
+def prose(text: str) -> Iterator[tuple[int, str, bool]]:
+    """Give each line with its number, from 1, and whether it is prose and no code."""
+    fence, after_blank, in_code = "", True, False
+    for number, line in enumerate(text.splitlines(), 1):
+        opening = _FENCE.match(line)
+        if fence:
+            yield number, line, False
+            if line.strip() == fence:
+                fence = ""
+            continue
+        if opening:
+            fence = opening[1]
+            yield number, line, False
+            continue
+        if line.strip():
+            in_code = line.startswith("    ") and (after_blank or in_code)
+        yield number, line, not in_code
+        after_blank = not line.strip() or line.startswith("#")
+
+
+def find_links(text: str) -> list[Link]:
+    """All links of a text that are not in code."""
+    return [
+        Link(number, match[2])
+        for number, line, is_prose in prose(text)
+        if is_prose
+        for match in _LINK.finditer(_CODE.sub(lambda code: " " * len(code[0]), line))
+    ]
+
+
+def change_links(text: str, change: Callable[[str], str]) -> str:
+    """Put `change(target)` in place of the target of each link that is not in code."""
+    lines = []
+    for _, line, is_prose in prose(text):
+        lines.append(_change_line(line, change) if is_prose else line)
+    return "\n".join(lines) + "\n"
+
+
+def _change_line(line: str, change: Callable[[str], str]) -> str:
+    covered = _CODE.sub(lambda code: "\0" * len(code[0]), line)
+    for match in reversed(list(_LINK.finditer(covered))):
+        begin, end = match.span(2)
+        line = line[:begin] + change(match[2]) + line[end:]
+    return line
+
+
+def is_elsewhere(target: str) -> bool:
+    """Whether a link leads to another machine."""
+    return re.match(r"[a-z][a-z0-9+.-]*:", target) is not None
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of a text's headings, as hosts of plain files and the site make them."""
+    found: set[str] = set()
+    for _, line, is_prose in prose(text):
+        heading = _HEADING.match(line)
+        if is_prose and heading:
+            slug = _slug(heading[1])
+            count, name = 0, slug
+            while name in found:
+                count += 1
+                name = f"{slug}-{count}"
+            found.add(name)
+    return found
+
+
+def _slug(heading: str) -> str:
+    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+    kept = re.sub(r"[^\w\- ]", "", words.lower())
+    return kept.strip().replace(" ", "-")
+
+
+def resolve(page: PurePosixPath, path: str) -> PurePosixPath | None:
+    """Where a relative path leads from a page, both from the top of the tree; None: out of it."""
+    parts: list[str] = []
+    for part in (page.parent / path).parts:
+        if part == "..":
+            if not parts:
+                return None
+            parts.pop()
+        elif part != ".":
+            parts.append(part)
+    return PurePosixPath(*parts)
