@@ -28,6 +28,7 @@ STAND_INS = {
 }
 PACKAGES = {
     "plot": ("wingcrack_post", True),
+    "view": ("wingcrack_view", False),
     "study": ("wingcrack_study", False),
     "new": ("wingcrack_scenes", True),
     "import": ("wingcrack_maps", True),
