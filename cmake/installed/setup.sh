@@ -14,7 +14,7 @@ needed_list=requirements.txt
 case ${1:-} in
     verify | bench | test | build | format | lint | docs)
         fail "$exit_usage" "$1 needs the folder of the sources; installed are run, check, plot," \
-            'new, import, network and study'
+            'view, new, import, network and study'
         ;;
 esac
 

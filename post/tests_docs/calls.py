@@ -28,6 +28,7 @@ STAND_INS = {
 }
 PACKAGES = {
     "plot": ("wingcrack_post", True),
+    "view": ("wingcrack_view", False),
     "study": ("wingcrack_study", False),
     "new": ("wingcrack_scenes", True),
     "import": ("wingcrack_maps", True),
@@ -97,6 +98,8 @@ def understand(words: list[str]) -> None:
     if command in PACKAGES:
         package, named = PACKAGES[command]
         arguments = [command, *rest] if named else rest
+        if command in ("new", "import", "network"):
+            arguments.append("--overwrite")  # pages make the same files
         import_module(f"{package}.arguments").parse(arguments)
         return
     for option in (word for word in rest if word.startswith("-")):

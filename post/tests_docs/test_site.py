@@ -132,7 +132,7 @@ def test_ford_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     (tmp_path / "fortran").mkdir()
     monkeypatch.setattr(fortran, "TOP", tmp_path)
     monkeypatch.setattr(fortran, "FORTRAN_PAGES", tmp_path / "pages")
-    monkeypatch.setattr(fortran.sys, "executable", "/bin/false")
+    monkeypatch.setattr("sys.executable", "/bin/false")
     with pytest.raises(PagesError, match="FORD failed: it gave no reason"):
         fortran.make_fortran_pages()
 
