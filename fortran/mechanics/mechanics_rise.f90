@@ -5,6 +5,7 @@ module mechanics_rise
    use base_timers, only: timers_t
    use base_tolerances, only: same_value
    use mechanics_onset, only: foreseen_onset, reading_t
+   use mechanics_programme, only: strongest
    use mechanics_state, only: loaded_body_t
    implicit none(type, external)
    private
@@ -33,7 +34,9 @@ contains
       has_onset = .false.
       if (.not. allocated(self%body%displacement)) then
          low%factor = self%factor
-         call self%adapt(merge(target, low%factor, abs(target) >= abs(low%factor)), timers, error)
+         call self%adapt(strongest(self%scene%load, merge(target, low%factor, &
+                                                          abs(target) >= abs(low%factor))), &
+                         timers, error)
          if (allocated(error)) return
          call self%respond(low%factor, timers, error)
          if (allocated(error)) return

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.proportional import control_of, drive_of
 from wingcrack_post.regions import Region, read_region
 from wingcrack_post.table import FloatArray
 
@@ -68,6 +69,11 @@ class Scene:
         Components xx and yy of the rock elsewhere [m2].
     breadth_m : float
         Assumed length of the fractures out of the plane [m].
+    control : str
+        How growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
+        without such growth.
+    drive : str
+        Whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''.
     """
 
     name: str
@@ -84,6 +90,8 @@ class Scene:
     regions: tuple[Region, ...] = ()
     permeability_m2: tuple[float, float] | None = None
     breadth_m: float = 1.0
+    control: str = ""
+    drive: str = ""
 
     def fracture(self, label: str) -> FractureLaw | None:
         """The law of a fracture known by its name or by its number from 1."""
@@ -170,6 +178,8 @@ def read_scene(path: Path) -> Scene | None:
         regions=_regions(path, groups, outline),
         permeability_m2=None if along_x is None or along_y is None else (along_x, along_y),
         breadth_m=number("output", "out_of_plane_length") or 1.0,
+        control=control_of(groups),
+        drive=drive_of(groups),
     )
 
 
