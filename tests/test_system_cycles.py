@@ -35,6 +35,7 @@ CLEAVED = """\
 &fracture name = 'crack', x = 0.0, 1.0, y = 0.0, 0.0, law = 'open' /
 &restraint x = 0.0, y = 0.5, y_displacement = 1.0e-3 /
 &restraint x = 0.0, y = -0.5, y_displacement = -1.0e-3, x_displacement = 0.0 /
+&restraint x = 4.0, y = 0.0, y_displacement = 0.0 /
 &load factors = 1.0 /
 &fe size_fracture = 0.1, size_boundary = 0.25 /
 &growth enabled = .true., increment = 0.1 /
@@ -286,16 +287,17 @@ def test_growth_that_does_not_end_is_the_end(tmp_path: Path) -> None:
         ("&restraint x = 0.0, y = 0.5, y_displacement = 1.0e-3 /", ""),
         ("y = -0.5, y_displacement = -1.0e-3, x_displacement = 0.0 /", "y = -0.5 X"),
         ("&restraint x = 0.0, y = -0.5 X", ""),
+        ("&restraint x = 4.0, y = 0.0, y_displacement = 0.0 /", ""),
         (
             "&load factors = 1.0 /",
             "&side name = 'right', x_displacement = 0.0, y_displacement = 0.0 /\n"
             "&point_load x = 0.0, y = 0.5, y_force = 1.0e5 /\n"
             "&point_load x = 0.0, y = -0.5, y_force = -1.0e5 /\n"
-            "&load factors = 0.1, -0.1, 1.0, 0.0 /",
+            "&load factors = 0.05, -0.05, 1.0, 0.0 /",
         ),
     )
     out = run(tmp_path, text)
-    assert numbers(out / "history.csv", "load_factor")[:2] == [0.1, -0.1]
+    assert numbers(out / "history.csv", "load_factor")[:2] == [0.05, -0.05]
     events = [row for row in rows(out / "events.csv") if row["kind"] == "unstable_growth"]
     assert events[0]["detail"] == "unstable growth begins"
     reason = str(record(out)["reason"])

@@ -13,6 +13,7 @@ module mechanics_simulation
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
    use mechanics_rise, only: rise
    use mechanics_state, only: loaded_body_t
+   use mechanics_turn, only: go_to_peak
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_bifurcation
    use results_rows, only: history_row_t, probe_row_t
@@ -91,7 +92,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. self%has_increment) then
-         self%bounds = self%programme%bounds()
+         call begin_piece(self)
          self%has_onset = .false.
          if (.not. self%owes_state) then
             call rise(self, self%programme%target(), self%has_onset, timers, error)
@@ -105,6 +106,16 @@ contains
       self%accepted_factor = self%factor
       call note_state(self)
    end subroutine next_state
+
+   !> Where the load has turned, tips may turn too, and its bounds are others.
+   subroutine begin_piece(self)
+      class(mechanics_simulation_t), intent(inout) :: self
+
+      associate (bounds => self%programme%bounds())
+         if (any(abs(bounds - self%bounds) > 0.0_rk)) call self%increment%end_paths()
+         self%bounds = bounds
+      end associate
+   end subroutine begin_piece
 
    !> Tips grow in equilibrium, else by the law of advances at one load.
    pure logical function is_equilibrium(self)
@@ -188,6 +199,7 @@ contains
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: limit  ! of the load [-]
 
       if (self%has_increment) then
          call note_increment(self)
@@ -202,7 +214,8 @@ contains
          call refuse_doubt(self, error)
          if (allocated(error)) return
          call self%dead_load%begin_increment(self)
-         call self%increment%take(self, self%bounds(2), timers, error)
+         call find_limit(self, limit, timers, error)
+         if (.not. allocated(error)) call self%increment%take(self, limit, timers, error)
          if (.not. allocated(error)) then
             call self%dead_load%end_increment(self, self%increment, timers, error)
          end if
@@ -225,6 +238,24 @@ contains
       end if
       if (allocated(self%ending)) call self%dead_load%stop_growth(self)
    end subroutine grow_in_equilibrium
+
+   !> Up to which factor more load drives the tips: the end of the programme's piece, or where it
+   !! has turned round, that of the largest K_eq.
+   subroutine find_limit(self, limit, timers, error)
+      class(mechanics_simulation_t), intent(inout) :: self
+      real(rk), intent(out) :: limit  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: begun
+
+      limit = self%bounds(2)
+      if (.not. self%turns) return
+      begun = self%factor
+      call self%accept()
+      call go_to_peak(self, limit, timers, error)
+      limit = self%factor
+      if (.not. allocated(error)) call self%respond(begun, timers, error)
+   end subroutine find_limit
 
    !> No tip grows whose intensities are not known.
    subroutine refuse_doubt(self, error)
