@@ -183,7 +183,10 @@ def test_the_loop_mirrored_and_in_other_units(loop: Path, tmp_path: Path) -> Non
         ("= 2.5", "= 2500.0"),
         ("20.0e6", "200.0e6"),
         ("young = 40.0e9", "young = 400.0e9"),
-        ("size_fracture = 0.01, size_boundary = 1.0", "size_fracture = 10.0, size_boundary = 1.0e3"),
+        (
+            "size_fracture = 0.01, size_boundary = 1.0",
+            "size_fracture = 10.0, size_boundary = 1.0e3",
+        ),
     )
     out = run(tmp_path, text, "large")
     for here, there in zip(intensities(loop), intensities(out), strict=True):

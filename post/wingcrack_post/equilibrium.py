@@ -14,6 +14,9 @@ Where all of the load is in proportion to f, the strain energy is U = f^2 C(a)/2
 
 which is the area between the path and the straight line f = f0 over the quantity q = 2 U/f = f C
 [J/m] that is conjugate to f: a displacement under forces, a force under grips.
+
+Where loads that no factor changes drive the tips, the solver lets them grow at one factor, with
+K_eq above K_IC. There G is known at each state from K, and E is its integral, by trapezoids.
 """
 
 from __future__ import annotations
@@ -49,7 +52,8 @@ class Release:
     length_m : float
         Grown between [m].
     energy_j_m : float or None
-        E set free, per metre of thickness [J/m]; None where the load is not in proportion to f.
+        E set free, per metre of thickness [J/m]; None where the load is not in proportion to f and
+        the states are not at f0.
     """
 
     first: int
@@ -117,6 +121,8 @@ def equilibrium_path(run: Run) -> EquilibriumPath:
     energy = history.number("strain_energy_j")[states] if in_proportion else None
     compliance = None if energy is None else 2.0 * energy / factor**2
     releases = find_releases(way * factor, length, compliance)
+    releases += _at_one_factor(run, int(grown[0]), way * factor, length, releases)
+    releases.sort(key=lambda one: one.first)
     unstable = np.zeros(factor.size - 1, dtype=np.bool_)
     for release in releases:
         unstable[release.first : release.last] = True
@@ -130,6 +136,56 @@ def equilibrium_path(run: Run) -> EquilibriumPath:
         unstable=unstable,
         releases=tuple(replace(one, factor=way * one.factor) for one in releases),
     )
+
+
+def _at_one_factor(
+    run: Run, begun: int, factor: FloatArray, length_m: FloatArray, known: list[Release]
+) -> list[Release]:
+    """Find growth at the same factor that is not known yet; the path's first row is `begun`."""
+    taken = {piece for one in known for piece in range(one.first, one.last)}
+    found: list[Release] = []
+    first = 0
+    while first < factor.size - 1:
+        last = first
+        while last < factor.size - 1 and last not in taken and factor[last + 1] == factor[first]:
+            last += 1
+        if length_m[last] > length_m[first] * (1.0 + _LONGER):
+            found.append(
+                Release(
+                    first=first,
+                    last=last,
+                    factor=float(factor[first]),
+                    share=1.0,
+                    arrests=last < factor.size - 1,
+                    length_m=float(length_m[last] - length_m[first]),
+                    energy_j_m=surplus_of_tips(run, begun + first + 1, begun + last + 1),
+                )
+            )
+        first = max(last, first + 1)
+    return found
+
+
+def surplus_of_tips(run: Run, first: int, last: int) -> float | None:
+    """Integral of G - G_c over the growth between two rows of history.csv, from 1 [J/m].
+
+    None where intensities or toughness are not known.
+    """
+    tips, scene = run.tips, run.scene
+    names = ("history_row", "tip", "fracture", "keq_pa_sqrtm", "g_j_m2", "advance_m")
+    if tips is None or scene is None or not scene.toughness_pa_sqrtm or not tips.has(*names):
+        return None
+    row, tip, fracture, intensity, rate, advance = (tips.number(name) for name in names)
+    energy = 0.0
+    for at in np.flatnonzero((row > first) & (row <= last) & (advance > 0.0)):
+        own = scene.fractures[int(fracture[at]) - 1].toughness_pa_sqrtm
+        toughness = own or scene.toughness_pa_sqrtm
+        if not intensity[at] > 0.0:
+            return None
+        needed = rate[at] * (toughness / intensity[at]) ** 2  # G goes with the square of K
+        before = np.flatnonzero((row == row[at] - 1) & (tip == tip[at]))
+        rates = [rate[at], rate[before[0]] if before.size else rate[at]]
+        energy += float((np.mean(rates) - needed) * advance[at])
+    return energy
 
 
 def find_releases(

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from wingcrack_post import style
 from wingcrack_post.equilibrium import EquilibriumPath, Release, equilibrium_path
+from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import LOAD_LABEL
 from wingcrack_post.read import Run
 from wingcrack_post.scales import run_length_unit
-from wingcrack_post.table import FloatArray
+from wingcrack_post.table import BoolArray, FloatArray
 from wingcrack_post.units import displacement_unit
 
 AGAINST = ("length", "opening", "conjugate")
 
 _STABLE, _UNSTABLE, _RELEASED = style.CYCLE[0], style.CYCLE[1], style.CYCLE[5]
+_HELD: dict[str, Any] = {"color": "#555555", "linestyle": ":", "linewidth": 0.9}
 _SHEAR = 1.0e-3  # share of the slip below which opening says nothing
 
 
@@ -51,8 +55,6 @@ def draw_equilibrium(axes: Axes, run: Run, against: str = "length") -> None:
         If the run is not one in length control, nothing has grown, or 'conjugate' is wanted of a
         load that is not in proportion to its factor.
     """
-    from wingcrack_post.errors import AbsentError
-
     path = equilibrium_path(run)
     if against == "conjugate" and path.conjugate_j_m is None:
         raise AbsentError("not all of the load is in proportion to its factor")
@@ -65,7 +67,16 @@ def draw_equilibrium(axes: Axes, run: Run, against: str = "length") -> None:
         if x.size:
             axes.plot(x, y, color=colour, linestyle=dashes, marker=".", markersize=2, label=name)
     for release in path.releases:
-        _draw_release(axes, path, abscissa, release, is_area=against == "conjugate")
+        _draw_release(
+            axes,
+            path,
+            abscissa,
+            release,
+            is_area=against == "conjugate",
+            is_told=against == ("length" if path.conjugate_j_m is None else "conjugate"),
+        )
+    if path.releases:
+        axes.plot([], [], label="a load that stays", **_HELD)
     axes.set_title(title)
     axes.set_xlabel(label)
     axes.set_ylabel(LOAD_LABEL)
@@ -88,7 +99,7 @@ def _abscissa(run: Run, path: EquilibriumPath, against: str) -> tuple[FloatArray
     raise ValueError(f"against must be one of {', '.join(AGAINST)}, not {against!r}")
 
 
-def _pieces(x: FloatArray, y: FloatArray, wanted: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _pieces(x: FloatArray, y: FloatArray, wanted: BoolArray) -> tuple[FloatArray, FloatArray]:
     """The wanted pieces of a line, with gaps between them."""
     ends = np.flatnonzero(wanted)
     gaps = np.full(ends.size, np.nan)
@@ -99,9 +110,15 @@ def _pieces(x: FloatArray, y: FloatArray, wanted: FloatArray) -> tuple[FloatArra
 
 
 def _draw_release(
-    axes: Axes, path: EquilibriumPath, abscissa: FloatArray, release: Release, *, is_area: bool
+    axes: Axes,
+    path: EquilibriumPath,
+    abscissa: FloatArray,
+    release: Release,
+    *,
+    is_area: bool,
+    is_told: bool,
 ) -> None:
-    """Draw the way of a load that stays, and in the plane of work the energy between."""
+    """Draw the way of a load that stays, with the energy, in the plane of work as an area."""
     along = np.array([*range(release.first, release.last), release.last - 1 + release.share])
     places = np.arange(abscissa.size)
     x, y = np.interp(along, places, abscissa), np.interp(along, places, path.factor)
@@ -111,18 +128,19 @@ def _draw_release(
         axes.fill(
             [*x, end], [*y, release.factor], color=_RELEASED, alpha=0.35, linewidth=0, zorder=0.5
         )
-        axes.annotate(
-            f"{release.energy_j_m:.3g} J/m",
-            (0.5 * (x[0] + end), release.factor),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=7,
-        )
     else:
         end = x[-1]
-    axes.plot([x[0], end], [release.factor] * 2, color="#555555", linestyle=":", linewidth=0.9)
+    if is_told and release.energy_j_m is not None:
+        axes.annotate(
+            f"{release.energy_j_m:.3g} J/m",
+            (0.5 * (x[0] + end) if is_area else end, release.factor),
+            xytext=(0, 3) if is_area else (5, -2),
+            textcoords="offset points",
+            ha="center" if is_area else "left",
+            va="bottom" if is_area else "top",
+            fontsize=7,
+        )
+    axes.plot([x[0], end], [release.factor] * 2, **_HELD)
     axes.plot([x[0]], [release.factor], color=_UNSTABLE, marker="o", markersize=3, linestyle="")
     if release.arrests:
         axes.plot([end], [release.factor], color=_STABLE, marker="s", markersize=3, linestyle="")

@@ -24,6 +24,7 @@ class FractureLaw:
 
     name: str
     friction: float | None  # mu_s [-]
+    toughness_pa_sqrtm: float | None = None  # its own [Pa m^1/2]
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,11 @@ def read_scene(path: Path) -> Scene | None:
         return _number(path, group, first.get(group, {}), key)
 
     laws = [
-        FractureLaw(_text(values, "name"), _number(path, group, values, "friction"))
+        FractureLaw(
+            _text(values, "name"),
+            _number(path, group, values, "friction"),
+            _number(path, group, values, "toughness"),
+        )
         for group, values in groups
         if group == "fracture"
     ]
