@@ -2,6 +2,7 @@
 !! in equal steps. A load that goes straight from one factor to another one has a single piece.
 module mechanics_programme
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use base_tolerances, only: same_value
    use scene_types, only: load_t
    implicit none(type, external)
@@ -21,6 +22,7 @@ module mechanics_programme
       procedure :: go_on
       procedure :: is_over
       procedure :: share_done
+      procedure :: not_reached
    end type programme_t
 
 contains
@@ -98,6 +100,19 @@ contains
 
       is_over = self%piece >= size(self%ends, kind=ik)
    end function is_over
+
+   !> What is told of the factors of a table that the load has not come to; else nothing.
+   pure function not_reached(self) result(words)
+      class(programme_t), intent(in) :: self
+      character(len=:), allocatable :: words
+      integer(ik) :: left
+
+      words = ""
+      left = size(self%ends, kind=ik) - self%piece
+      if (size(self%ends) <= 2 .or. left < 1) return
+      words = ", and "//integer_text(left)//" of the scene's load factors are not reached"
+      if (left == 1) words = ", and the scene's last load factor is not reached"
+   end function not_reached
 
    !> The share of the pieces that a state at a factor has behind it [-].
    pure real(rk) function share_done(self, factor) result(share)

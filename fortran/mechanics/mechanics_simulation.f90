@@ -171,7 +171,7 @@ contains
       if (self%has_onset) then
          call self%grow_tips(any_grew, timers, error)
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"
+            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
          end if
          if (allocated(error)) return
@@ -220,7 +220,7 @@ contains
             call self%dead_load%end_increment(self, self%increment, timers, error)
          end if
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"
+            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
             call self%note_growth()
             call self%note_mesh(self%body%mesh)

@@ -23,6 +23,7 @@ contains
 
       call programme%begin(load_t(from=1.0_rk, to=3.0_rk, steps=4_ik))
       call at(programme, 1.5_rk, [1.0_rk, 3.0_rk], 0.0_rk, 1.0_rk, "first step")
+      call checks%is_true(programme%not_reached() == "", "straight: no table, no words")
       call programme%go_on(1.5_rk)
       call at(programme, 2.0_rk, [1.0_rk, 3.0_rk], 0.25_rk, 1.5_rk, "second step")
       call programme%go_on(2.7_rk)
@@ -47,11 +48,16 @@ contains
       call at(programme, 1.0_rk, [0.0_rk, 1.0_rk], 0.125_rk, 0.5_rk, "up, second step")
       call programme%go_on(1.0_rk)
       call at(programme, 0.7_rk, [1.0_rk, 0.4_rk], 0.25_rk, 1.0_rk, "down")
+      call checks%is_true(programme%not_reached() == ", and 3 of the scene's load factors are "// &
+                          "not reached", "cycle: what is left")
       call programme%go_on(0.4_rk)
       call at(programme, 0.8_rk, [0.0_rk, 1.2_rk], 0.5_rk, 0.4_rk, "up again")
       call programme%go_on(1.2_rk)
       call at(programme, 0.35_rk, [1.2_rk, -0.5_rk], 0.75_rk, 1.2_rk, "down again")
+      call checks%is_true(programme%not_reached() == ", and the scene's last load factor is "// &
+                          "not reached", "cycle: the last one is left")
       call programme%go_on(-0.5_rk)
+      call checks%is_true(programme%not_reached() == "", "cycle: nothing is left")
       call checks%is_true(programme%is_over(), "cycle: over")
    end subroutine check_cycle
 
