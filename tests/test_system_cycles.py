@@ -311,10 +311,7 @@ def test_growth_that_does_not_end_is_the_end(tmp_path: Path) -> None:
 
 
 def test_wings_grow_while_the_load_falls(tmp_path: Path) -> None:
-    """Locked-in slip holds wings open that the load has pressed: they grow until it slips back.
-
-    That is where friction on the flaw has turned round; the mesh does not know of it.
-    """
+    """The flaw keeps its slip at first, and the wings feel less pressure: they grow meanwhile."""
     out = run(tmp_path, changed(WINGS, ("1.0, 0.1, 1.2, 0.1, 1.4, 0.0", "0.7, 0.1, 0.7")))
     table = rows(out / "history.csv")
     factors = [float(row["load_factor"]) for row in table]
@@ -326,8 +323,9 @@ def test_wings_grow_while_the_load_falls(tmp_path: Path) -> None:
     falls = [factors[at] for at in range(top, bottom) if lengths[at + 1] > lengths[at]]
     stuck = [row for row in table[top + 1 : bottom] if row["n_slip"] == "0"]
     assert min(falls) > factors[bottom]
-    assert len(stuck) >= 2
-    assert {row["max_slip_m"][:9] for row in stuck} == {table[top]["max_slip_m"][:9]}
+    assert stuck
+    for row in stuck:
+        assert float(row["max_slip_m"]) == pytest.approx(float(table[top]["max_slip_m"]), rel=1e-9)
     toughness = 1.0e6
     for tip in rows(out / "tips.csv"):
         assert float(tip["keq_pa_sqrtm"]) < 1.005 * toughness
