@@ -10,6 +10,9 @@ from pathlib import Path
 import pytest
 from system_scene import TOP, numbers, record, rows, run
 
+from wingcrack_post import read_run
+from wingcrack_post.equilibrium import equilibrium_path
+
 pytestmark = pytest.mark.usefixtures("program")
 
 CASE = TOP / "verification/length_control"
@@ -88,6 +91,28 @@ def test_a_dead_load_releases_energy(tmp_path: Path) -> None:
     exact = 0.1 / 3 * (surplus[0] + 4 * surplus[1] + surplus[2])
     exact += 0.3 / 8 * (surplus[2] + 3 * surplus[3] + 3 * surplus[4] + surplus[5])
     assert float(found.group(2)) == pytest.approx(exact, rel=0.02)
+
+
+def test_the_area_beside_the_path_is_what_a_dead_load_releases(tmp_path: Path) -> None:
+    """Three ways: compliances of length control, G of a dead load, and the closed form."""
+    text = changed(BEND, ("increment = 0.1", "increment = 0.025"))
+    path = equilibrium_path(read_run(run(tmp_path, text, "length")))
+    (release,) = path.releases
+    assert path.unstable.all()
+    assert path.under_forces
+    assert not release.arrests
+    assert release.length_m == pytest.approx(0.5)
+    assert release.energy_j_m is not None
+    dead = run(tmp_path, f"{text}\n&load control = 'dead' /\n", "dead")
+    *_, last = (row for row in rows(dead / "events.csv") if row["kind"] == "unstable_growth")
+    told = re.search(r"([0-9.e+-]+) J/m released", last["detail"])
+    assert told is not None
+    assert release.energy_j_m == pytest.approx(float(told.group(1)), rel=0.01)
+    new_faces = 1.0e12 * (1 - 0.3**2) / 10.0e9
+    surplus = [new_faces * ((k / BENDING[0]) ** 2 - 1) for k in BENDING]
+    exact = 0.1 / 3 * (surplus[0] + 4 * surplus[1] + surplus[2])
+    exact += 0.3 / 8 * (surplus[2] + 3 * surplus[3] + 3 * surplus[4] + surplus[5])
+    assert release.energy_j_m == pytest.approx(exact, rel=0.01)
 
 
 def test_equal_cracks_go_together(tmp_path: Path) -> None:

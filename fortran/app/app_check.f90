@@ -39,6 +39,11 @@ contains
                trim(merge("about", "     ", scene%time%tolerance > 0.0_rk))//" ", &
                int(estimate%steps, lk), trim(merge(" chosen steps ", " regular steps", &
                                                    scene%time%tolerance > 0.0_rk))
+         else if (allocated(scene%load%factors)) then
+            write (unit, "(a,i0,2(a,es10.3),a,i0,a)") "load factors: ", &
+               size(scene%load%factors), " in turn between", minval(scene%load%factors), &
+               " and", maxval(scene%load%factors), ", ", scene%load%steps, " steps to each"
+            write (unit, "(a)") "left out:     pressure, flow, coarse level"
          else
             write (unit, "(2(a,es10.3),a,i0,a)") "load factor: ", scene%load%from, " to", &
                scene%load%to, " in ", scene%load%steps, " steps"

@@ -53,6 +53,9 @@ contains
       end if
       estimate%cells = anint(number_of_cells(scene, length))
       estimate%steps = real(scene%load%steps, rk)
+      if (allocated(scene%load%factors)) then
+         estimate%steps = estimate%steps*real(size(scene%load%factors), rk)
+      end if
       estimate%unknowns = 4.0_rk*estimate%cells  ! two for each node of six-node triangles
       written = estimate%steps
       touching_cells = 0.0_rk

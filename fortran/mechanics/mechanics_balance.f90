@@ -53,7 +53,7 @@ contains
             low = next
             has_low = .true.
          else
-            if (is_at(self%scene%load%from)) then
+            if (is_at(self%bounds(1))) then
                call self%respond(started, timers, error)
                if (allocated(error)) return
                is_loose = self%largest_excess() >= 0.0_rk
@@ -90,13 +90,13 @@ contains
             factor = next%factor + (next%factor - last%factor)*extrapolation(last, next)
          else if (has_low) then
             factor = self%factor + 2.0_rk*(self%factor - started)
-            if (.not. (factor - self%factor)*(limit - self%scene%load%from) > 0.0_rk &
+            if (.not. (factor - self%factor)*(limit - self%bounds(1)) > 0.0_rk &
                 .or. k > 2*guesses) factor = limit
          else  ! in steps: K may rise again where the load has fallen far
-            factor = self%scene%load%from + 0.7_rk*(self%factor - self%scene%load%from)
-            if (k > 10*guesses) factor = self%scene%load%from
+            factor = self%bounds(1) + 0.7_rk*(self%factor - self%bounds(1))
+            if (k > 10*guesses) factor = self%bounds(1)
          end if
-         factor = within(factor, self%scene%load%from, limit)
+         factor = within(factor, self%bounds(1), limit)
          last = next
          k_last = self%tip%drive%intensity
          call self%respond(factor, timers, error)
@@ -110,7 +110,7 @@ contains
       pure logical function is_at(place)
          real(rk), intent(in) :: place  !< a factor [-]
 
-         is_at = abs(self%factor - place) <= same_value*abs(limit - self%scene%load%from)
+         is_at = abs(self%factor - place) <= same_value*abs(limit - self%bounds(1))
       end function is_at
 
       !> How many times the last change of the factor again, for the excess to vanish.

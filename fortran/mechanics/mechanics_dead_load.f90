@@ -57,7 +57,7 @@ contains
       if (.not. increment%has_grown) return
       associate (load => body%scene%load)
          borne = body%factor
-         bears_less = (body%factor - self%factor)*(load%to - load%from) < 0.0_rk
+         bears_less = (body%factor - self%factor)*(body%bounds(2) - body%bounds(1)) < 0.0_rk
          if (increment%is_loose .or. (load%control == "dead" .and. bears_less)) then
             if (.not. self%is_unstable) then
                call body%chronicle%add_event(self%factor, event_unstable, "unstable growth begins")

@@ -52,6 +52,7 @@ module mechanics_equilibrium
       real(rk), allocatable, private :: pace(:)  !< (tips) the last advance over the largest [-]
    contains
       procedure :: take
+      procedure :: end_paths
    end type increment_t
 
 contains
@@ -95,6 +96,14 @@ contains
          self%known_since = self%known_since + maxval(body%tip%advance)/body%rules%increment
       end if
    end subroutine take
+
+   !> Tips that have not come to the ends of their pieces need not go on straight.
+   pure subroutine end_paths(self)
+      class(increment_t), intent(inout) :: self
+
+      if (allocated(self%tries%segment)) self%tries%segment%is_open = .false.
+      if (allocated(self%known_group)) deallocate (self%known_group)
+   end subroutine end_paths
 
    !> Let the tips at their toughness go along pieces of the present length.
    subroutine try_pieces(self, body, limit, group, timers, error)

@@ -45,7 +45,7 @@ contains
       lack = needed_intensity(body) - body%tip(grown)%drive%intensity
       if (size(grown) == 0) return
       if (maxval(lack) <= tolerance*body%rules%toughness) return
-      way = sign(1.0_rk, limit - body%scene%load%from)
+      way = sign(1.0_rk, limit - body%bounds(1))
       rate = way*slope
       if (any(lack > allowed .and. .not. rate(grown) > 0.0_rk)) return
       rise = maxval((lack - allowed)/rate(grown), mask=lack > allowed)

@@ -5,7 +5,9 @@ module mechanics_rise
    use base_timers, only: timers_t
    use base_tolerances, only: same_value
    use mechanics_onset, only: foreseen_onset, reading_t
+   use mechanics_programme, only: strongest
    use mechanics_state, only: loaded_body_t
+   use mechanics_turn, only: go_to_peak, leave_turn
    implicit none(type, external)
    private
 
@@ -33,7 +35,9 @@ contains
       has_onset = .false.
       if (.not. allocated(self%body%displacement)) then
          low%factor = self%factor
-         call self%adapt(merge(target, low%factor, abs(target) >= abs(low%factor)), timers, error)
+         call self%adapt(strongest(self%scene%load, merge(target, low%factor, &
+                                                          abs(target) >= abs(low%factor))), &
+                         timers, error)
          if (allocated(error)) return
          call self%respond(low%factor, timers, error)
          if (allocated(error)) return
@@ -46,6 +50,10 @@ contains
          return
       end if
       has_onset = self%largest_excess() >= -same_value
+      if (has_onset .and. self%turns) then
+         call leave_turn(self, target, has_onset, timers, error)
+         if (allocated(error) .or. self%largest_excess() >= -same_value) return
+      end if
       if (has_onset) return
       low = self%reading()
       onset = proportional_onset(self)
@@ -59,12 +67,30 @@ contains
       if (.not. self%largest_excess() >= 0.0_rk) then
          call self%respond(target, timers, error)
          if (allocated(error)) return
+         if (self%largest_excess() < -same_value .and. self%turns) then
+            call look_between(self, low%factor, target, timers, error)
+            if (allocated(error)) return
+         end if
          if (self%largest_excess() < -same_value) return
       end if
       has_onset = .true.
       high = self%reading()
       call find_onset(self, low, high, timers, error)
    end subroutine rise
+
+   !> Take the load back from a target, where no tip grows, to where one does since K_eq is largest
+   !! on the way; if there is such a place.
+   subroutine look_between(self, begun, target, timers, error)
+      class(loaded_body_t), intent(inout) :: self
+      real(rk), intent(in) :: begun, target  !< factors [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%respond(begun, timers, error)
+      if (.not. allocated(error)) call go_to_peak(self, target, timers, error)
+      if (allocated(error)) return
+      if (self%largest_excess() < -same_value) call self%respond(target, timers, error)
+   end subroutine look_between
 
    !> The load between one at which no tip grows and one at which some do, the present one.
    subroutine find_onset(self, low, high, timers, error)

@@ -1,22 +1,23 @@
-!> A scene without a fluid in progress: the load rises or falls in steps, and from one onset of
-!! growth to the next.
+!> A scene without a fluid in progress: the load follows its programme in steps, and from one onset
+!! of growth to the next.
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
-   use base_tolerances, only: same_value
    use mechanics_dead_load, only: dead_load_t
    use mechanics_equilibrium, only: increment_t
    use mechanics_misfit, only: together
    use mechanics_limits, only: watch_body
+   use mechanics_programme, only: programme_t
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
    use mechanics_rise, only: rise
    use mechanics_state, only: loaded_body_t
+   use mechanics_turn, only: go_to_peak
    use mesh_types, only: mesh_t, network_t
    use results_chronicle, only: event_bifurcation
    use results_rows, only: history_row_t, probe_row_t
-   use scene_types, only: load_t, scene_t
+   use scene_types, only: scene_t
    use simulation_doubt, only: doubtful, stop_on_doubt
    use simulation_types, only: snapshot_t
    implicit none(type, external)
@@ -26,7 +27,7 @@ module mechanics_simulation
 
    !> The scene, and where its load programme stands.
    type, extends(loaded_body_t) :: mechanics_simulation_t
-      integer(ik) :: step = 1  !< of the programme, in which the load changes
+      type(programme_t) :: programme
       logical :: has_onset = .false.  !< growth has stopped the load
       real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
       logical :: has_increment = .false.  !< of growth in equilibrium: the next state is found
@@ -47,6 +48,7 @@ module mechanics_simulation
       procedure :: snapshot
       procedure :: time
       procedure :: last_state
+      procedure :: share_of_way
    end type mechanics_simulation_t
 
 contains
@@ -61,6 +63,7 @@ contains
       self%start_time = scene%load%from
       self%end_time = scene%load%to
       self%accepted_factor = scene%load%from
+      call self%programme%begin(scene%load)
       call self%mesh_body(scene, timers, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
@@ -89,10 +92,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. self%has_increment) then
-         if (is_equilibrium(self)) self%step = next_step(self%scene%load, self%factor)
+         call begin_piece(self)
          self%has_onset = .false.
          if (.not. self%owes_state) then
-            call rise(self, step_end(self%scene%load, self%step), self%has_onset, timers, error)
+            call rise(self, self%programme%target(), self%has_onset, timers, error)
          end if
          if (allocated(error)) return
       end if
@@ -104,31 +107,22 @@ contains
       call note_state(self)
    end subroutine next_state
 
+   !> Where the load has turned, tips may turn too, and its bounds are others.
+   subroutine begin_piece(self)
+      class(mechanics_simulation_t), intent(inout) :: self
+
+      associate (bounds => self%programme%bounds())
+         if (any(abs(bounds - self%bounds) > 0.0_rk)) call self%increment%end_paths()
+         self%bounds = bounds
+      end associate
+   end subroutine begin_piece
+
    !> Tips grow in equilibrium, else by the law of advances at one load.
    pure logical function is_equilibrium(self)
       class(mechanics_simulation_t), intent(in) :: self
 
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
-
-   !> The factor at the end of a step of the programme [-].
-   pure real(rk) function step_end(load, step)
-      type(load_t), intent(in) :: load
-      integer(ik), intent(in) :: step
-
-      step_end = load%from + (load%to - load%from)*real(step, rk)/real(load%steps, rk)
-      if (step >= load%steps) step_end = load%to
-   end function step_end
-
-   !> The first step of the programme that ends beyond a factor; one after the last where none does.
-   pure integer(ik) function next_step(load, factor) result(step)
-      type(load_t), intent(in) :: load
-      real(rk), intent(in) :: factor  !< [-]
-
-      do step = 1, load%steps
-         if ((step_end(load, step) - factor)/(load%to - load%from) > same_value) return
-      end do
-   end function next_step
 
    !> An accepted state: contact, the run's largest values, the fields to fall back on.
    subroutine note_state(self)
@@ -177,15 +171,15 @@ contains
       if (self%has_onset) then
          call self%grow_tips(any_grew, timers, error)
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"
+            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
          end if
          if (allocated(error)) return
       else
          self%tip%advance = 0.0_rk
          if (.not. self%owes_state) then
-            self%step = self%step + 1
-            if (self%step > self%scene%load%steps) self%ending = "the scene's last load factor"
+            call self%programme%go_on(self%factor)
+            if (self%programme%is_over()) self%ending = "the scene's last load factor"
          end if
          self%owes_state = .false.
       end if
@@ -205,6 +199,7 @@ contains
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: limit  ! of the load [-]
 
       if (self%has_increment) then
          call note_increment(self)
@@ -219,12 +214,13 @@ contains
          call refuse_doubt(self, error)
          if (allocated(error)) return
          call self%dead_load%begin_increment(self)
-         call self%increment%take(self, self%scene%load%to, timers, error)
+         call find_limit(self, limit, timers, error)
+         if (.not. allocated(error)) call self%increment%take(self, limit, timers, error)
          if (.not. allocated(error)) then
             call self%dead_load%end_increment(self, self%increment, timers, error)
          end if
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"
+            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
             call self%note_growth()
             call self%note_mesh(self%body%mesh)
@@ -236,12 +232,30 @@ contains
          self%has_increment = self%increment%has_grown .and. .not. self%is_cut
          self%has_onset = self%increment%holds
       end if
-      if (.not. self%has_increment .and. &
-          next_step(self%scene%load, self%factor) > self%scene%load%steps) then
-         if (.not. allocated(self%ending)) self%ending = "the scene's last load factor"
+      if (.not. (self%has_increment .or. allocated(self%ending))) then
+         call self%programme%go_on(self%factor)
+         if (self%programme%is_over()) self%ending = "the scene's last load factor"
       end if
       if (allocated(self%ending)) call self%dead_load%stop_growth(self)
    end subroutine grow_in_equilibrium
+
+   !> Up to which factor more load drives the tips: the end of the programme's piece, or where it
+   !! has turned round, that of the largest K_eq.
+   subroutine find_limit(self, limit, timers, error)
+      class(mechanics_simulation_t), intent(inout) :: self
+      real(rk), intent(out) :: limit  !< [-]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: begun
+
+      limit = self%bounds(2)
+      if (.not. self%turns) return
+      begun = self%factor
+      call self%accept()
+      call go_to_peak(self, limit, timers, error)
+      limit = self%factor
+      if (.not. allocated(error)) call self%respond(begun, timers, error)
+   end subroutine find_limit
 
    !> No tip grows whose intensities are not known.
    subroutine refuse_doubt(self, error)
@@ -343,6 +357,13 @@ contains
 
       time = self%accepted_factor
    end function time
+
+   !> How much of the load's programme is done [-].
+   pure real(rk) function share_of_way(self) result(share)
+      class(mechanics_simulation_t), intent(in) :: self
+
+      share = self%programme%share_done(self%accepted_factor)
+   end function share_of_way
 
    !> The last accepted load factor.
    pure function last_state(self) result(words)

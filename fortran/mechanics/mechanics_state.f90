@@ -39,6 +39,9 @@ module mechanics_state
       !> Meshes of trials are made from the one that the body has remembered, whatever they change.
       logical :: is_trying = .false.
       real(rk) :: factor = 0.0_rk  !< of the load [-]
+      !> Between which factors a load that the network bears is looked for, in the order of its way
+      real(rk) :: bounds(2) = 0.0_rk  ! [-]
+      logical :: turns = .false.  !< the load goes to and fro
       real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
       procedure :: mesh_body
@@ -64,6 +67,8 @@ contains
 
       call self%set_scene(scene)
       self%factor = scene%load%from
+      self%bounds = [scene%load%from, scene%load%to]
+      if (allocated(scene%load%factors)) self%turns = size(scene%load%factors) > 1
       self%start = network_of_scene(scene)
       self%network = self%start
       outline = outline_of_scene(scene)

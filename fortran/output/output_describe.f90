@@ -139,7 +139,8 @@ contains
                     "history.csv. In matrix.pvd and the others, times rise from file to file, "// &
                     "as ParaView needs it: states with the same load factor are told apart in "// &
                     "the last digit, and those of a falling load stand in the order of their "// &
-                    "load factor.", matrix_fields)
+                    "load factor; with `factors` of `&load` history_row stands there.", &
+                    matrix_fields)
       call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
                     "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
                     "`state_names` the words of states 0, 1 and 2.", fracture_fields)

@@ -30,6 +30,7 @@ module output_snapshots
       type(material_t), private :: material
       type(text_t), allocatable, private :: names(:)  !< of the fractures
       type(collection_t), private :: collections(3)
+      logical, private :: counts = .false.  !< in these stand rows of the history, and not times
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
@@ -47,6 +48,7 @@ contains
       integer :: i
 
       self%directory = directory
+      self%counts = allocated(scene%load%factors)
       self%material = scene%material
       allocate (self%names(0))
       if (allocated(scene%fractures)) then
@@ -57,7 +59,8 @@ contains
       call remove_earlier(directory)
       do i = 1, 3
          call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
-                                       is_falling=scene%load%to < scene%load%from)
+                                       is_falling=scene%load%to < scene%load%from .and. &
+                                       .not. self%counts)
       end do
       if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
    end subroutine open_snapshots
@@ -110,11 +113,14 @@ contains
       type(vtu_grid_t), intent(inout) :: grid
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: file
+      real(rk) :: listed
 
+      listed = time
+      if (self%counts) listed = real(history_row, rk)
       call grid%set_history_row(history_row)
       file = file_name(i, self%n_written)
       call grid%write(self%directory//"/"//file, error)
-      if (.not. allocated(error)) call self%collections(i)%add(time, file)
+      if (.not. allocated(error)) call self%collections(i)%add(listed, file)
    end subroutine write_one
 
    subroutine fill_matrix(grid, time, mesh, fields, material)

@@ -4,7 +4,7 @@ module scene_check_mechanics
    use base_kinds, only: rk
    use scene_sheet, only: refuse, sheet_t
    use scene_sides, only: boundary_side_t
-   use scene_types, only: boundary_part_t, scene_t
+   use scene_types, only: boundary_part_t, load_t, scene_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
@@ -135,12 +135,43 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       associate (load => scene%load)
+         if (allocated(load%factors)) then
+            call check_cycle(sheet, load, error)
+            return
+         end if
          if (abs(load%to - load%from) > 0.0_rk) return
          call refuse(error, sheet, sheet%find("load"), "to", "is "//real_text(load%to)// &
                      " but must differ from from, "//real_text(load%from)// &
                      ", or the load would not change")
       end associate
    end subroutine check_load
+
+   !> The load goes from each factor of a cycle to another one, and growth leaves it there.
+   pure subroutine check_cycle(sheet, load, error)
+      type(sheet_t), intent(in) :: sheet
+      type(load_t), intent(in) :: load  !< with factors
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      record = sheet%find("load")
+      if (sheet%records(record)%is_given("to")) then
+         call refuse(error, sheet, record, "to", "is given beside factors, whose last it would "// &
+                     "be, but must not be")
+      else if (load%control == "length") then
+         call refuse(error, sheet, record, "control", "is 'length' but must be 'dead' with "// &
+                     "factors, between which growth would take the load elsewhere")
+      else if (size(load%factors) == 1 .and. .not. abs(load%factors(1) - load%from) > 0.0_rk) then
+         call refuse(error, sheet, record, "factors", "is "//real_text(load%from)//" but must "// &
+                     "differ from from, or the load would not change")
+      end if
+      if (allocated(error)) return
+      do i = 2, size(load%factors)
+         if (abs(load%factors(i) - load%factors(i - 1)) > 0.0_rk) cycle
+         call refuse(error, sheet, record, "factors", "has "//real_text(load%factors(i))// &
+                     " twice in a row, but each factor must differ from the one before it")
+         return
+      end do
+   end subroutine check_cycle
 
    !> Gravity has a density, and an in-situ stress that changes with y carries the weight.
    pure subroutine check_weight(sheet, scene, error)

@@ -22,6 +22,10 @@ contains
          scene%time%end = 1.0_rk
          scene%time%step = 1.0_rk/real(scene%load%steps, rk)
       end if
+      associate (load => scene%load)
+         if (allocated(load%factors)) load%to = load%factors(size(load%factors))
+         if (load%control == "") load%control = merge("dead  ", "length", allocated(load%factors))
+      end associate
       call choose_steps(scene)
       if (scene%has_fluid() .and. .not. scene%fluid%vapour_pressure > -huge(1.0_rk)) then
          if (is_pressed(scene)) scene%fluid%vapour_pressure = 0.0_rk

@@ -246,7 +246,12 @@ contains
          call exchange(record, "y", scene%gravity(2), reading)
       case ("load")
          call exchange(record, "from", scene%load%from, reading)
-         call exchange(record, "to", scene%load%to, reading)
+         if (reading .or. .not. allocated(scene%load%factors)) then
+            call exchange(record, "to", scene%load%to, reading)
+         end if
+         if (reading .or. allocated(scene%load%factors)) then
+            call exchange(record, "factors", scene%load%factors, reading)
+         end if
          call exchange(record, "steps", scene%load%steps, reading)
          call exchange(record, "control", scene%load%control, reading)
       case ("coarse", "fe", "fine")

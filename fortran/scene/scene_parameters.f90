@@ -92,9 +92,10 @@ module scene_parameters
       group_t("load", implied=.true., scenes=in_mechanics, &
               meaning="How the load changes: tractions, point loads and displacements are "// &
               "those of the scene times a factor, which rises, or falls where to is less than "// &
-              "from; the first state, at from, is reached from nothing. Faces keep what they "// &
-             "have slipped until friction lets them slip back. With growth the factor at which "// &
-              "the next tip grows is found, and never stepped over."), &
+              "from, or goes to and fro between factors; the first state, at from, is reached "// &
+              "from nothing. Faces keep what they have slipped until friction lets them slip "// &
+              "back, and cracks do not heal. With growth the factor at which the next tip "// &
+              "grows is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
               "quarter-point elements around the fracture tips."), &

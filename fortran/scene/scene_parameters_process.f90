@@ -86,9 +86,13 @@ module scene_parameters_process
       parameter_t("load", "from", default="0.0", &
                   meaning="Load factor before the first step"), &
       parameter_t("load", "to", default="1.0", meaning="Load factor at the end, another one"), &
+      parameter_t("load", "factors", kind_reals, absent="straight to its end", &
+                  meaning="Load factors through which the load is led in turn instead of to: "// &
+                  "the table of a load cycle. Each differs from the one before it"), &
       parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
-                  meaning="Equal steps from the one to the other"), &
-      parameter_t("load", "control", kind_choice, default="'length'", choices="length|dead", &
+                  meaning="Equal steps from the one to the other, with factors to each of them"), &
+      parameter_t("load", "control", kind_choice, absent="'length', with factors 'dead'", &
+                  derived=.true., choices="length|dead", &
                   meaning="Where growth in equilibrium needs less load than before, the factor "// &
                   "follows it down, or stays: then growth is unstable until it arrests")]
    !&>

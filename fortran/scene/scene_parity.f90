@@ -25,7 +25,7 @@ module scene_parity
                                    "yes"), &
                row_t("sides in the course of time", "no: the load factor drives a scene, `&load`", &
                                    "yes, all values but springs"), &
-                             row_t("unloading", "a load factor that falls", &
+                             row_t("unloading", "a load factor that falls, or goes to and fro", &
                                    "values of sides that fall, wells that take back"), &
                              row_t("restraints, point loads", "yes", &
                         "yes; windows are the whole body then, for a square would not know them"), &

@@ -132,12 +132,15 @@ module scene_types
       real(rk) :: y_datum = 0.0_rk  !< [m]
    end type in_situ_t
 
-   !> How the load of a mechanics-only scene changes: up or down.
+   !> How the load of a mechanics-only scene changes: up or down, or to and fro.
    type :: load_t
       real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
-      integer(ik) :: steps = 1  !< equal ones
+      !> Through which it is led in turn, the last of them then being `to`; unallocated: straight
+      !! from the one to the other [-]
+      real(rk), allocatable :: factors(:)
+      integer(ik) :: steps = 1  !< equal ones, to each of the factors
       !> "length": growth in equilibrium takes it down; "dead": it never falls by itself
-      character(len=name_length) :: control = "length"
+      character(len=name_length) :: control = ""
    end type load_t
 
    !> A well: fluid injected into a fracture or into the rock, or drawn from it, in stages.

@@ -69,6 +69,7 @@ module simulation_types
       procedure :: end_at_gain
       procedure :: keq_over_kic
       procedure :: share_done
+      procedure :: share_of_way
       procedure :: heed_limits
       procedure :: tell_limits
    end type simulation_t
@@ -389,7 +390,7 @@ contains
       real(rk) :: share
       integer(ik) :: i
 
-      share = (self%time() - self%start_time)/(self%end_time - self%start_time)
+      share = self%share_of_way()
       if (.not. allocated(self%tip)) return
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
@@ -398,6 +399,13 @@ contains
          end associate
       end do
    end function share_done
+
+   !> How much is done of the way to the scene's end [-].
+   pure real(rk) function share_of_way(self) result(share)
+      class(simulation_t), intent(in) :: self
+
+      share = (self%time() - self%start_time)/(self%end_time - self%start_time)
+   end function share_of_way
 
    !> Set `ending` if a fracture's end has grown as far as the scene wants.
    pure subroutine end_at_gain(self)

@@ -14,6 +14,7 @@ from wingcrack.colours import colouring, rock_of, values_of
 from wingcrack.errors import AbsentError, RunError
 from wingcrack.units import column_unit, column_words
 from wingcrack_post import style
+from wingcrack_post.equilibrium_figure import AGAINST, draw_equilibrium
 from wingcrack_post.fields import FractureField
 from wingcrack_post.frames import (
     Frame,
@@ -209,6 +210,16 @@ def plot_load(run: Run, ax: Axes | None) -> Axes:
         raise AbsentError("no load factor drives the run")
     axes = new_axes(ax)
     draw_load(axes, files)
+    return axes
+
+
+@style.styled
+def plot_equilibrium(run: Run, against: str, ax: Axes | None) -> Axes:
+    """Draw the equilibrium path of length control."""
+    _choose("against", against, AGAINST)
+    axes = new_axes(ax)
+    draw_equilibrium(axes, run.files, against)
+    axes.legend()
     return axes
 
 

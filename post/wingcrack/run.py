@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wingcrack.scenes import Scene
+    from wingcrack_post.equilibrium import EquilibriumPath
     from wingcrack_post.read import Run as Files
 
 _TABLES = ("history", "tips", "fractures", "probes", "wells", "events", "slip_events")
@@ -345,6 +346,28 @@ class Run:
         from wingcrack import plots
 
         return plots.plot_load(self, ax)
+
+    @cached_property
+    def equilibrium(self) -> EquilibriumPath:
+        """The equilibrium path of length control, its unstable branches, the energy they release.
+
+        Raises
+        ------
+        AbsentError
+            If growth does not control the load, or nothing has grown.
+        """
+        from wingcrack_post.equilibrium import equilibrium_path
+
+        return equilibrium_path(self.files)
+
+    def plot_equilibrium(self, against: str = "length", ax: Axes | None = None) -> Axes:
+        """Draw the load factor of length control against 'length', 'opening' or 'conjugate'.
+
+        The last is the quantity over which the energy that unstable growth releases is an area.
+        """
+        from wingcrack import plots
+
+        return plots.plot_equilibrium(self, against, ax)
 
     def scene3d(self, field: str | None = None, time: float | None = None) -> pyvista.Plotter:
         """Give a pyvista scene: fractures by state over a field, with a slider for the states.

@@ -93,6 +93,7 @@ _FIGURES = (
     _Figures("fractures", "fracture", "profiles:fracture_profiles", several=True),
     _Figures("tips", "intensities", "history:intensities"),
     _Figures("tips", "load", "load:load_figure"),
+    _Figures("tips", "equilibrium", "equilibrium_figure:equilibrium_figure"),
     _Figures("tips", "development", "history:development"),
     _Figures("tips", "balance", "history:balance"),
     _Figures("wells", "wells", "wells:well_histories"),

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.proportional import control_of, drive_of
 from wingcrack_post.regions import Region, read_region
 from wingcrack_post.table import FloatArray
 
@@ -23,6 +24,7 @@ class FractureLaw:
 
     name: str
     friction: float | None  # mu_s [-]
+    toughness_pa_sqrtm: float | None = None  # its own [Pa m^1/2]
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,11 @@ class Scene:
         Components xx and yy of the rock elsewhere [m2].
     breadth_m : float
         Assumed length of the fractures out of the plane [m].
+    control : str
+        How growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
+        without such growth.
+    drive : str
+        Whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''.
     """
 
     name: str
@@ -84,6 +91,8 @@ class Scene:
     regions: tuple[Region, ...] = ()
     permeability_m2: tuple[float, float] | None = None
     breadth_m: float = 1.0
+    control: str = ""
+    drive: str = ""
 
     def fracture(self, label: str) -> FractureLaw | None:
         """The law of a fracture known by its name or by its number from 1."""
@@ -135,7 +144,11 @@ def read_scene(path: Path) -> Scene | None:
         return _number(path, group, first.get(group, {}), key)
 
     laws = [
-        FractureLaw(_text(values, "name"), _number(path, group, values, "friction"))
+        FractureLaw(
+            _text(values, "name"),
+            _number(path, group, values, "friction"),
+            _number(path, group, values, "toughness"),
+        )
         for group, values in groups
         if group == "fracture"
     ]
@@ -170,6 +183,8 @@ def read_scene(path: Path) -> Scene | None:
         regions=_regions(path, groups, outline),
         permeability_m2=None if along_x is None or along_y is None else (along_x, along_y),
         breadth_m=number("output", "out_of_plane_length") or 1.0,
+        control=control_of(groups),
+        drive=drive_of(groups),
     )
 
 

@@ -175,6 +175,11 @@ contains
       if (.not. same_outline(a, b)) return
       if (.not. same([a%load%from, a%load%to], [b%load%from, b%load%to])) return
       if (a%load%steps /= b%load%steps) return
+      if (allocated(a%load%factors) .neqv. allocated(b%load%factors)) return
+      if (allocated(a%load%factors)) then
+         if (size(a%load%factors) /= size(b%load%factors)) return
+         if (.not. same(a%load%factors, b%load%factors)) return
+      end if
       if (a%load%control /= b%load%control) return
       if (size(a%restraints) /= size(b%restraints)) return
       if (size(a%point_loads) /= size(b%point_loads)) return

@@ -57,6 +57,16 @@ program test_scene_mechanics
                and_4="&side name='left' x_displacement=0 y_displacement=0 /")
    call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must differ from from, 2.0")
    call accept("a load that falls", 8, "&load from=2 to=-1 /")
+   call accept("a load that goes to and fro", 8, "&load factors=0 1 0.4 -0.5 steps=3 /")
+   call accept("to and fro from elsewhere", 8, "&load factors=0.5 from=-1 control='dead' /")
+   call refuse(8, "&load factors=1 0 to=2 /", ":8: &load: to is given beside factors, whose last "// &
+               "it would be, but must not be")
+   call refuse(8, "&load factors=1 0 control='length' /", ":8: &load: control is 'length' but "// &
+               "must be 'dead' with factors, between which growth would take the load elsewhere")
+   call refuse(8, "&load factors=1 0.5 0.5 /", ":8: &load: factors has 0.5 twice in a row, but "// &
+               "each factor must differ from the one before it")
+   call refuse(8, "&load factors=2 from=2 /", ":8: &load: factors is 2.0 but must differ from "// &
+               "from, or the load would not change")
    call accept("adaptive, with a point load", 10, trim(good(10))//" &adaptive enabled=.true. /")
    call accept("adaptive", 7, "&adaptive enabled=.true. /")
    call refuse(9, "&fe size_fracture=0.1 size_boundary=1.2 /", ":9: &fe: size_boundary is 1.2")
