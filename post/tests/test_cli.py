@@ -27,6 +27,7 @@ def test_all_figures_as_png_and_pdf(own_run: Path, capsys: pytest.CaptureFixture
     assert [line for line in out if "left out" in line] == [
         "stress_maps: left out: the run has a pore pressure: see its maps.",
         "load: left out: no load factor drives the run.",
+        "equilibrium: left out: growth does not control the load.",
     ]
     assert sorted((own_run / "figures").glob("[!.]*")) == sorted(files)
     for file in files:

@@ -50,6 +50,7 @@ CALLS = (
     "run.plot_network('state')",
     "run.plot_wells('flow')",
     "run.plot_load()",
+    "run.plot_equilibrium()",
     "run.figure('balance').axes[0]",
     "wingcrack.compare([run, run], 'fracture_length_m', labels=['a', 'b'])",
 )
@@ -81,6 +82,12 @@ def load_run(dry_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     for table in folder.glob("*.csv"):
         text = table.read_text(encoding="utf-8")
         table.write_text(text.replace("time_s", "load_factor", 1), encoding="utf-8")
+    history = folder / "history.csv"
+    head, *lines = history.read_text(encoding="utf-8").splitlines()
+    lines = [f"{head},fracture_volume_m2,strain_energy_j", *(f"{line},1e-6,1.0" for line in lines)]
+    history.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    with (folder / "scene.nml").open("a", encoding="utf-8") as scene:
+        scene.write("&growth enabled = .true., law = 'equilibrium' /\n")
     return folder
 
 
@@ -93,7 +100,7 @@ def test_every_figure_function_has_a_script() -> None:
 def test_five_lines_make_a_figure(
     full_run: Path, load_run: Path, tmp_path: Path, call: str
 ) -> None:
-    run = load_run if "plot_load" in call else full_run
+    run = load_run if "plot_load" in call or "equilibrium" in call else full_run
     code = SCRIPT.format(run=str(run), call=call)
     assert code.count("\n") == 5
     done = subprocess.run(

@@ -15,7 +15,8 @@ from wingcrack_post.table import FloatArray
 from wingcrack_post.vtu import Grid, IntArray, read_vtu
 
 _ROW = re.compile(rb'Name="history_row"[^>]*>(\d+)<')
-_HEAD = 1000  # bytes of a VTU file that hold its row
+_TIME = re.compile(rb'Name="TimeValue"[^>]*>([-+.0-9eE]+)<')
+_HEAD = 1000  # bytes of a VTU file that hold its row and its moment
 _LINE, _TRIANGLE, _QUADRATIC_TRIANGLE = 3, 5, 22  # VTK cell types
 
 
@@ -78,7 +79,15 @@ def read_series(path: Path) -> tuple[Snapshot, ...]:
         ]
     except (ElementTree.ParseError, KeyError, ValueError) as reason:
         raise RunError(f"{path}: the file is no valid PVD collection ({reason}).") from None
-    states = [Snapshot(time, file, _history_row(file)) for time, file in found]
+    states, taken = list[Snapshot](), set[float]()
+    for listed, file in found:
+        row, told = _told_by(file)
+        # under a load that goes to and fro the collection counts rows; the file has the factor
+        time = told if told is not None and listed == (row or 0) + 1.0 else listed
+        while time in taken:  # moments tell states apart
+            time = float(np.nextafter(time, np.inf))
+        taken.add(time)
+        states.append(Snapshot(time, file, row))
     # a falling load stands in the order of its factor
     rows = [state.row for state in states if state.row is not None]
     if len(rows) == len(states):
@@ -86,14 +95,15 @@ def read_series(path: Path) -> tuple[Snapshot, ...]:
     return tuple(states)
 
 
-def _history_row(path: Path) -> int | None:
-    """Row of history.csv with the same state, from the text at the head of a VTU file."""
+def _told_by(path: Path) -> tuple[int | None, float | None]:
+    """Row of history.csv, from 0, and moment of a state, from the text at the head of its file."""
     try:
         with path.open("rb") as file:
-            found = _ROW.search(file.read(_HEAD))
+            head = file.read(_HEAD)
     except OSError:
-        return None  # who needs the fields will say what is wrong
-    return int(found[1]) - 1 if found else None
+        return None, None  # who needs the fields will say what is wrong
+    row, time = _ROW.search(head), _TIME.search(head)
+    return int(row[1]) - 1 if row else None, float(time[1]) if time else None
 
 
 def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
