@@ -122,7 +122,7 @@ BAD = {
         "there is no parameter 'friction'",
     ),
     "a figure of no kind": (SOUND + LINES.replace('"lines"', '"pie"'), "'pie' is no kind"),
-    "a figure twice": (SOUND + LINES, "figure 'pressure' stands twice"),
+    "a figure twice": (SOUND + LINES + LINES, "figure 'pressure' stands twice"),
     "a figure that names a path": (
         SOUND + LINES.replace('"pressure"', '"../pressure"'),
         "it names a file",
