@@ -62,17 +62,21 @@ def test_what_is_wrong_with_a_scene_comes_first(tmp_path: Path) -> None:
 
 @needs_valgrind
 def test_the_coarse_level_costs_mechanics_nothing() -> None:
-    """Instructions of whole runs; the same program gives the same count within a thousandth."""
+    """Instructions of whole runs, the least of three: a busy machine adds what tells of progress.
+
+    Half a percent is what loading MUMPS' library takes.
+    """
     known, _ = read_benchmarks()
     pairs = [
         (known[name], program) for name in ("b1", "quick_growth") for program in (SOLVER, WITHOUT)
     ]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda pair: count(*pair), pairs))
+        found = list(pool.map(lambda pair: count(*pair), pairs * 3))
     why_not = next((reason for _, reason in found if reason), "")
     if why_not:
         pytest.skip(why_not)
-    counts = [number or 0 for number, _ in found]
+    numbers = [number or 0 for number, _ in found]
+    counts = [min(numbers[place :: len(pairs)]) for place in range(len(pairs))]
     for with_it, without in zip(counts[::2], counts[1::2], strict=True):
         assert without > 1e8
         assert with_it == pytest.approx(without, rel=0.01)
