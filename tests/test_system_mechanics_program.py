@@ -62,7 +62,7 @@ def test_what_is_wrong_with_a_scene_comes_first(tmp_path: Path) -> None:
 
 @needs_valgrind
 def test_the_coarse_level_costs_mechanics_nothing() -> None:
-    """Instructions of whole runs, the least of three: a busy machine adds what tells of progress.
+    """Instructions of whole runs, the smaller of two: a busy machine adds what tells of progress.
 
     Half a percent is what loading MUMPS' library takes.
     """
@@ -71,7 +71,7 @@ def test_the_coarse_level_costs_mechanics_nothing() -> None:
         (known[name], program) for name in ("b1", "quick_growth") for program in (SOLVER, WITHOUT)
     ]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda pair: count(*pair), pairs * 3))
+        found = list(pool.map(lambda pair: count(*pair), pairs * 2))
     why_not = next((reason for _, reason in found if reason), "")
     if why_not:
         pytest.skip(why_not)
