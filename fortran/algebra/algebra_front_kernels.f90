@@ -6,7 +6,7 @@ module algebra_front_kernels
    implicit none(type, external)
    private
 
-   public :: add_matrix, add_triangle, backwards, forwards, push
+   public :: add_matrix, add_triangle, backwards, clear, forwards, push
 
 contains
 
@@ -60,6 +60,17 @@ contains
          top = top + n - j + 1
       end do
    end subroutine push
+
+   !> An empty front: zeros in the lower triangle; nothing is read of the upper one.
+   pure subroutine clear(n, front)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: front(n, n)
+      integer(ik) :: j
+
+      do j = 1, n
+         front(j:, j) = 0.0_rk
+      end do
+   end subroutine clear
 
    !> y := L^-1 y, the part of one front.
    pure subroutine forwards(n, n_pivots, factor, rows, first, y, part)

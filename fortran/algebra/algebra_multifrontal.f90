@@ -12,13 +12,14 @@
 !! are eliminated side by side, with the same bits for any number of threads.
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
-   use algebra_front_kernels, only: add_matrix, add_triangle, backwards, forwards, push
+   use algebra_front_kernels, only: add_matrix, add_triangle, backwards, clear, forwards, push
    use algebra_front_parts, only: find_parts, parts_t
    use algebra_fronts, only: find_fronts, fronts_t
    use algebra_partial_cholesky, only: eliminate, eliminate_signed
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   !$ use omp_lib, only: omp_get_num_threads
    implicit none(type, external)
    private
 
@@ -164,7 +165,8 @@ contains
       type(workspace_t), allocatable :: part(:)
       type(workspace_t) :: work
       integer(ik), allocatable :: wrong(:)
-      integer(ik) :: k, n_kept
+      integer(ik) :: n_kept
+      logical :: inside  !< a team of threads: windows are evaluated side by side
 
       self%is_factorized = .false.
       if (.not. allocated(self%first_entry)) then
@@ -180,11 +182,17 @@ contains
          allocate (self%factor(self%first_entry(self%fronts%n + 1) - 1))
       end if
       allocate (part(size(self%parts%first)), wrong(size(self%parts%first)))
-      !$omp parallel do schedule(dynamic, 1) if(size(part) > 1)
-      do k = 1, size(part, kind=ik)
-         call eliminate_part(self, matrices, k, part(k), wrong(k))
-      end do
-      !$omp end parallel do
+      inside = .false.
+      !$ inside = omp_get_num_threads() > 1
+      if (inside) then  ! threads that have nothing else to do take their share
+         call eliminate_parts(self, matrices, part, wrong)
+      else
+         !$omp parallel if(size(part) > 1)
+         !$omp single
+         call eliminate_parts(self, matrices, part, wrong)
+         !$omp end single
+         !$omp end parallel
+      end if
       if (all(wrong == 0)) call eliminate_rest(self, matrices, part, work, wrong)
       if (any(wrong > 0)) then
          call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
@@ -205,6 +213,21 @@ contains
       end if
       self%is_factorized = .true.
    end subroutine factorize
+
+   !> Eliminate the fronts of all parts, each as a task of its own for the team of threads.
+   subroutine eliminate_parts(self, matrices, part, wrong)
+      class(multifrontal_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      type(workspace_t), intent(inout) :: part(:)
+      integer(ik), intent(inout) :: wrong(:)  !< (parts) place of a pivot of the wrong sign; 0: none
+      integer(ik) :: k
+
+      !$omp taskloop grainsize(1) default(shared)
+      do k = 1, size(part, kind=ik)
+         call eliminate_part(self, matrices, k, part(k), wrong(k))
+      end do
+      !$omp end taskloop
+   end subroutine eliminate_parts
 
    !> Eliminate the fronts of a part: only what its root leaves stays in the workspace.
    subroutine eliminate_part(self, matrices, k, work, wrong)
@@ -327,8 +350,8 @@ contains
 
       n_pivots = pivots_of(self, i)
       n = size_of(self, i)
-      associate (fronts => self%fronts, front => work%front(:int(n, int64)**2))
-         front = 0.0_rk
+      associate (fronts => self%fronts)
+         call clear(n, work%front)
          do k = 1, n_pivots
             work%place(fronts%first_pivot(i) + k - 1) = k
          end do

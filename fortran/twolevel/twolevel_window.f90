@@ -78,7 +78,7 @@ module twolevel_window
       type(contact_t), allocatable :: contact
       type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
       logical :: undrained = .false.  !< the model's constants are the undrained ones
-      integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) coarse cell around each node
+      integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) around vertices and the edge; 0 elsewhere
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
       type(face_map_t) :: faces
    contains
@@ -283,6 +283,7 @@ contains
    end subroutine set_rock
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
+   !! Asked for are vertices, which take the pressure, and the edge, which takes the displacement.
    subroutine project(self, mesher, coarse, values, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
@@ -291,26 +292,33 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
       real(rk), allocatable :: inside(:, :)
+      real(rk) :: centre(2)
+      integer(ik), allocatable :: asked(:), cells(:)
       integer(ik) :: c, k, v
 
       associate (fine => self%model%mesh)
          if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
-         allocate (inside(2, fine%n_nodes), self%weight(3, fine%n_nodes), &
-                   self%coarse_cell(fine%n_nodes))
+         allocate (inside(2, fine%n_nodes))
+         allocate (self%weight(3, fine%n_nodes), source=0.0_rk)
+         allocate (self%coarse_cell(fine%n_nodes), source=0_ik)
          ! A point on a fracture belongs to the side of the element that it is looked at from.
          do c = 1, fine%n_cells
+            centre = sum(fine%xy(:, fine%cell_nodes(:3, c)), dim=2)/3.0_rk
             do k = 1, 6
                v = fine%cell_nodes(k, c)
-               inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) &
-                              + inwards*sum(fine%xy(:, fine%cell_nodes(:3, c)), dim=2)/3.0_rk
+               inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) + inwards*centre
             end do
          end do
-         call locate(mesher, inside, self%coarse_cell, error)
+         asked = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
+                                                  v=1, fine%n_nodes)])
+         allocate (cells(size(asked)))
+         call locate(mesher, inside(:, asked), cells, error)
          if (allocated(error)) return
-         do v = 1, fine%n_nodes
-            self%weight(:, v) = barycentric(coarse%xy(:, &
-                                                      coarse%cell_nodes(:, self%coarse_cell(v))), &
-                                            fine%xy(:, v))
+         self%coarse_cell(asked) = cells
+         do k = 1, size(asked, kind=ik)
+            associate (at => fine%xy(:, asked(k)), nodes => coarse%cell_nodes(:, cells(k)))
+               self%weight(:, asked(k)) = barycentric(coarse%xy(:, nodes), at)
+            end associate
          end do
       end associate
       self%faces = match_faces(self%model%mesh, coarse, values%is_grown)

@@ -113,28 +113,49 @@ contains
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(error_t), allocatable, intent(out) :: error
       type(failure_t) :: failure(size(self%window))
-      integer(ik) :: i, w
+      integer(ik) :: i, w, largest_first(size(self%window))
 
       call see_tips(self, tips)
       if (has_other_toughness(scene)) then
          self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
                              i=1, size(tips))]
       end if
-      !$omp parallel do schedule(dynamic, 1)
-      do w = 1, size(self%window, kind=ik)
+      largest_first = by_size(self%window)
+      !$omp parallel private(w)
+      !$omp single
+      do i = 1, size(self%window, kind=ik)
+         w = largest_first(i)
          if (self%is_asked(w, tips)) then
-            if (any(asked(self%window(w)%serves))) then
-               call evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
-                                    undrained, failure(w)%error)
-            end if
+            if (.not. any(asked(self%window(w)%serves))) cycle
+            !$omp task firstprivate(w) default(shared)
+            call evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
+                                 undrained, failure(w)%error)
+            !$omp end task
          else
             self%built(w) = .false.
             self%may_follow(w) = .false.
          end if
       end do
-      !$omp end parallel do
+      !$omp end single
+      !$omp end parallel
       call first_failure(failure, error)
    end subroutine evaluate
+
+   !> Windows by the sizes of the meshes that they have now, so that none of the largest is left for
+   !! one thread at the end.
+   pure function by_size(window) result(order)
+      type(window_t), intent(in) :: window(:)
+      integer(ik) :: order(size(window))
+      integer(ik) :: i, k
+
+      do i = 1, size(window, kind=ik)
+         do k = i, 2, -1
+            if (window(order(k - 1))%mesh%n_cells >= window(i)%mesh%n_cells) exit
+            order(k) = order(k - 1)
+         end do
+         order(k) = i
+      end do
+   end function by_size
 
    !> The error of the first window that has one.
    pure subroutine first_failure(failure, error)
