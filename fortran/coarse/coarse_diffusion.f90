@@ -59,7 +59,7 @@ contains
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
       integer(ik) :: at(2), c, cell, faces(2), i, j, k, kind
-      real(rk) :: sign_out(2), length(2), lever(2, 2), area, w
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, of_cell(2, 2), w
 
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
@@ -70,12 +70,13 @@ contains
             at(j) = regions%flow_faces%place(region, faces(j))
          end do
          w = area/3.0_rk
+         of_cell = resistivity(:, :, kind)
          do j = 1, 2
             do i = 1, 2
                local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
-                                              + w*sign_out(i)*sign_out(j)*dot_product(lever(:, i), &
-                                                                   matmul(resistivity(:, :, kind), &
-                                                                                       lever(:, j)))
+                                               + w*sign_out(i)*sign_out(j) &
+                                               *dot_product(lever(:, i), &
+                                                            matmul(of_cell, lever(:, j)))
             end do
             local%coupling(c, at(j)) = 0.5_rk*sign_out(j)*length(j)
          end do
@@ -174,7 +175,7 @@ contains
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: gradient(2)  !< [Pa/m]
       integer(ik) :: faces(2), j
-      real(rk) :: sign_out(2), length(2), lever(2, 2), area, velocity(2)
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, velocity(2), of_cell(2, 2)
 
       call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
       velocity = 0.0_rk
@@ -183,7 +184,8 @@ contains
             velocity = velocity + sign_out(j)*lever(:, j)*flux(row)
          end associate
       end do
-      gradient = -matmul(resistivity(:, :, min(cell, size(resistivity, 3, kind=ik))), velocity)
+      of_cell = resistivity(:, :, min(cell, size(resistivity, 3, kind=ik)))
+      gradient = -matmul(of_cell, velocity)
    end subroutine corner_gradient
 
 end module coarse_diffusion

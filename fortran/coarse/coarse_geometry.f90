@@ -69,8 +69,10 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cell
       real(rk) :: area  !< [m2]
+      real(rk) :: corners(2, 3)
 
-      area = triangle_area(mesh%xy(:, mesh%cell_nodes(:, cell)))
+      corners = mesh%xy(:, mesh%cell_nodes(:, cell))
+      area = triangle_area(corners)
    end function cell_area
 
 end module coarse_geometry

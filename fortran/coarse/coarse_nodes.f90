@@ -119,7 +119,7 @@ contains
       real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
       real(rk), intent(out) :: values(:, :)  !< (2, n_nodes) [m]
       real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) [-]
-      real(rk) :: at_centre(2, 2), centre(2)
+      real(rk) :: at_centre(2, 2), between(2, 2), centre(2), offset(2)
       real(rk), allocatable :: weight(:)
       integer(ik) :: c, k, v
 
@@ -131,9 +131,9 @@ contains
          centre = cell_centre(mesh, c)
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
-            values(:, v) = values(:, v) + unknowns(1:2, c) &
-                           + matmul(0.5_rk*(at_corners(:, :, k, c) + at_centre), &
-                                    mesh%xy(:, v) - centre)
+            between = 0.5_rk*(at_corners(:, :, k, c) + at_centre)
+            offset = mesh%xy(:, v) - centre
+            values(:, v) = values(:, v) + unknowns(1:2, c) + matmul(between, offset)
             gradients(:, :, v) = gradients(:, :, v) + at_corners(:, :, k, c)
             weight(v) = weight(v) + 1.0_rk
          end do
@@ -195,8 +195,10 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cell
       real(rk) :: centre(2)  !< [m]
+      real(rk) :: corners(2, 3)
 
-      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+      corners = mesh%xy(:, mesh%cell_nodes(:, cell))
+      centre = sum(corners, dim=2)/3.0_rk
    end function cell_centre
 
 end module coarse_nodes

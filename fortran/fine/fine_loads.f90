@@ -104,15 +104,18 @@ contains
       type(rocks_t), intent(in) :: rocks
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-      integer(ik) :: cell
+      real(rk) :: share(2, 6)
+      integer(ik) :: cell, k
 
       do cell = 1, fine%n_cells
          associate (nodes => fine%cell_nodes(:, cell))
             if (.not. (any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%body_force) > 0.0_rk))) cycle
-            force(:, nodes) = force(:, nodes) + volume_forces(fine, cell, &
-                                                 rocks%elasticity(rocks%index_of(cell))%biot, loads)
+            share = volume_forces(fine, cell, rocks%elasticity(rocks%index_of(cell))%biot, loads)
+            do k = 1, 6
+               force(:, nodes(k)) = force(:, nodes(k)) + share(:, k)
+            end do
          end associate
       end do
    end subroutine add_volume_forces
@@ -126,7 +129,7 @@ contains
       real(rk), intent(in) :: biot  !< [-]
       type(fine_loads_t), intent(in) :: loads
       real(rk) :: force(2, 6)  !< [N/m]
-      real(rk) :: corner(3, 3)
+      real(rk) :: corner(3, 3), xy(2, 3)
       integer(ik) :: k
 
       corner = loads%initial_stress(:, fine%cell_nodes(1:3, cell))
@@ -136,8 +139,8 @@ contains
       if (fine%tip_corner(cell) > 0) then
          force = forces_at_tip(fine, cell, corner, loads%body_force)
       else
-         force = forces_of_ordinary(fine%xy(:, fine%cell_nodes(1:3, cell)), corner, &
-                                    loads%body_force)
+         xy = fine%xy(:, fine%cell_nodes(1:3, cell))
+         force = forces_of_ordinary(xy, corner, loads%body_force)
       end if
    end function volume_forces
 

@@ -149,9 +149,11 @@ contains
       real(rk), intent(out) :: area_coordinates(3)  !< barycentric coordinates in space [-]
       real(rk), intent(out) :: determinant  !< of the Jacobian [m2]
 
-      call evaluate_element(self%xy(:, self%cell_nodes(:, cell)), self%tip_corner(cell), lambda, &
-                            values, gradients, area_coordinates, determinant, &
-                            self%tip_element == tip_collapsed)
+      real(rk) :: xy(2, 6)
+
+      xy = self%xy(:, self%cell_nodes(:, cell))
+      call evaluate_element(xy, self%tip_corner(cell), lambda, values, gradients, &
+                            area_coordinates, determinant, self%tip_element == tip_collapsed)
    end subroutine evaluate
 
    !> Every element must be counter-clockwise and not flat. The quarter-point map of a straight-
@@ -160,7 +162,7 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: flattest = 1.0e-10_rk  ! double area over squared longest edge
-      real(rk) :: edge(2, 3), double_area
+      real(rk) :: edge(2, 3), double_area, longest  ! squared
       integer(ik) :: cell
       character(len=80) :: place
 
@@ -169,7 +171,8 @@ contains
          edge(:, 2) = fine%xy(:, fine%cell_nodes(3, cell)) - fine%xy(:, fine%cell_nodes(2, cell))
          edge(:, 3) = -edge(:, 1) - edge(:, 2)
          double_area = cross(edge(:, 1), edge(:, 2))
-         if (double_area > flattest*maxval(sum(edge**2, dim=1))) cycle
+         longest = max(sum(edge(:, 1)**2), sum(edge(:, 2)**2), sum(edge(:, 3)**2))
+         if (double_area > flattest*longest) cycle
          write (place, "(a,i0,a,2(es12.5,a))") "element ", cell, " at (", &
             fine%xy(1, fine%cell_nodes(1, cell)), &
             ", ", fine%xy(2, fine%cell_nodes(1, cell)), ")"

@@ -71,6 +71,7 @@ contains
       type(rocks_t), intent(in), optional :: rocks  !< of the elements, in place of `elasticity`
       integer(ik) :: cell, i
       real(rk), allocatable :: lame_lambda(:), shear_modulus(:)
+      real(rk) :: xy(2, 6)
 
       self%ready = .false.
       self%rocks = rocks_t(elasticity=[elasticity], of_cell=[1_ik])
@@ -88,10 +89,9 @@ contains
                         i=1, size(self%rocks%elasticity))]
       do cell = 1, self%mesh%n_cells
          i = self%rocks%index_of(cell)
-         call stiffness_matrix(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), &
-                               self%mesh%tip_corner(cell), &
-                               lame_lambda(i), shear_modulus(i), self%stiffness(:, :, cell), &
-                               self%mesh%tip_element == tip_collapsed)
+         xy = self%mesh%xy(:, self%mesh%cell_nodes(:, cell))
+         call stiffness_matrix(xy, self%mesh%tip_corner(cell), lame_lambda(i), shear_modulus(i), &
+                               self%stiffness(:, :, cell), self%mesh%tip_element == tip_collapsed)
       end do
    end subroutine set_mesh
 

@@ -65,7 +65,7 @@ contains
       real(rk) :: points(3, rule_size), weights(rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
-      real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6)
+      real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6), q_nodes(6), xy(2, 3)
       integer(ik) :: k, nodes(6), n_points, point
 
       nodes = model%mesh%cell_nodes(:, cell)
@@ -74,8 +74,11 @@ contains
       do k = 1, 3
          corner(:, :, k) = initial_stress(loads, frame, nodes(k)) - reference_stress
       end do
-      slope = slope_along(matmul(frame%axes, model%mesh%xy(:, nodes(:3))), corner)
-      moved = matmul(frame%axes, displacement(:, nodes))
+      q_nodes = q(nodes)
+      xy = model%mesh%xy(:, nodes(:3))
+      slope = slope_along(matmul(frame%axes, xy), corner)
+      moved = displacement(:, nodes)
+      moved = matmul(frame%axes, moved)
       body = matmul(frame%axes, loads%body_force)
       cell_share = 0.0_rk
       do point = 1, n_points
@@ -83,14 +86,14 @@ contains
                                   determinant)
          gradients = matmul(frame%axes, gradients)
          gradient = matmul(moved, transpose(gradients))
-         q_slope = matmul(gradients, q(nodes))
+         q_slope = matmul(gradients, q_nodes)
          elastic = frame%rock%total_stress(gradient, 0.0_rk)
          initial = area_coordinates(1)*corner(:, :, 1) + area_coordinates(2)*corner(:, :, 2) &
                    + area_coordinates(3)*corner(:, :, 3)
          density = sum((0.5_rk*elastic + initial)*gradient)
          p = matmul(elastic + initial, gradient(:, 1)) - [density, 0.0_rk]
          cell_share = cell_share + weights(point)*determinant &
-                      *(dot_product(p, q_slope) - dot_product(values, q(nodes)) &
+                      *(dot_product(p, q_slope) - dot_product(values, q_nodes) &
                         *(dot_product(body, gradient(:, 1)) + sum(slope*gradient)))
       end do
    end function cell_share

@@ -110,13 +110,20 @@ contains
       ! In the tip's axes.
       real(rk), dimension(2, 6, 2, size(q, 1)) :: of_nodes
       real(rk), dimension(2, 2, 3, 2, size(q, 1)) :: of_corners
-      real(rk) :: of_body(2, 2, size(q, 1)), xy(2), weight, reference, kolosov, shear_modulus
+      real(rk) :: of_body(2, 2, size(q, 1)), q_nodes(6, size(q, 1))
+      real(rk) :: xy(2), xy_nodes(2, 6), weight, reference, kolosov, shear_modulus
       complex(rk) :: root_z
       type(auxiliary_field_t) :: field
       integer(ik) :: c, mode, n_points, nodes(6), point, r
 
       associate (frame => self%frame)
          nodes = model%mesh%cell_nodes(:, cell)
+         xy_nodes = model%mesh%xy(:, nodes)
+         do r = 1, size(q, 1, kind=ik)
+            do c = 1, 6
+               q_nodes(c, r) = q(r, nodes(c))
+            end do
+         end do
          call element_rule(model%mesh, frame, cell, n_points, points, weights)
          reference = reference_angle(model%mesh, frame, cell, q(1, :))
          kolosov = frame%rock%kolosov()
@@ -128,14 +135,14 @@ contains
             call model%mesh%evaluate(cell, points(:, point), values, gradients, &
                                      area_coordinates, determinant)
             weight = weights(point)*determinant
-            xy = matmul(frame%axes, matmul(model%mesh%xy(:, nodes), values) - frame%origin)
+            xy = matmul(frame%axes, matmul(xy_nodes, values) - frame%origin)
             gradients = matmul(frame%axes, gradients)
             root_z = root_of_place(xy, reference)
             do mode = 1, 2
                field = auxiliary_field(mode, root_z, kolosov, shear_modulus)
                do r = 1, size(q, 1, kind=ik)
-                  q_slope = matmul(gradients, q(r, nodes))
-                  q_here = dot_product(values, q(r, nodes))
+                  q_slope = matmul(gradients, q_nodes(:, r))
+                  q_here = dot_product(values, q_nodes(:, r))
                   outer(:, 1) = field%slope*q_slope(1)
                   outer(:, 2) = field%slope*q_slope(2)
                   by_gradient = frame%rock%total_stress(outer, 0.0_rk) - q_slope(1)*field%stress

@@ -29,6 +29,7 @@ module twolevel_window
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
+   use twolevel_window_map, only: window_map_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t
@@ -78,8 +79,7 @@ module twolevel_window
       type(contact_t), allocatable :: contact
       type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
       logical :: undrained = .false.  !< the model's constants are the undrained ones
-      integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) around vertices and the edge; 0 elsewhere
-      real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
+      type(window_map_t) :: map  !< where it lies in the coarse mesh
       type(face_map_t) :: faces
    contains
       procedure :: build
@@ -283,44 +283,15 @@ contains
    end subroutine set_rock
 
    !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
-   !! Asked for are vertices, which take the pressure, and the edge, which takes the displacement.
    subroutine project(self, mesher, coarse, values, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
       type(coarse_values_t), intent(in) :: values
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
-      real(rk), allocatable :: inside(:, :)
-      real(rk) :: centre(2)
-      integer(ik), allocatable :: asked(:), cells(:)
-      integer(ik) :: c, k, v
 
-      associate (fine => self%model%mesh)
-         if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
-         allocate (inside(2, fine%n_nodes))
-         allocate (self%weight(3, fine%n_nodes), source=0.0_rk)
-         allocate (self%coarse_cell(fine%n_nodes), source=0_ik)
-         ! A point on a fracture belongs to the side of the element that it is looked at from.
-         do c = 1, fine%n_cells
-            centre = sum(fine%xy(:, fine%cell_nodes(:3, c)), dim=2)/3.0_rk
-            do k = 1, 6
-               v = fine%cell_nodes(k, c)
-               inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) + inwards*centre
-            end do
-         end do
-         asked = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
-                                                  v=1, fine%n_nodes)])
-         allocate (cells(size(asked)))
-         call locate(mesher, inside(:, asked), cells, error)
-         if (allocated(error)) return
-         self%coarse_cell(asked) = cells
-         do k = 1, size(asked, kind=ik)
-            associate (at => fine%xy(:, asked(k)), nodes => coarse%cell_nodes(:, cells(k)))
-               self%weight(:, asked(k)) = barycentric(coarse%xy(:, nodes), at)
-            end associate
-         end do
-      end associate
+      call self%map%find(self%model%mesh, mesher, coarse, error)
+      if (allocated(error)) return
       self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
    end subroutine project
 
@@ -334,14 +305,10 @@ contains
       type(window_tip_t), intent(inout) :: tips(:)
       type(error_t), allocatable, intent(out) :: error
       type(face_conditions_t) :: conditions
-      integer(ik) :: i, v
+      integer(ik) :: i
 
-      associate (fine => self%model%mesh)
-         do v = 1, fine%n_vertices
-            associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               self%loads%pore_pressure(v) = dot_product(values%nodal(3, nodes), self%weight(:, v))
-            end associate
-         end do
+      associate (n => self%model%mesh%n_vertices)
+         call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
       end associate
       if (any(self%sides%of%changes())) call follow_sides(self, scene)
       self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
@@ -392,31 +359,16 @@ contains
       self%probe = probe
    end subroutine find_probes
 
-   !> The window's edge with displacements that are quadratic in each coarse cell: linear between
-   !! the nodes, and half of what the gradients there add; on sides of the body those of the scene,
-   !! where it gives them. Zero at other nodes.
+   !> The window's edge with the coarse level's displacements, quadratic in each of its cells; on
+   !! sides of the body those of the scene, where it gives them. Zero at other nodes.
    pure function curved_edge(self, coarse, displacement, gradient) result(edge)
       class(window_t), intent(in) :: self
       type(mesh_t), intent(in) :: coarse
       real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
       real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
       real(rk), allocatable :: edge(:, :)  !< (2, n_nodes) [m]
-      integer(ik) :: k, v
 
-      associate (fine => self%model%mesh)
-         allocate (edge(2, fine%n_nodes), source=0.0_rk)
-         do v = 1, fine%n_nodes
-            if (.not. fine%on_boundary(v)) cycle
-            associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-               do k = 1, 3
-                  edge(:, v) = edge(:, v) + self%weight(k, v) &
-                               *(displacement(:, nodes(k)) &
-                                 + 0.5_rk*matmul(gradient(:, :, nodes(k)), &
-                                                 fine%xy(:, v) - coarse%xy(:, nodes(k))))
-               end do
-            end associate
-         end do
-      end associate
+      edge = self%map%curved_edge(self%model%mesh, coarse, displacement, gradient)
       call self%sides%take_given(self%model%mesh, edge)
    end function curved_edge
 
@@ -439,7 +391,7 @@ contains
       if (present(edge)) loads%boundary_displacement = edge
       if (present(pressure)) then
          loads%pore_pressure(:self%model%mesh%n_vertices) = &
-            pressure(self%coarse_cell(:self%model%mesh%n_vertices))
+            pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
       end if
       contact = self%contact
       call self%model%solve(loads, displacement, error, contact)
