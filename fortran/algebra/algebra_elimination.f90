@@ -1,5 +1,5 @@
-!> The fronts of a matrix eliminated one after another, subtrees of them side by side on threads: the
-!! numerical part of the multifrontal method (`algebra_multifrontal`).
+!> The fronts of a matrix eliminated one after another, subtrees of them side by side on threads:
+!! the numerical part of the multifrontal method (`algebra_multifrontal`).
 !!
 !! A front is a small dense matrix: its elements and what its children have left are added up, its
 !! pivots eliminated, and what is left waits on a stack for its parent.

@@ -6,9 +6,9 @@
 !! far rounding grows the caller has to judge.
 !! On request condensed onto a few unknowns, which need not be definite.
 !!
-!! Nothing is shared between systems, so that several can be factorized at the same time; in a large
-!! one subtrees of fronts are eliminated side by side (`algebra_elimination`), with the same bits for
-!! any number of threads.
+!! Nothing is shared between systems, so that several can be factorized at the same time; in a
+!! large one subtrees of fronts are eliminated side by side (`algebra_elimination`), with the same
+!! bits for any number of threads.
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
    use algebra_elimination, only: element_matrices_t, eliminate_fronts, factors_t, pivots_of, &
