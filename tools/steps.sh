@@ -13,11 +13,12 @@ begin_steps() {
 
 # step NAME COMMAND...: run it, go on in any case, remember a failure.
 step() {
-    local name=$1
+    local name=$1 began=$SECONDS
     shift
     ((steps_tried += 1))
     printf '\n== %s\n' "$name"
     "$@" || failed_steps+=("$name")
+    printf -- '-- %s: %d s\n' "$name" "$((SECONDS - began))"
 }
 
 # What failed is the last line on stderr.
