@@ -15,6 +15,14 @@ from system_scene import TOP
 # The debug build: nothing is inlined there, so that every call shows.
 SOLVER = TOP / "build" / "debug" / "fortran" / "app" / "wingcrack-solver"
 
+# One thread, and instructions that valgrind knows on any processor.
+ONE_KIND = {
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_CORETYPE": "Haswell",
+}
+
+_LOADER = re.compile(r"_dl_|do_lookup_x|check_match|strcmp|__cxa_finalize")
 _MODULE = re.compile(r"__([a-z]\w*)_MOD_(?!_)")
 
 
@@ -38,6 +46,10 @@ class Profile:
         """Give the functions executed of modules whose names begin in one of these ways."""
         return {name for name in self.functions if _module_of(name).startswith(modules)}
 
+    def loading(self) -> int:
+        """Instructions that find libraries and their names, before and after the program."""
+        return sum(count for name, count in self.functions.items() if _LOADER.match(name))
+
     def rooms(self) -> Counter[str]:
         """Instructions by room: the first word of a module's name."""
         count: Counter[str] = Counter()
@@ -53,7 +65,7 @@ def _module_of(function: str) -> str:
     return found.group(1) if found else ""
 
 
-def profile(scene: str, place: Path) -> Profile:
+def profile(scene: str, place: Path, program: Path = SOLVER) -> Profile:
     """Run a scene and count."""
     place.mkdir()
     (place / "scene.nml").write_text(scene)
@@ -65,11 +77,11 @@ def profile(scene: str, place: Path) -> Profile:
             f"--callgrind-out-file={counts}",
             "--compress-strings=no",
             "--compress-pos=no",
-            SOLVER,
+            program,
             *("run", "scene.nml", "--out", "out", "--quiet"),
         ],
         cwd=place,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+        env=os.environ | ONE_KIND,
         capture_output=True,
         text=True,
         check=False,

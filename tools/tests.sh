@@ -9,7 +9,7 @@ run_all_tests() {
     with_lock build release all
     step 'CTest, debug build' ctest --preset debug -j "$processors"
     step 'CTest, release build' ctest --preset release -j "$processors"
-    step 'pytest' run_pytest --numprocesses "$processors" --dist loadfile
+    step 'pytest' run_pytest --numprocesses "$processors" --dist loadfile --durations 25
     # counts, which do not depend on what else the machine does
     step 'bench, the short form' run_quick_bench
     end_steps
