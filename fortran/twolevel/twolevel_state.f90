@@ -7,6 +7,7 @@ module twolevel_state
    use coarse_geometry, only: cell_area
    use coarse_model, only: new_state, rest_fluid
    use coarse_nodes, only: nodal_fields
+   use coarse_own_pressure, only: own_pressure
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_company, only: company_t
    use growth_front, only: growth_rules_t
@@ -307,6 +308,8 @@ contains
          allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
          call nodal_fields(self%mesh, model%rock, model%regions, state%unknowns, state%tractions, &
                            values%nodal, values%displacement, values%gradient)
+         values%nodal(3, :) = own_pressure(self%mesh, state%unknowns(3, :self%mesh%n_cells), &
+                                           values%nodal(3, :))
          values%law = model%cells%law
          values%is_grown = model%cells%roughness > 0.0_rk
       end associate

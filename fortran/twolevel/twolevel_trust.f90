@@ -30,6 +30,7 @@ module twolevel_trust
    use growth_tip, only: tip_t
    use twolevel_correction, only: improve
    use twolevel_state, only: two_levels_t
+   use twolevel_thin_layers, only: layer_at_tip, layer_t, thin_layer_errors
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows, only: failure_t, first_failure
@@ -237,10 +238,29 @@ contains
          if (.not. self%tip(i)%is_free) cycle
          associate (tip => self%windows%tip(i))
             tip%passing = safety*share_of_pressure &
-                          *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed)
+                          *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed) &
+                          + errors_of_layer(self, i)
          end associate
       end do
    end subroutine compare_pressures
+
+   !> What a layer of fluid pressure thinner than a coarse cell may do to the intensities of a tip.
+   pure function errors_of_layer(self, tip) result(errors)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+      real(rk) :: errors(2)  !< of K_I, K_II [Pa m^1/2]
+      type(layer_t) :: layer
+      real(rk) :: age
+
+      associate (of => self%tip(tip), found => self%windows%tip(tip)%found, time => self%state%time)
+         layer = layer_at_tip(self%mesh, self%model%rock, self%state, &
+                              self%coarse_values%nodal(3, :), of%fracture, of%end)
+         ! A tip that moves meets rock that the fluid has not reached.
+         age = time
+         if (of%advance > 0.0_rk) age = min(age, (time - self%before%time)*layer%cell/of%advance)
+         errors = thin_layer_errors(layer, [found%k1, found%k2], found%closed, age)
+      end associate
+   end function errors_of_layer
 
    !> A whole fracture cell lies in the window. In one that is smaller there is nothing that the
    !! coarse level could be compared with, and it knows nothing of the tip itself.
