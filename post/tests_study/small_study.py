@@ -50,6 +50,7 @@ _SCENE = """\
 &scene name = 'small', title = 'plain' /
 &fracture name = 'f1', friction = 0.5, x = 0.0, 1.0 /
 &injection fracture = 'f1', rate = 1.0e-9 /
+&fluid viscosity = 1.0e-3 /
 """
 
 HEAD = """\

@@ -16,7 +16,7 @@ COUNT = 50
 
 def draws(entry: Any, seed: int = 7, method: str = "latin_hypercube", count: int = COUNT) -> Any:
     table = {"count": count, "seed": seed, "method": method, "parameters": {"a": entry}}
-    return read_draws(table, "draw")["a"]
+    return read_draws(table, "draw", 10_000)["a"]
 
 
 # Each law's distribution function, in closed form or from the standard library.
@@ -76,7 +76,7 @@ def test_a_seed_decides_all() -> None:
 
 def test_parameters_are_drawn_independently() -> None:
     table = {"count": 400, "seed": 3, "parameters": {k: {"uniform": [0.0, 1.0]} for k in "ab"}}
-    found = read_draws(table, "draw")
+    found = read_draws(table, "draw", 10_000)
     mean = sum((a - 0.5) * (b - 0.5) for a, b in zip(found["a"], found["b"], strict=True)) / 400
     assert abs(12.0 * mean) < 0.15
     assert found["sample"] == list(range(1, 401))
@@ -118,4 +118,4 @@ def test_what_is_no_distribution(entry: Any, reason: str) -> None:
 def test_counts_and_seeds_are_whole(key: str, value: Any) -> None:
     table = {"count": 2, "seed": 1, "parameters": {"a": {"uniform": [0.0, 1.0]}}} | {key: value}
     with pytest.raises(CaseError, match="whole number"):
-        read_draws(table, "draw")
+        read_draws(table, "draw", 10_000)

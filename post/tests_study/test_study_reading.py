@@ -19,6 +19,7 @@ seed = 1
 [draw.parameters]
 "injection.rate" = { uniform = [1.0e-9, 2.0e-9] }
 """
+KEY = '[[quantity]]\nname = "n"\nunit = "-"\nfile = "run.json"\nkey = "steps"\n'
 
 
 def read(folder: Path, text: str, quick: bool = False) -> Study:
@@ -143,8 +144,52 @@ BAD = {
         "'1/x' is inf",
     ),
     "more runs than anyone can want": (
-        HEAD + DRAW.replace("count = 4", "count = 100001"),
-        "are more than 100000",
+        HEAD + DRAW.replace("count = 4", "count = 10001"),
+        "10001 runs are more than 10000",
+    ),
+    "more runs than memory could hold": (
+        HEAD + DRAW.replace("count = 4", "count = 100000000"),
+        "100000000 runs are more than 10000",
+    ),
+    "a grid of more than a thousand million runs": (
+        HEAD + "[over]\n" + "".join(f"{name} = {list(range(200))}\n" for name in "abcd"),
+        "1600000000 runs are more than 10000",
+    ),
+    "a grid of too many draws": (
+        HEAD + '[over]\n"fracture.f1.friction" = [0.3, 0.4]\n' + DRAW.replace("= 4", "= 6000"),
+        "12000 runs are more than 10000",
+    ),
+    "a misspelt column": (
+        HEAD + OVER + PRESSURE.replace("well_pressure_pa", "well_presure_pa"),
+        "history.csv has no column 'well_presure_pa' (docs/output.md); did you mean 'well_pres",
+    ),
+    "a misspelt column of a condition": (
+        HEAD + OVER + ONSET.replace("{ kind", "{ kinds"),
+        "events.csv has no column 'kinds'",
+    ),
+    "a misspelt column of a figure": (
+        SOUND + LINES.replace('"time_s"', '"time_min"'),
+        "history.csv has no column 'time_min'",
+    ),
+    "a misspelt key": (
+        HEAD + KEY.replace("steps", "stepps"),
+        "run.json has no key 'stepps' (docs/output.md); did you mean 'steps'?",
+    ),
+    "a column of runs without a fluid": (
+        HEAD + PRESSURE.replace("well_pressure_pa", "load_factor"),
+        "history.csv has the column 'load_factor' only without a fluid",
+    ),
+    "a file that no run writes": (
+        HEAD + PRESSURE.replace("history.csv", "histories.csv"),
+        "'histories.csv' is no file of a run that can be read; there are: history.csv",
+    ),
+    "a file outside of the run": (
+        HEAD + PRESSURE.replace("history.csv", "../input.csv"),
+        "'../input.csv' is no file of a run",
+    ),
+    "a file of the machine": (
+        HEAD + KEY.replace("run.json", "/etc/shadow"),
+        "'/etc/shadow' is no file of a run",
     ),
 }
 
@@ -163,6 +208,25 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     study.file.write_bytes(b"\xff\xfe\x00title")
     with pytest.raises(CaseError, match=r"study\.toml"):
         read_study(study.file)
+
+
+def test_constants_parameters_and_probes_can_be_read(tmp_path: Path) -> None:
+    probe = PRESSURE.replace("history.csv", "probes.csv").replace(
+        "well_pressure_pa/1e6", "a-b_p_pa"
+    )
+    study = read(
+        tmp_path,
+        "constants = { half = 0.5 }\n" + HEAD + "[over]\nrate = [1e-9, 2e-9]\n"
+        '[set]\n"injection.rate" = "{rate}"\n'
+        + PRESSURE.replace("well_pressure_pa/1e6", "half*well_pressure_pa/rate")
+        + probe.replace('"pressure"', '"probed"')
+        + KEY,
+    )  # fmt: skip
+    assert [item.selection.file for item in study.quantities] == [
+        "history.csv",
+        "probes.csv",
+        "run.json",
+    ]
 
 
 def test_words_of_any_script_are_kept(tmp_path: Path) -> None:

@@ -208,10 +208,12 @@ def test_what_is_absent_is_told_unless_it_may_be(study: SmallStudy) -> None:
     assert (study.rows[1]["onset_s"], study.rows[1]["reason"]) == ("", "")
 
 
-def test_a_wrong_column_is_told_even_if_absence_is_allowed(study: SmallStudy) -> None:
+def test_a_wrong_column_is_refused_even_if_absence_is_allowed(study: SmallStudy) -> None:
     study.write(HEAD + OVER + ONSET.replace('"time_s"', '"time_h"') + "may_be_absent = true\n")
-    assert study.call().returncode == 0
-    assert "time_h" in study.rows[0]["reason"]
+    done = study.call()
+    assert done.returncode == 2
+    assert "events.csv has no column 'time_h'" in done.stderr
+    assert study.calls == []
 
 
 def test_without_a_solver_the_environment_is_at_fault(study: SmallStudy) -> None:
@@ -235,3 +237,45 @@ def test_quick_takes_the_short_form_and_keeps_the_long_one(study: SmallStudy) ->
     done = study.call("--quick")
     assert done.returncode == 2
     assert "there is no [quick]" in done.stderr
+
+
+def test_a_column_that_the_first_run_lacks_ends_the_study(study: SmallStudy) -> None:
+    """It is one of a run's columns, but not of this run's: the others are not run."""
+    study.write(SOUND.replace("well_pressure_pa", "max_slip_m"))
+    done = study.call("--jobs", "1")
+    assert done.returncode == 1
+    assert "history.csv of the run has no max_slip_m; ended with " in done.stderr.splitlines()[-1]
+    assert len(study.calls) < 3
+    assert study.call("--jobs", "1").returncode == 1  # of what is there already, too
+    assert len(study.calls) < 3
+
+
+def test_a_file_that_may_be_absent_is_no_fault(study: SmallStudy) -> None:
+    absent = PRESSURE.replace("history.csv", "slip_events.csv").replace(
+        "well_pressure_pa", "time_s"
+    )
+    study.write(HEAD + OVER + ONSET + absent + "may_be_absent = true\n")
+    done = study.call()
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {(row["pressure_mpa"], row["reason"]) for row in study.rows} == {("", "")}
+
+
+def test_a_quantity_of_no_run_is_told_by_the_status(study: SmallStudy) -> None:
+    study.write(SOUND.replace('"growth"', '"growht"'))
+    done = study.call()
+    assert done.returncode == 1
+    assert "'onset' could be read of no run" in done.stderr.splitlines()[-1]
+    assert len(study.calls) == 3
+
+
+def test_a_link_that_leads_out_of_the_run_is_not_followed(study: SmallStudy) -> None:
+    assert study.call().returncode == 0
+    secret = study.folder / "secret.csv"
+    secret.write_text("time_s,well_pressure_pa\n0,12345678\n")
+    for history in study.out.glob("runs/*/output/history.csv"):
+        history.unlink()
+        history.symlink_to(secret)
+    done = study.call()
+    assert done.returncode == 1
+    assert "history.csv: it is not in the folder of the run" in done.stderr.splitlines()[-1]
+    assert "12.345678" not in (study.out / "table.csv").read_text()

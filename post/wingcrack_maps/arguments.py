@@ -17,7 +17,8 @@ The file's ending says what it is:
   .csv .txt       a table with columns x1, y1, x2, y2 (a fracture a row), name, x, y (a vertex a
                   row) or wkt; parted by commas, semicolons or tabs
   .wkt            well-known text, a geometry a line
-  .geo .msh       gmsh: physical curves are fractures, physical surfaces body and regions
+  .geo .msh       gmsh: physical curves are fractures, physical surfaces body and regions; nothing
+                  is executed: of a .geo file straight lines are read, of the rest its .msh file
 Attributes with the name of an entry of &fracture (friction, aperture, toughness ...) become that
 entry, in SI units; docs/maps.md tells the rest.
 

@@ -6,7 +6,9 @@ from pathlib import Path
 
 from wingcrack_maps.features import Map
 from wingcrack_maps.read_csv import read_csv
+from wingcrack_maps.read_geo import read_geo
 from wingcrack_maps.read_geojson import read_geojson
+from wingcrack_maps.read_msh import read_msh
 from wingcrack_maps.read_wkt import read_wkt
 from wingcrack_maps.units import could_be_degrees, scale
 from wingcrack_scenes.errors import SceneError
@@ -29,12 +31,8 @@ def read_map(path: Path, unit: str | None) -> Map:
         If the file cannot be read or understood; nothing is guessed.
     """
     ending = path.suffix.lower()
-    if ending in (".msh", ".geo"):
-        # late: only these take gmsh's library
-        from wingcrack_maps.read_gmsh import read_gmsh
-
-        found = read_gmsh(path)
-        says_system = True
+    if ending == ".msh":
+        found, says_system = read_msh(path), True
     else:
         found, says_system = _read_text(path, ending)
     if not (found.lines or found.areas):
@@ -62,6 +60,8 @@ def _read_text(path: Path, ending: str) -> tuple[Map, bool]:
         raise SceneError(f"{path}: the file is empty")
     if ending in (".geojson", ".json"):
         return read_geojson(text, str(path))
+    if ending == ".geo":
+        return read_geo(text, str(path)), True
     if ending == ".wkt":
         return read_wkt(text, str(path)), True
     return read_csv(text, str(path)), True

@@ -18,6 +18,7 @@ from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
 from wingcrack_study.arguments import parse
 from wingcrack_study.cluster import Cluster
+from wingcrack_study.outputs import UnreadableError, judge_run
 from wingcrack_study.running import Clock, check_scenes, done_before, run_tasks, tasks_of
 from wingcrack_study.study import Study, read_study
 from wingcrack_study.table import (
@@ -71,8 +72,8 @@ def _study(given: argparse.Namespace) -> int:
     workers = given.jobs or cluster.workers or len(os.sched_getaffinity(0))
     tasks = tasks_of(study, given.build, given.out)
     before = done_before(tasks)
-    check_scenes([run for run in study.runs if run.number not in before], tasks, workers)
     print(f"{study.title}\n{len(tasks)} runs, {len(before)} of them done before", flush=True)
+    check_scenes([run for run in study.runs if run.number not in before], tasks, workers)
     if given.check:
         print("all scenes are sound; nothing was run")
         return 0
@@ -93,13 +94,17 @@ def _run(
     before = done_before(tasks)  # again: another call may have had the folder until now
     ledger = _Ledger(study, before, workers, clock)
     open_tasks = {number: task for number, task in tasks.items() if number not in before}
-    status = 0
+    status, why = 0, "interrupted"
     try:
+        for outcome in before.values():
+            ledger.judge(outcome)
         run_tasks(open_tasks, cluster, workers, ledger)
     except _Ended as ended:
         status = ended.status
+    except UnreadableError as reason:
+        status, why = 1, f"{reason}; ended"
     with _undisturbed():
-        return _finish(study, ledger, given, cluster, clock, status)
+        return _finish(study, ledger, given, cluster, clock, (status, why))
 
 
 class _Ledger:
@@ -110,6 +115,7 @@ class _Ledger:
     ) -> None:
         self.outcomes = dict(before)
         self.reused = len(before)
+        self._study, self._is_judged = study, False
         self._labels = {run.number: run.label for run in study.runs}
         self._workers = workers
         self._clock = clock
@@ -123,6 +129,24 @@ class _Ledger:
         done, total = len(self.outcomes), len(self._labels)
         place = f"[{done:{len(str(total))}}/{total}]"
         print(f"{place} {self._labels[number]}: {how}{self._left()}", flush=True)
+        self.judge(outcome)
+
+    def judge(self, outcome: Outcome) -> None:
+        """Refuse to go on if the first finished run lacks what shall be read of all.
+
+        Raises
+        ------
+        UnreadableError
+            With what it lacks.
+        """
+        if self._is_judged or outcome.status != "finished":
+            return
+        self._is_judged = True
+        output, study = Path(outcome.folder) / "output", self._study
+        may_lack = {item.selection.file for item in study.quantities if item.may_be_absent}
+        for selection in study.selections:
+            if selection.file not in may_lack or (output / selection.file).exists():
+                judge_run(selection, output, study.names)
 
     def _left(self) -> str:
         """How long the rest will take, if it is like what was run."""
@@ -139,10 +163,11 @@ def _finish(
     given: argparse.Namespace,
     cluster: Cluster,
     clock: Clock,
-    ended: int,
+    end: tuple[int, str],
 ) -> int:
     """Write table and figures of what there is, and tell how it went."""
     out: Path = given.out
+    ended, why = end
     table = make_table(study, ledger.outcomes, out)
     write_csv(table, out / "table.csv")
     write_parquet(table, out / "table.csv", out / "table.parquet")
@@ -155,12 +180,22 @@ def _finish(
     _tell(table, notes)
     if ended:
         left = len(study.runs) - len(ledger.outcomes)
-        return _say(f"interrupted with {left} runs to go; {out / 'table.csv'} has the rest", ended)
+        return _say(f"{why} with {left} runs to go; {out / 'table.csv'} has the rest", ended)
     bad = sum(row["status"] != "finished" for row in table.rows)
     if bad:
         return _say(f"{bad} of {len(table.rows)} runs failed; {out / 'table.csv'} says why", 1)
+    if lacking := _read_of_none(study, table):
+        return _say(f"'{lacking}' could be read of no run; {out / 'table.csv'} says why", 1)
     print(out / "table.csv")
     return 0
+
+
+def _read_of_none(study: Study, table: StudyTable) -> str:
+    """Name of a quantity that no run has, and that may not be absent."""
+    for quantity in study.quantities:
+        if not quantity.may_be_absent and all(row[quantity.column] is None for row in table.rows):
+            return quantity.name
+    return ""
 
 
 def _draw(study: Study, table: StudyTable, out: Path) -> list[str]:

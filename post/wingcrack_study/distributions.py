@@ -18,7 +18,7 @@ METHODS = ("latin_hypercube", "random")
 SAMPLE = "sample"  # the parameter that numbers the draws, from 1
 
 
-def read_draws(data: Any, place: str, count: int | None = None) -> Table:
+def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Table:
     """Lists of equal length, one per drawn parameter, and the numbers of the samples.
 
     Parameters
@@ -27,13 +27,16 @@ def read_draws(data: Any, place: str, count: int | None = None) -> Table:
         ``count``, ``seed``, ``method`` and ``parameters``: a distribution for each name.
     place : str
         For errors.
+    most : int
+        How many samples there may be.
     count : int, optional
         Instead of that of the table.
 
     Raises
     ------
     CaseError
-        If a distribution is unknown, impossible, or has no probability within its bounds.
+        If there are too many, or a distribution is unknown, impossible, or has no probability
+        within its bounds.
     """
     fields = Fields(data, place)
     given, seed = _whole(fields, "count", 1), _whole(fields, "seed", 0)
@@ -43,6 +46,8 @@ def read_draws(data: Any, place: str, count: int | None = None) -> Table:
     if not parameters:
         raise CaseError(f"{place}: 'parameters' is missing: which entries are drawn?")
     count = given if count is None else count
+    if count > most:
+        raise CaseError(f"{place}: {count} runs are more than {most}")
     shares = _shares(count, len(parameters), seed, method)
     points: Table = {SAMPLE: list(range(1, count + 1))}
     for (name, entry), column in zip(parameters.items(), shares.T, strict=True):

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wingcrack_post import style
+from wingcrack_study.outputs import select_in_run
 from wingcrack_study.plots import Plot
 from wingcrack_study.quantities import Quantity
 from wingcrack_study.study import Parameter, Study, StudyRun
@@ -20,7 +21,7 @@ from wingcrack_study.table import StudyTable
 from wingcrack_study.units import NONE, axis_label, pretty_number, pretty_unit, spoken
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import Array
-from wingcrack_verify.selection import Values, select
+from wingcrack_verify.selection import Values
 
 _WIDTH, _HEIGHT = 0.7 * style.DOUBLE_COLUMN, 3.0  # [inch]
 _MOST_IN_LEGEND = 12
@@ -63,7 +64,7 @@ def _curves(
         try:
             output = out / row["folder"] / "output"
             constants = {**study.constants, **run.constants}
-            values = select(plot.selection, output, constants, as_path=plot.kind == "lines")
+            values = select_in_run(plot.selection, output, constants, as_path=plot.kind == "lines")
             found.append(_Curve(run, values))
         except CaseError as reason:
             missing.append(f"{run.label}: {reason}")

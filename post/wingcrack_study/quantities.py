@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack_study.outputs import select_in_run
 from wingcrack_study.units import column_name
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
-from wingcrack_verify.selection import Selection, read_selection, select
+from wingcrack_verify.selection import Selection, read_selection
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Quantity:
     selection : Selection
         Where it stands in the files of a run.
     may_be_absent : bool
-        Whether it is no fault if no row is there: wings that have not grown have no onset.
+        Whether it is no fault if no row or file is there: wings that have not grown have no onset.
     """
 
     name: str
@@ -63,9 +64,10 @@ def measure(
 ) -> tuple[float | None, str]:
     """Value of a quantity of a run, or None with the reason why there is none."""
     try:
-        found = select(quantity.selection, output, constants)
+        found = select_in_run(quantity.selection, output, constants)
     except CaseError as reason:
-        if quantity.may_be_absent and (": no row where" in str(reason)):
+        absent = (": no row where" in str(reason)) or (": the file is missing" in str(reason))
+        if quantity.may_be_absent and absent:
             return None, ""
         return None, f"{quantity.name}: {reason}"
     return float(found.values[0]), ""

@@ -29,6 +29,8 @@ from wingcrack_verify.execute import scene_hash
 SOLVER = Path("fortran") / "app" / "wingcrack-solver"
 RUNS = "runs"  # the folder of all runs' folders
 
+_SILENCE_S = 10.0
+
 
 def tasks_of(study: Study, build: Path, out: Path) -> dict[int, Task]:
     """What is to be run, by the runs' numbers.
@@ -75,8 +77,13 @@ def check_scenes(runs: Sequence[StudyRun], tasks: Mapping[int, Task], parallel: 
         if runs:  # what is wrong with the study is mostly wrong with all: ask about one first
             _refuse(runs[0], check(runs[0]))
         with ThreadPoolExecutor(parallel) as threads:
-            for run, reason in zip(runs[1:], threads.map(check, runs[1:]), strict=True):
+            told_s = time.monotonic()
+            reasons = threads.map(check, runs[1:])
+            for count, (run, reason) in enumerate(zip(runs[1:], reasons, strict=True), start=2):
                 _refuse(run, reason)
+                if time.monotonic() - told_s > _SILENCE_S:
+                    told_s = time.monotonic()
+                    print(f"{count} of {len(runs)} scenes are checked", flush=True)
 
 
 def _refuse(run: StudyRun, reason: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 from wingcrack_study.arguments import TOP
 from wingcrack_study.cluster import Cluster, read_cluster
 from wingcrack_study.distributions import SAMPLE, read_draws
+from wingcrack_study.outputs import judge_selection
 from wingcrack_study.plots import Plot, read_plot
 from wingcrack_study.quantities import Quantity, read_quantity
 from wingcrack_study.units import NONE, column_name, spoken, unit_of_path
@@ -18,10 +20,11 @@ from wingcrack_verify.case import TIME_LIMIT_S, read_toml
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
 from wingcrack_verify.scene import scene_text
+from wingcrack_verify.selection import Selection
 from wingcrack_verify.sweep import Table, filled, grid_points
 
 INPUT_PAGE = TOP / "docs" / "input.md"
-MOST_RUNS = 100_000
+MOST_RUNS = 10_000
 
 # Columns that the table of every study has, beside those of its own.
 FIXED_COLUMNS = ("run", "label", "status", "reason", "cpu_s", "wall_s", "folder")
@@ -80,6 +83,17 @@ class Study:
     plots: tuple[Plot, ...]
     cluster: Cluster
 
+    @property
+    def names(self) -> set[str]:
+        """Names that expressions can use beside those of columns."""
+        return {*self.constants, *(name for run in self.runs for name in run.constants)}
+
+    @property
+    def selections(self) -> list[Selection]:
+        """All that is read of a run."""
+        drawn = [plot.selection for plot in self.plots if plot.selection]
+        return [*(quantity.selection for quantity in self.quantities), *drawn]
+
 
 def read_study(path: Path, quick: bool = False) -> Study:
     """Read a study's file and make the scene of each of its runs.
@@ -111,7 +125,9 @@ def read_study(path: Path, quick: bool = False) -> Study:
     over = fields.mapping("over") | quickly.get("over", {})
     drawn = fields.has("draw")
     if drawn:
-        draws = read_draws(fields.take("draw"), f"{path.name}: draw", quickly.get("count"))
+        draws = read_draws(
+            fields.take("draw"), f"{path.name}: draw", MOST_RUNS, quickly.get("count")
+        )
         over[SAMPLE] = draws
     units = fields.mapping("units")
     limit = fields.positive("time_limit_s", TIME_LIMIT_S)
@@ -142,6 +158,9 @@ def read_study(path: Path, quick: bool = False) -> Study:
     fields.done()
     _check_columns(study, path.name)
     _check_plots(study, path.name)
+    has_fluid = any(re.search(r"^\s*&fluid\b", run.text, re.MULTILINE) for run in runs)
+    for selection in study.selections:
+        judge_selection(selection, study.names, has_fluid)
     return study
 
 
@@ -171,9 +190,7 @@ def _runs(
 ) -> tuple[StudyRun, ...]:
     """All runs; the last parameter changes first."""
     _refuse_nested(over, place)
-    points = grid_points(over, f"{place}: over") if over else [{}]
-    if len(points) > MOST_RUNS:
-        raise CaseError(f"{place}: {len(points)} runs are more than {MOST_RUNS}")
+    points = grid_points(over, f"{place}: over", MOST_RUNS) if over else [{}]
     found: list[StudyRun] = []
     labels: set[str] = set()
     for number, point in enumerate(points, start=1):

@@ -38,6 +38,8 @@ TAKES: dict[str, Callable[[Array], float]] = {
 # A path into a JSON file; not the exponent of a number.
 _KEY = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 
+_OWN = {*FUNCTIONS, "pi"}  # names of arithmetic itself
+
 CLOCKS = ("time_s", "load_factor")  # what stands for the time of a row
 EQUAL = 1.0e-9  # relative difference up to which a number in a file is the one asked for
 
@@ -111,6 +113,23 @@ def read_selection(fields: Fields, file: str) -> Selection:
     return Selection(
         place, file, columns, conditions, bool(at), take, interpolate, x, x_values, None
     )
+
+
+def names_of(
+    selection: Selection, is_column: Callable[[str], bool] = lambda name: False
+) -> set[str]:
+    """Names that a selection needs: columns or keys of its file, and constants in arithmetic.
+
+    Those that `is_column` knows are left out, also where they could be taken for arithmetic.
+    """
+    if selection.key is not None:
+        found = set(_KEY.findall(selection.key)) - _OWN
+        return {name for name in found if not is_column(name)}
+    texts = [*selection.columns, *([selection.x] if selection.x else [])]
+    if selection.interpolate:
+        texts.append(selection.interpolate[0])
+    found = {name for text in texts if not is_column(text) for name in names_in(text) - _OWN}
+    return {name for name in found | {name for name, _ in selection.where} if not is_column(name)}
 
 
 def _conditions(given: Mapping[str, Any], place: str) -> tuple[tuple[str, Wanted], ...]:
@@ -232,7 +251,7 @@ def _column(table: Table, text: str, kept: Mask, constants: Mapping[str, float])
     if table.has(text):
         values = _numbers(table, text)[kept]
     else:
-        used = names_in(text) - set(constants) - set(FUNCTIONS) - {"pi"}
+        used = names_in(text) - set(constants) - _OWN
         columns: dict[str, Array | float] = dict(constants)
         columns |= {name: _numbers(table, name)[kept] for name in used}
         values = np.broadcast_to(evaluate(text, columns), (int(np.count_nonzero(kept)),))
@@ -256,7 +275,7 @@ def _json_number(selection: Selection, folder: Path) -> float:
     values: dict[str, float] = {}
 
     def named(path: re.Match[str]) -> str:
-        if path.group() in FUNCTIONS or path.group() == "pi":
+        if path.group() in _OWN:
             return path.group()
         name = path.group().replace(".", "__")
         values[name] = _json_value(content, path.group(), selection.file)

@@ -150,17 +150,19 @@ def filled(
     return _Filler(dict(point), used, place).filled(table), used
 
 
-def grid_points(over: Any, place: str) -> list[Table]:
+def grid_points(over: Any, place: str, most: float = math.inf) -> list[Table]:
     """All combinations of the axes; the last axis changes first.
 
     Raises
     ------
     CaseError
-        If an axis gives nothing, or two give the same name.
+        If an axis gives nothing, or two give the same name, or there would be more than `most`.
     """
     if not isinstance(over, Mapping) or not over:
         raise CaseError(f"{place} must be a table of lists")
     axes = [_axis(name, values, f"{place}.{name}") for name, values in over.items()]
+    if (count := math.prod(map(len, axes))) > most:
+        raise CaseError(f"{place}: {count} runs are more than {most}")
     return [_united(parts, place) for parts in itertools.product(*axes)]
 
 
