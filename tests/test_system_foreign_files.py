@@ -139,6 +139,15 @@ def test_a_scene_without_end_is_refused_with_the_number(kind: str, tmp_path: Pat
     assert words in done.stderr
 
 
+def test_ten_thousand_wells_are_judged_at_once(tmp_path: Path) -> None:
+    wells = "".join(
+        f"&injection name = 'w{k}', x = 0.3, y = 0.3, rate = 0, radius = 1e-4 /\n"
+        for k in range(9980)
+    )
+    (tmp_path / "small.nml").write_text(SCENE + wells)
+    assert check(tmp_path, "small.nml").returncode == 0
+
+
 def test_a_long_expression_and_many_names_are_read_at_once(tmp_path: Path) -> None:
     names = "\n".join(f"v{k} = {k}" for k in range(1000))
     terms = "+".join(["v999*1e5"] * 1100)

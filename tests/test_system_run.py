@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import signal
 import subprocess
@@ -14,7 +15,19 @@ from xml.etree import ElementTree
 
 import pytest
 import pyvista
-from system_scene import GROWING, SCENE, TOP, call, numbers, record, rows, run, start, varied
+from system_scene import (
+    GROWING,
+    SCENE,
+    SOLVER,
+    TOP,
+    call,
+    numbers,
+    record,
+    rows,
+    run,
+    start,
+    varied,
+)
 
 # The columns that users may rely on, in their order; docs/output.md may have more among them.
 HISTORY = [
@@ -408,3 +421,33 @@ def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> Non
     cells = record(run(tmp_path, text))["cells"]
     assert isinstance(cells, int)
     assert abs(int(foreseen[1]) - cells) < 0.25 * cells
+
+
+def test_what_speaks_to_the_fortran_library_changes_no_file(tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    spoilt = {
+        "GFORTRAN_CONVERT_UNIT": "big_endian",
+        "GFORTRAN_DEFAULT_RECL": "20",
+        "GFORTRAN_OPTIONAL_PLUS": "y",
+        "GFORTRAN_STDOUT_UNIT": "17",
+        "GFORTRAN_UNBUFFERED_ALL": "y",
+    }
+    for out, more in (("plain", {}), ("spoilt", spoilt)):
+        done = subprocess.run(
+            [SOLVER, "run", "small.nml", "--out", out],
+            cwd=tmp_path,
+            env=os.environ | more,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        assert f"results in {out}" in done.stdout
+    files = sorted((tmp_path / "plain").rglob("*.*"))
+    assert len(files) > 12
+    for file in files:
+        if file.name not in ("run.json", "run.log"):  # these have times of the clock
+            twin = tmp_path / "spoilt" / file.relative_to(tmp_path / "plain")
+            assert twin.read_bytes() == file.read_bytes(), file.name
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["plain", "small.nml", "spoilt"]

@@ -81,6 +81,7 @@ contains
          end if
       end do
       call make_directory(self%directory, error)
+      refused = allocated(error) .and. leads_through_file(self%directory)
       if (allocated(error)) return
       self%hold = c_hold_folder(self%directory//c_null_char, holder)
       refused = self%hold == is_held
@@ -88,6 +89,23 @@ contains
                                     " writes into "//self%directory// &
                                     ": wait for its end, or name another folder with --out")
    end subroutine claim
+
+   !> A path, or the beginning of it, is that of a file and no folder.
+   function leads_through_file(path) result(answer)
+      character(len=*), intent(in) :: path
+      logical :: answer, exists, is_folder
+      integer :: i
+
+      answer = .false.
+      do i = 1, len(path)
+         if (i < len(path)) then
+            if (path(i + 1:i + 1) /= "/") cycle
+         end if
+         inquire (file=path(:i), exist=exists)
+         inquire (file=path(:i)//"/.", exist=is_folder)
+         answer = answer .or. (exists .and. .not. is_folder)
+      end do
+   end function leads_through_file
 
    !> Which process, where that is known.
    pure function process_text(process) result(text)

@@ -144,13 +144,14 @@ contains
       class(sheet_t), intent(in) :: self
       character(len=*), intent(in) :: name
       integer, intent(in), optional :: n  !< default 1
-      integer :: seen, wanted
+      integer :: group, seen, wanted
 
       wanted = 1
       if (present(n)) wanted = n
+      group = group_index(name)
       seen = 0
       do record = 1, self%length
-         if (groups(self%records(record)%group)%name == name) seen = seen + 1
+         if (self%records(record)%group == group) seen = seen + 1
          if (seen == wanted) return
       end do
       record = 0
