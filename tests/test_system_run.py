@@ -451,3 +451,45 @@ def test_what_speaks_to_the_fortran_library_changes_no_file(tmp_path: Path) -> N
             twin = tmp_path / "spoilt" / file.relative_to(tmp_path / "plain")
             assert twin.read_bytes() == file.read_bytes(), file.name
     assert sorted(path.name for path in tmp_path.iterdir()) == ["plain", "small.nml", "spoilt"]
+
+
+# Slip in rock of a tenth of the scene's stiffness, of modulus G = 1.6 GPa.
+IN_REGION = """\
+&domain x_min = -10.0, x_max = 10.0, y_min = -10.0, y_max = 10.0 /
+&material
+  young = 40.0e9, poisson = 0.25
+  biot = 1e-6, porosity = 1e-6, permeability = 1e-30
+/
+&fluid compressibility = 1e-9, viscosity = 1e-3 /
+&region name = 'soft', x = -20.0, 20.0, 20.0, -20.0, y = -20.0, -20.0, 20.0, 20.0, young = 4.0e9 /
+&fracture name = 'f', x = -1.0, 1.0, y = 0.0, 0.0, friction = 0.6, aperture = 1e-4 /
+&in_situ sxx = -20.0e6, syy = -20.0e6, sxy = 5.0e6 /
+&initial pressure = 10.0e6 /
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&injection fracture = 'f', pressure = 10.0e6, 14.0e6, time = 0.0, 10.0 /
+&time end = 20.0, step = 1.0 /
+&coarse size_fracture = 0.1, size_boundary = 2.0 /
+&output vtu = .false. /
+"""
+
+
+@pytest.mark.parametrize("begin", [-20.0, 0.0], ids=["all of it", "half of it"])
+def test_the_moment_of_slip_in_a_region_has_its_modulus_in_both_tables(
+    begin: float, tmp_path: Path
+) -> None:
+    outline = "x = -20.0, 20.0, 20.0, -20.0"
+    assert outline in IN_REGION
+    out = run(tmp_path, IN_REGION.replace(outline, f"x = {begin}, 20.0, 20.0, {begin}"))
+    moments = numbers(out / "history.csv", "seismic_moment_nm")
+    events = rows(out / "slip_events.csv")
+    total = sum(float(event["moment_nm"]) for event in events)
+    assert total == pytest.approx(moments[-1] - moments[0], rel=1e-9)
+    for event in events:
+        moment = float(event["moment_nm"])
+        modulus = moment / (float(event["mean_slip_m"]) * float(event["area_m2"]))
+        assert modulus == pytest.approx(1.6e9, rel=1e-12) if begin < -1 else 2e9 < modulus < 12e9
+        magnitude = (math.log10(moment) - 9.1) / 1.5
+        assert float(event["magnitude"]) == pytest.approx(magnitude, rel=1e-12)
+    if begin < -1:
+        assert total == pytest.approx(3.30e6, rel=0.01)
