@@ -236,3 +236,45 @@ def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str
     assert json.loads((out / "run.json").read_text())["status"] in words["run.json"]
     for joint in json.loads((out / "network.json").read_text())["joints"]:
         assert joint["kind"] in words["network.json"]
+
+
+# Two layers of other constants under a weight between smooth walls: nothing moves along x, nor along
+# z, so that the stresses along both are the same.
+LAYERS = """\
+&domain x_min = 0.0, x_max = 1.0, y_min = 0.0, y_max = 2.0 /
+&material young = 40.0e9, poisson = 0.2 {rock} /
+&region
+  name = 'upper', x = 0.0, 1.0, 1.0, 0.0, y = 1.0, 1.0, 2.0, 2.0
+  young = 10.0e9, poisson = 0.35 {upper}
+/
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'right', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&side name = 'top', y_traction = -10.0e6 /
+"""
+WET = LAYERS.format(
+    rock=", biot = 0.8, porosity = 0.1, permeability = 1e-25",
+    upper=", biot = 0.5, porosity = 0.05",
+) + (
+    "&fluid compressibility = 4e-10, viscosity = 1e-3 /\n"
+    "&initial pressure = 3.0e6 /\n"
+    "&time end = 10.0, step = 10.0 /\n"
+    "&coarse size_fracture = 0.2, size_boundary = 0.2 /\n"
+)
+DRY = LAYERS.format(rock="", upper="") + "&fe size_fracture = 0.2, size_boundary = 0.2 /\n"
+
+
+@pytest.mark.parametrize("scene", [WET, DRY], ids=["with a fluid", "without"])
+def test_the_stress_out_of_the_plane_in_layers(scene: str, tmp_path: Path) -> None:
+    out = run(tmp_path, scene)
+    grid = pyvista.read(sorted((out / "vtu").glob("matrix_*.vtu"))[-1])
+    height = grid.cell_centers().points[:, 1]
+    xx, yy, zz = (grid.cell_data["stress"][:, k] for k in range(3))
+    assert np.allclose(yy, -10.0e6, rtol=1e-6)
+    assert np.allclose(zz, xx, rtol=1e-6)
+    for layer, poisson, biot in ((height < 1.0, 0.2, 0.8), (height > 1.0, 0.35, 0.5)):
+        pressure = grid.cell_data["pressure"][layer] if scene == WET else 0.0
+        ratio = poisson / (1.0 - poisson)
+        effective = yy[layer] + biot * pressure
+        assert np.allclose(zz[layer], ratio * effective - biot * pressure, rtol=1e-6)
+        assert abs(zz[layer]).max() > 1.0e6
