@@ -238,8 +238,8 @@ def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str
         assert joint["kind"] in words["network.json"]
 
 
-# Two layers of other constants under a weight between smooth walls: nothing moves along x, nor along
-# z, so that the stresses along both are the same.
+# Two layers of other constants under a weight, between smooth walls: nothing moves along x or
+# along z, so that the stresses along both are the same.
 LAYERS = """\
 &domain x_min = 0.0, x_max = 1.0, y_min = 0.0, y_max = 2.0 /
 &material young = 40.0e9, poisson = 0.2 {rock} /
