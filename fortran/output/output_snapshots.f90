@@ -3,6 +3,7 @@
 module output_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_texts, only: text_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    use output_tensors, only: displacement_3d, permeability_tensor, stress_tensor, &
                              tensor_components
@@ -31,6 +32,7 @@ module output_snapshots
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
+      procedure :: files
       procedure :: flush => flush_snapshots
    end type snapshots_t
 
@@ -80,7 +82,7 @@ contains
             call write_one(self, 3, time, history_row, grid, error)
          end if
       end if
-      self%n_written = self%n_written + 1
+      if (.not. allocated(error)) self%n_written = self%n_written + 1
    end subroutine write_snapshot
 
    !> Write the collections that have changed.
@@ -94,6 +96,17 @@ contains
          if (allocated(error)) return
       end do
    end subroutine flush_snapshots
+
+   !> Paths of the VTU files of the rock that were written, from the run's directory.
+   pure function files(self) result(paths)
+      class(snapshots_t), intent(in) :: self
+      type(text_t) :: paths(self%n_written)
+      integer :: n
+
+      do n = 1, self%n_written
+         paths(n)%text = file_name(1, n - 1)
+      end do
+   end function files
 
    !> Write one grid and add it to its collection.
    subroutine write_one(self, i, time, history_row, grid, error)
