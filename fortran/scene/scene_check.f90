@@ -7,7 +7,7 @@ module scene_check
    use scene_check_column, only: check_column
    use scene_check_faces, only: check_faces
    use scene_check_fluid, only: check_fluid, check_given_fluid
-   use scene_check_geometry, only: check_domain, check_fractures, check_probes
+   use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_permeability, only: check_given_permeability, check_tensor
@@ -48,6 +48,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call check_domain(sheet, scene, error)
+      if (.not. allocated(error)) call check_least_size(sheet, scene, error)
       if (.not. allocated(error)) call check_material(sheet, scene, error)
       if (.not. allocated(error) .and. allocated(scene%regions)) then
          call check_regions(sheet, scene, error)
