@@ -267,11 +267,14 @@ contains
       type(timers_t), intent(in) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: trouble
+      type(text_t), allocatable :: files(:)
 
       if (.not. self%keeps_earlier_run) then
          call self%flush(error)
          if (.not. allocated(error)) then
-            call self%place%check([text_t("scene.nml"), self%snapshots%files()], error)
+            call self%snapshots%list_files(files)
+            call add_text(files, "scene.nml")
+            call self%place%check(files, error)
          end if
          if (allocated(error) .and. record%status /= status_failed) then
             record%status = status_failed

@@ -32,7 +32,7 @@ module output_snapshots
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
-      procedure :: files
+      procedure :: list_files
       procedure :: flush => flush_snapshots
    end type snapshots_t
 
@@ -98,15 +98,16 @@ contains
    end subroutine flush_snapshots
 
    !> Paths of the VTU files of the rock that were written, from the run's directory.
-   pure function files(self) result(paths)
+   pure subroutine list_files(self, paths)
       class(snapshots_t), intent(in) :: self
-      type(text_t) :: paths(self%n_written)
+      type(text_t), allocatable, intent(out) :: paths(:)
       integer :: n
 
+      allocate (paths(self%n_written))
       do n = 1, self%n_written
          paths(n)%text = file_name(1, n - 1)
       end do
-   end function files
+   end subroutine list_files
 
    !> Write one grid and add it to its collection.
    subroutine write_one(self, i, time, history_row, grid, error)
