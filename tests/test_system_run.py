@@ -399,6 +399,22 @@ def test_figures_of_a_run(growing: Path) -> None:
         assert path.read_bytes().startswith(magic)
 
 
+def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
+    scene = (TOP / "verification/kgd/kgd.nml").read_text()
+    usual = 1.0306923793741721e-4  # K_m = 4
+    told = {}
+    for name, factor in (("tough", 1.0), ("between", 16.0), ("viscous", 1e4)):
+        assert "1.0306923793741721e-4" in scene
+        text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
+        (tmp_path / f"{name}.nml").write_text(text)
+        told[name] = call(tmp_path, "check", f"{name}.nml").stdout
+    assert "toughness decides about growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
+    assert "toughness and viscosity decide about growth, K_m = 2.000E+00" in told["between"]
+    assert "viscosity decides about growth, K_m = 4.000E-01" in told["viscous"]
+    warning = "&injection 'well_1': K_m is 0.4: the fluid's viscosity decides"
+    assert [warning in told[name] for name in told] == [False, False, True]
+
+
 def test_a_scene_is_checked_without_running(tmp_path: Path) -> None:
     (tmp_path / "small.nml").write_text(SCENE)
     done = call(tmp_path, "check", "small.nml")
