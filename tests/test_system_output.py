@@ -12,7 +12,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from system_scene import GROWING, TOP, run, varied
+from system_scene import GROWING, TOP, rows, run, varied
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -204,12 +204,18 @@ def test_a_plain_reader_takes_all_fields(out_and_runs: tuple[Path, set[str]]) ->
         for f in json.loads((out / "network.json").read_text())["fractures"]
     }
     assert all(f"name = '{name}'" in (out / "scene.nml").read_text() for name in named.values())
+    history = rows(out / "history.csv")
     for file in sorted((out / "vtu").glob("*.vtu")):
         plain, grid = meshio.read(file), pyvista.read(file)
         assert set(plain.cell_data) == set(grid.cell_data.keys())
         for name, (values,) in plain.cell_data.items():
             assert np.array_equal(values, grid.cell_data[name])
         assert plain.field_data["TimeValue"] == grid.field_data["TimeValue"]
+        row = history[plain.field_data["history_row"][0] - 1]
+        assert (
+            float(row["time_s" if "time_s" in row else "load_factor"])
+            == grid.field_data["TimeValue"]
+        )
         if "fracture" in plain.cell_data:
             assert set(plain.cell_data["fracture"][0]) == set(named)
 

@@ -18,6 +18,7 @@ program test_simulation_slip
    call make_fractures()
    call test_one()
    call test_division_and_meeting()
+   call test_meeting_rates()
    call test_two_rocks()
    call test_other_mesh()
    call test_end_of_run()
@@ -115,6 +116,21 @@ contains
                               "and covers both")
       end associate
    end subroutine test_division_and_meeting
+
+   !> Of two events that meet, the faster one's rate stays, whichever comes first.
+   subroutine test_meeting_rates()
+      integer :: fast, i
+
+      do fast = 1, 5, 4
+         call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
+        call step(0.5_rk, [1, 5], [integer ::], faster=[(merge(9.0_rk, 1.0_rk, i == fast), i=1, n)])
+         call step(1.0_rk, [1, 2, 3, 4, 5], [integer ::])
+         call catalogue%end_all()
+         call checks%is_true(size(catalogue%news) == 1, "they meet")
+         call checks%is_close(catalogue%news(1)%largest_rate*dt/(slip*shear*breadth), 9.0_rk, &
+                              1.0e-12_rk, "the faster one's rate")
+      end do
+   end subroutine test_meeting_rates
 
    !> Slip in two rocks, the second a tenth as stiff: shares, moment and place are those of the
    !! moment, the mean slip is that of both.
