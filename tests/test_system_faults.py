@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from system_scene import SCENE, SOLVER, TOP, call, varied
+from system_scene import SCENE, TOP, bare, call, varied
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -260,14 +260,7 @@ def test_a_file_is_no_place_for_results(tmp_path: Path) -> None:
 def test_to_the_bare_solver_neither(out: str, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("somebody's file\n")
     (tmp_path / "small.nml").write_text(SCENE)
-    done = subprocess.run(
-        [SOLVER, "run", "small.nml", "--out", out],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = bare(tmp_path, "run", "small.nml", "--out", out)
     assert (done.returncode, done.stdout) == (2, "")
     assert f"cannot make the directory {out}" in done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "small.nml"]

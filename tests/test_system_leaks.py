@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from pathlib import Path
 
 import pytest
-from system_scene import GROWING, SCENE, SOLVER, TOP
+from system_scene import GROWING, SCENE, TOP, bare
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -31,15 +30,8 @@ def sanitizer() -> str:
 @pytest.mark.parametrize("scene", SCENES)
 def test_a_run_loses_no_memory(scene: str, sanitizer: str, tmp_path: Path) -> None:
     (tmp_path / "small.nml").write_text(SCENES[scene])
-    done = subprocess.run(
-        [SOLVER, "run", "small.nml", "--out", "out", "--quiet"],
-        cwd=tmp_path,
-        env=os.environ | {"LD_PRELOAD": sanitizer, "LSAN_OPTIONS": "log_threads=1"},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    variables = {"LD_PRELOAD": sanitizer, "LSAN_OPTIONS": "log_threads=1"}
+    done = bare(tmp_path, "run", "small.nml", "--out", "out", "--quiet", **variables)
     assert "Processing thread" in done.stderr  # it has looked
     assert "leak" not in done.stderr, done.stderr
     assert done.returncode == 0

@@ -15,6 +15,7 @@ from system_scene import (
     SCENE,
     SOLVER,
     TOP,
+    bare,
     call,
     numbers,
     record,
@@ -179,7 +180,7 @@ def test_a_disk_that_becomes_full_leaves_the_record(tmp_path: Path) -> None:
         pytest.skip("only root mounts a disk")
     try:
         (tmp_path / "scene.nml").write_text((TOP / "inputs/paper_c/onset.nml").read_text())
-        done = bare_run(tmp_path, "disk/out")
+        done = bare(tmp_path, "run", "scene.nml", "--out", "disk/out", "--quiet")
         out = disk / "out"
         told = record(out)
         assert (done.returncode, told["status"]) == (1, "failed")
@@ -190,18 +191,6 @@ def test_a_disk_that_becomes_full_leaves_the_record(tmp_path: Path) -> None:
         assert not list(out.rglob("*.part"))
     finally:
         subprocess.run(["umount", str(disk)], check=True)
-
-
-def bare_run(place: Path, out: str) -> subprocess.CompletedProcess[str]:
-    """Let the bare solver run scene.nml to its end."""
-    return subprocess.run(
-        [SOLVER, "run", "scene.nml", "--out", out, "--quiet"],
-        cwd=place,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
 
 
 @pytest.mark.parametrize("what", ["folder", "files", "other folder"])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import signal
 import subprocess
@@ -18,8 +17,8 @@ import pyvista
 from system_scene import (
     GROWING,
     SCENE,
-    SOLVER,
     TOP,
+    bare,
     call,
     numbers,
     record,
@@ -449,15 +448,7 @@ def test_what_speaks_to_the_fortran_library_changes_no_file(tmp_path: Path) -> N
         "GFORTRAN_UNBUFFERED_ALL": "y",
     }
     for out, more in (("plain", {}), ("spoilt", spoilt)):
-        done = subprocess.run(
-            [SOLVER, "run", "small.nml", "--out", out],
-            cwd=tmp_path,
-            env=os.environ | more,
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
+        done = bare(tmp_path, "run", "small.nml", "--out", out, **more)
         assert (done.returncode, done.stderr) == (0, "")
         assert f"results in {out}" in done.stdout
     files = sorted((tmp_path / "plain").rglob("*.*"))

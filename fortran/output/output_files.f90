@@ -58,7 +58,7 @@ module output_files
          import :: c_char, c_int
          implicit none(type, external)
          integer(c_int), value, intent(in) :: status, size
-         ! allow(C071)
+         ! allow(C071, C072)
          character(kind=c_char), intent(out) :: words(*)
       end subroutine c_reason
 

@@ -25,7 +25,7 @@ module output_vtu
    !> A field with a value, or several components, in each cell or at each point.
    type :: vtu_field_t
       character(len=:), allocatable :: name
-      character(len=:), allocatable :: components  !< XML attributes that count and name them; may be empty
+      character(len=:), allocatable :: components  !< XML attributes; may be empty
       character(len=:), allocatable :: unit  !< unallocated: without
       logical :: at_points = .false.
       real(rk), allocatable :: reals(:)  !< component by component, cell by cell

@@ -60,7 +60,7 @@ contains
 
    !> Put a word and a blank behind the first characters of a text that has room for them.
    pure subroutine add_word(text, length, word)
-      character(len=*), intent(inout) :: text
+      character(len=:), allocatable, intent(inout) :: text
       integer, intent(inout) :: length  !< characters in use
       character(len=*), intent(in) :: word
 

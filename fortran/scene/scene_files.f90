@@ -19,7 +19,7 @@ contains
       character(len=*), intent(in) :: path
       integer(lk), intent(inout) :: n_read  !< [byte] of all files of the scene so far
       character(len=:), allocatable, intent(out) :: source  !< its bytes
-      character(len=:), allocatable, intent(out) :: fault  !< why not, as what it is; unallocated: good
+      character(len=:), allocatable, intent(out) :: fault  !< what it is instead
       character(len=256) :: reason
       integer(lk) :: n_bytes
       integer :: unit, status

@@ -1,5 +1,5 @@
-!> What decides about the growth of a fracture that a well feeds: the rock's toughness or the fluid's
-!! viscosity.
+!> What decides about the growth of a fracture that a well feeds: the toughness of the rock or the
+!! viscosity of the fluid.
 !!
 !! In plane strain, at a constant rate Q and without leak-off, that is the dimensionless toughness
 !! K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu

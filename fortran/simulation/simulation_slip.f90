@@ -13,8 +13,8 @@
 !! the state before its first step to that after its last one.
 !!
 !! Seismic moment M0 = sum of G times slip times area (Aki 1966), with the G of the rock beside each
-!! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5 (Hanks and Kanamori 1979, in SI
-!! units as the IASPEI standard of 2005 has it).
+!! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
+!! (Hanks and Kanamori 1979, in SI units as the IASPEI standard of 2005 has it).
 module simulation_slip
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_stick

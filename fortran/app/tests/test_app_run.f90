@@ -41,7 +41,8 @@ contains
       class(simulation_t), allocatable :: simulation
       logical :: refused, was_interrupted
 
-      call run_scene(scene, "", directory(scene), .true., simulation, refused, was_interrupted, error)
+      call run_scene(scene, "", directory(scene), .true., simulation, refused, &
+                     was_interrupted, error)
       call checks%is_true(.not. refused, trim(scene%name)//": it begins")
       call checks%is_true(.not. was_interrupted, trim(scene%name)//": nobody interrupts it")
    end subroutine run
