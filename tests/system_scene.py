@@ -84,6 +84,20 @@ def call(place: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str
     return subprocess.CompletedProcess(process.args, process.returncode, out, error)
 
 
+def bare(place: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run the bare solver in a folder to its end, with more variables in its environment."""
+    return subprocess.run(
+        [SOLVER, *arguments],
+        cwd=place,
+        env=os.environ | variables,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
 def run(place: Path, text: str, out: str = "out") -> Path:
     """Run a scene without drawing, and give the directory of its files."""
     scene = place / "small.nml"

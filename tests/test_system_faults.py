@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from system_scene import SCENE, TOP, call, varied
+from system_scene import SCENE, TOP, bare, call, varied
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -174,8 +174,16 @@ SIZES = {
         ),
         "&coarse: the sizes ask for about 9240000000000 cells, and a run numbers up to 10700000",
     ),
-    "cells at the fracture": (
+    "cells that rounding blurs": (
         ("size_fracture = 0.02", "size_fracture = 1e-9"),
+        "&coarse: size_fracture is 1.0e-9 but must be at least 2.828e-8: elements of less than",
+    ),
+    "elements that rounding blurs": (
+        ("&fine window", "&fine size_ratio = 1e-7, window"),
+        "&fine: size_ratio is 1.0e-7 but must be at least 1.414e-6: elements of less than",
+    ),
+    "cells at the fracture": (
+        ("size_fracture = 0.02", "size_fracture = 1e-7"),
         "&coarse: the sizes ask for about",
     ),
 }
@@ -192,6 +200,23 @@ def test_a_scene_that_is_too_large_is_refused_with_the_number(size: str, tmp_pat
     assert checked.stderr.startswith("wingcrack: large.nml:")
     assert (checked.returncode, ran.returncode, checked.stdout, ran.stdout) == (2, 2, "", "")
     assert [path.name for path in tmp_path.iterdir()] == ["large.nml"]
+
+
+@pytest.mark.parametrize("radius", ["1e-9", "1e-12", "1e-300"])
+def test_a_rosette_that_rounding_blurs_is_refused_with_the_number(
+    radius: str, tmp_path: Path
+) -> None:
+    scene = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
+    text = scene.replace("&fe\n", f"&fe\n  rosette_radius = {radius}\n", 1)
+    (tmp_path / "small.nml").write_text(text)
+    done = call(tmp_path, "run", "small.nml", "--out", "out")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "&fe: rosette_radius is 1.0e-" in done.stderr
+    assert "but must be at least 2.236e-8" in done.stderr
+    least = text.replace(radius, "2.3e-8", 1)
+    (tmp_path / "small.nml").write_text(least)
+    done = call(tmp_path, "run", "small.nml", "--out", "out", "--quiet", "--no-plot")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_growth_needs_the_toughness(tmp_path: Path) -> None:
@@ -229,6 +254,16 @@ def test_a_file_is_no_place_for_results(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "out" in done.stderr.splitlines()[-1]
     assert (tmp_path / "out").read_text() == "somebody's file\n"
+
+
+@pytest.mark.parametrize("out", ["file", "file/deeper"])
+def test_to_the_bare_solver_neither(out: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("somebody's file\n")
+    (tmp_path / "small.nml").write_text(SCENE)
+    done = bare(tmp_path, "run", "small.nml", "--out", out)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"cannot make the directory {out}" in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "small.nml"]
 
 
 def test_a_description_that_cannot_be_written_is_a_failure(tmp_path: Path) -> None:

@@ -8,10 +8,11 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 import pyvista
-from system_scene import GROWING, TOP, run, varied
+from system_scene import GROWING, TOP, rows, run, varied
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -196,15 +197,33 @@ def test_fields(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set
             assert fields == names(described[f"{dimension}.vtu"], runs)
 
 
-def test_paraview_finds_units_and_names(out_and_runs: tuple[Path, set[str]]) -> None:
+def test_a_plain_reader_takes_all_fields(out_and_runs: tuple[Path, set[str]]) -> None:
+    out, _ = out_and_runs
+    named = {
+        f["fracture"]: f["name"]
+        for f in json.loads((out / "network.json").read_text())["fractures"]
+    }
+    assert all(f"name = '{name}'" in (out / "scene.nml").read_text() for name in named.values())
+    history = rows(out / "history.csv")
+    for file in sorted((out / "vtu").glob("*.vtu")):
+        plain, grid = meshio.read(file), pyvista.read(file)
+        assert set(plain.cell_data) == set(grid.cell_data.keys())
+        for name, (values,) in plain.cell_data.items():
+            assert np.array_equal(values, grid.cell_data[name])
+        assert plain.field_data["TimeValue"] == grid.field_data["TimeValue"]
+        row = history[plain.field_data["history_row"][0] - 1]
+        assert (
+            float(row["time_s" if "time_s" in row else "load_factor"])
+            == grid.field_data["TimeValue"]
+        )
+        if "fracture" in plain.cell_data:
+            assert set(plain.cell_data["fracture"][0]) == set(named)
+
+
+def test_paraview_finds_units(out_and_runs: tuple[Path, set[str]]) -> None:
     out, _ = out_and_runs
     last = sorted((out / "vtu").glob("fractures_*.vtu"))[-1]
     grid = pyvista.read(last)
-    scene = (out / "scene.nml").read_text()
-    names = grid.field_data["fracture_names"]
-    assert len(names) == scene.count("&fracture\n")
-    assert all(f"name = '{name}'" in scene for name in names)
-    assert list(grid.field_data["state_names"]) == ["stick", "slip", "open"]
     key = vtkDataArray.UNITS_LABEL()
     units = {"traction": "Pa", "jump": "m", "fracture": None}
     for name, unit in units.items():
@@ -236,3 +255,45 @@ def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str
     assert json.loads((out / "run.json").read_text())["status"] in words["run.json"]
     for joint in json.loads((out / "network.json").read_text())["joints"]:
         assert joint["kind"] in words["network.json"]
+
+
+# Two layers of other constants under a weight, between smooth walls: nothing moves along x or
+# along z, so that the stresses along both are the same.
+LAYERS = """\
+&domain x_min = 0.0, x_max = 1.0, y_min = 0.0, y_max = 2.0 /
+&material young = 40.0e9, poisson = 0.2 {rock} /
+&region
+  name = 'upper', x = 0.0, 1.0, 1.0, 0.0, y = 1.0, 1.0, 2.0, 2.0
+  young = 10.0e9, poisson = 0.35 {upper}
+/
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'right', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&side name = 'top', y_traction = -10.0e6 /
+"""
+WET = LAYERS.format(
+    rock=", biot = 0.8, porosity = 0.1, permeability = 1e-25",
+    upper=", biot = 0.5, porosity = 0.05",
+) + (
+    "&fluid compressibility = 4e-10, viscosity = 1e-3 /\n"
+    "&initial pressure = 3.0e6 /\n"
+    "&time end = 10.0, step = 10.0 /\n"
+    "&coarse size_fracture = 0.2, size_boundary = 0.2 /\n"
+)
+DRY = LAYERS.format(rock="", upper="") + "&fe size_fracture = 0.2, size_boundary = 0.2 /\n"
+
+
+@pytest.mark.parametrize("scene", [WET, DRY], ids=["with a fluid", "without"])
+def test_the_stress_out_of_the_plane_in_layers(scene: str, tmp_path: Path) -> None:
+    out = run(tmp_path, scene)
+    grid = pyvista.read(sorted((out / "vtu").glob("matrix_*.vtu"))[-1])
+    height = grid.cell_centers().points[:, 1]
+    xx, yy, zz = (grid.cell_data["stress"][:, k] for k in range(3))
+    assert np.allclose(yy, -10.0e6, rtol=1e-6)
+    assert np.allclose(zz, xx, rtol=1e-6)
+    for layer, poisson, biot in ((height < 1.0, 0.2, 0.8), (height > 1.0, 0.35, 0.5)):
+        pressure = grid.cell_data["pressure"][layer] if scene == WET else 0.0
+        ratio = poisson / (1.0 - poisson)
+        effective = yy[layer] + biot * pressure
+        assert np.allclose(zz[layer], ratio * effective - biot * pressure, rtol=1e-6)
+        assert abs(zz[layer]).max() > 1.0e6

@@ -15,6 +15,7 @@ from system_scene import (
     SCENE,
     SOLVER,
     TOP,
+    bare,
     call,
     numbers,
     record,
@@ -168,3 +169,58 @@ def test_a_place_that_cannot_be_written_is_named(scene: str, tmp_path: Path) -> 
     done = call(tmp_path, "run", "scene.nml", "--out", "/proc/out")
     assert done.returncode == 1
     assert "cannot make the directory /proc/out" in done.stderr.splitlines()[-1]
+
+
+def test_a_disk_that_becomes_full_leaves_the_record(tmp_path: Path) -> None:
+    """On a real disk, of 400 kB: room for some states and no more."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", str(disk)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+        pytest.skip("only root mounts a disk")
+    try:
+        (tmp_path / "scene.nml").write_text((TOP / "inputs/paper_c/onset.nml").read_text())
+        done = bare(tmp_path, "run", "scene.nml", "--out", "disk/out", "--quiet")
+        out = disk / "out"
+        told = record(out)
+        assert (done.returncode, told["status"]) == (1, "failed")
+        assert done.stderr == f"wingcrack: {told['reason']}\n"
+        assert "No space left on device" in done.stderr
+        assert len(list((out / "vtu").glob("matrix_*.vtu"))) > 1
+        assert len(rows(out / "history.csv")) > 1
+        assert not list(out.rglob("*.part"))
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+@pytest.mark.parametrize("what", ["folder", "files", "other folder"])
+def test_a_run_whose_files_are_taken_away_has_failed(what: str, tmp_path: Path) -> None:
+    scene = HALVES.replace("to = 1.0, steps = 4", "to = -1.0, steps = 2000")
+    (tmp_path / "scene.nml").write_text(scene + "&output vtu = .false. /\n")
+    out = tmp_path / "out"
+    with subprocess.Popen(
+        [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        deadline = time.monotonic() + 60
+        while not (out / "run.json.part").exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        if what == "files":
+            (out / "scene.nml").unlink()
+        else:
+            out.rename(tmp_path / "gone")
+        if what == "other folder":
+            out.mkdir()
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 1
+    words = {
+        "folder": "cannot write out/",
+        "files": "out/scene.nml was removed during the run",
+        "other folder": "the folder out was removed or replaced during the run",
+    }
+    assert words[what] in error
+    if what != "folder":
+        assert record(out)["status"] == "failed"

@@ -14,7 +14,19 @@ from xml.etree import ElementTree
 
 import pytest
 import pyvista
-from system_scene import GROWING, SCENE, TOP, call, numbers, record, rows, run, start, varied
+from system_scene import (
+    GROWING,
+    SCENE,
+    TOP,
+    bare,
+    call,
+    numbers,
+    record,
+    rows,
+    run,
+    start,
+    varied,
+)
 
 # The columns that users may rely on, in their order; docs/output.md may have more among them.
 HISTORY = [
@@ -386,6 +398,22 @@ def test_figures_of_a_run(growing: Path) -> None:
         assert path.read_bytes().startswith(magic)
 
 
+def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
+    scene = (TOP / "verification/kgd/kgd.nml").read_text()
+    usual = 1.0306923793741721e-4  # K_m = 4
+    told = {}
+    for name, factor in (("tough", 1.0), ("between", 16.0), ("viscous", 1e4)):
+        assert "1.0306923793741721e-4" in scene
+        text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
+        (tmp_path / f"{name}.nml").write_text(text)
+        told[name] = call(tmp_path, "check", f"{name}.nml").stdout
+    assert "toughness decides about growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
+    assert "toughness and viscosity decide about growth, K_m = 2.000E+00" in told["between"]
+    assert "viscosity decides about growth, K_m = 4.000E-01" in told["viscous"]
+    warning = "&injection 'well_1': K_m is 0.4: the fluid's viscosity decides"
+    assert [warning in told[name] for name in told] == [False, False, True]
+
+
 def test_a_scene_is_checked_without_running(tmp_path: Path) -> None:
     (tmp_path / "small.nml").write_text(SCENE)
     done = call(tmp_path, "check", "small.nml")
@@ -408,3 +436,67 @@ def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> Non
     cells = record(run(tmp_path, text))["cells"]
     assert isinstance(cells, int)
     assert abs(int(foreseen[1]) - cells) < 0.25 * cells
+
+
+def test_what_speaks_to_the_fortran_library_changes_no_file(tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    spoilt = {
+        "GFORTRAN_CONVERT_UNIT": "big_endian",
+        "GFORTRAN_DEFAULT_RECL": "20",
+        "GFORTRAN_OPTIONAL_PLUS": "y",
+        "GFORTRAN_STDOUT_UNIT": "17",
+        "GFORTRAN_UNBUFFERED_ALL": "y",
+    }
+    for out, more in (("plain", {}), ("spoilt", spoilt)):
+        done = bare(tmp_path, "run", "small.nml", "--out", out, **more)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert f"results in {out}" in done.stdout
+    files = sorted((tmp_path / "plain").rglob("*.*"))
+    assert len(files) > 12
+    for file in files:
+        if file.name not in ("run.json", "run.log"):  # these have times of the clock
+            twin = tmp_path / "spoilt" / file.relative_to(tmp_path / "plain")
+            assert twin.read_bytes() == file.read_bytes(), file.name
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["plain", "small.nml", "spoilt"]
+
+
+# Slip in rock of a tenth of the scene's stiffness, of modulus G = 1.6 GPa.
+IN_REGION = """\
+&domain x_min = -10.0, x_max = 10.0, y_min = -10.0, y_max = 10.0 /
+&material
+  young = 40.0e9, poisson = 0.25
+  biot = 1e-6, porosity = 1e-6, permeability = 1e-30
+/
+&fluid compressibility = 1e-9, viscosity = 1e-3 /
+&region name = 'soft', x = -20.0, 20.0, 20.0, -20.0, y = -20.0, -20.0, 20.0, 20.0, young = 4.0e9 /
+&fracture name = 'f', x = -1.0, 1.0, y = 0.0, 0.0, friction = 0.6, aperture = 1e-4 /
+&in_situ sxx = -20.0e6, syy = -20.0e6, sxy = 5.0e6 /
+&initial pressure = 10.0e6 /
+&side name = 'left', x_displacement = 0.0 /
+&side name = 'bottom', y_displacement = 0.0 /
+&injection fracture = 'f', pressure = 10.0e6, 14.0e6, time = 0.0, 10.0 /
+&time end = 20.0, step = 1.0 /
+&coarse size_fracture = 0.1, size_boundary = 2.0 /
+&output vtu = .false. /
+"""
+
+
+@pytest.mark.parametrize("begin", [-20.0, 0.0], ids=["all of it", "half of it"])
+def test_the_moment_of_slip_in_a_region_has_its_modulus_in_both_tables(
+    begin: float, tmp_path: Path
+) -> None:
+    outline = "x = -20.0, 20.0, 20.0, -20.0"
+    assert outline in IN_REGION
+    out = run(tmp_path, IN_REGION.replace(outline, f"x = {begin}, 20.0, 20.0, {begin}"))
+    moments = numbers(out / "history.csv", "seismic_moment_nm")
+    events = rows(out / "slip_events.csv")
+    total = sum(float(event["moment_nm"]) for event in events)
+    assert total == pytest.approx(moments[-1] - moments[0], rel=1e-9)
+    for event in events:
+        moment = float(event["moment_nm"])
+        modulus = moment / (float(event["mean_slip_m"]) * float(event["area_m2"]))
+        assert modulus == pytest.approx(1.6e9, rel=1e-12) if begin < -1 else 2e9 < modulus < 12e9
+        magnitude = (math.log10(moment) - 9.1) / 1.5
+        assert float(event["magnitude"]) == pytest.approx(magnitude, rel=1e-12)
+    if begin < -1:
+        assert total == pytest.approx(3.30e6, rel=0.01)

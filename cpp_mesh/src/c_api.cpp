@@ -237,8 +237,11 @@ int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity, c
         require(n_joints != nullptr, "no place was given for the number of joints");
         *n_joints = 0;
         const Network fractures = network_from(network);
-        const Graph graph = judged_graph(specification_from(spec, fractures.size()), fractures);
+        const Specification wanted = specification_from(spec, fractures.size());
+        const Graph graph = judged_graph(wanted, fractures);
         check_fixed_points(graph);
+        if (wanted.rosette_sectors > 0)
+            plan_rosettes(graph, wanted.domain, wanted.rosette_radii);
         const std::vector<Joint> found = joints_of(graph);
         *n_joints = static_cast<int32_t>(found.size());
         for (int32_t k = 0; k < std::min(capacity, *n_joints); ++k)

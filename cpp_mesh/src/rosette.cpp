@@ -1,5 +1,7 @@
 #include "rosette.hpp"
 
+#include "errors.hpp"
+
 #include <cmath>
 
 namespace cpp_mesh {
@@ -14,6 +16,9 @@ constexpr double largest_turn = 75.0 * pi / 180.0;
 // Growth of cell sizes per distance outside a ring, whose triangles are smaller than those around:
 // integrals around tips need some rings of cells.
 constexpr double growth_around = 0.3;
+
+// gmsh tells points apart down to some 1e-11 of the body's diagonal, and does not end beyond.
+constexpr double least_radius = 1e-10;
 
 // Least length of a piece of the segment behind the ring, in radii.
 constexpr double least_piece = 0.5;
@@ -84,6 +89,15 @@ std::vector<RosettePlan> plan_rosettes(const Graph& graph, const Domain& domain,
             plan.radius = std::min(plan.radius, 0.5 * domain.depth(at(tip)));
             if (plan.radius < own_length * (1.0 - 1e-9))
                 plan.radius = std::min(plan.radius, own_length / (1.0 + least_piece));
+            const double least = least_radius * domain.box().diagonal();
+            if (!(plan.radius >= least))
+                throw MeshError({FaultKind::too_short,
+                                 {fracture_culprit(edge.fracture)},
+                                 at(tip),
+                                 "{1} has elements of " + number_text(plan.radius) +
+                                     " m around its end {at}, but in this body they must have at "
+                                     "least " +
+                                     number_text(least) + " m"});
             plans.push_back(plan);
         }
     }

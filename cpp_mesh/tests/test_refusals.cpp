@@ -60,6 +60,9 @@ int main() {
     window.rosette_sectors = 4;
     refuse_spec(checks, window, "at least 6 sectors");
     window.rosette_sectors = 12;
+    window.rosette_radius = 1e-12; // gmsh would not end
+    refuse_spec(checks, window, "fracture 1 has elements of 1e-12 m around its end");
+    window.rosette_radius = 0.0;
     refuse_spec(checks, window, "radius must be positive");
 
     cm_counts counts;

@@ -3,6 +3,7 @@ module app_check
    use app_size, only: estimate_t, size_of_scene
    use app_warnings, only: show_warnings
    use base_kinds, only: lk, rk
+   use scene_growth_regime, only: find_regime, regime_words
    use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
    use growth_network, only: network_of_scene, total_length
@@ -19,7 +20,8 @@ contains
       integer, intent(in) :: unit
 
       type(estimate_t) :: estimate
-      real(rk) :: length
+      real(rk) :: length, toughness
+      integer :: well
 
       associate (body => scene%domain)
          length = total_length(network_of_scene(scene))
@@ -53,6 +55,10 @@ contains
                                                            merge("intensities", "left out   ", &
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
+         call find_regime(scene, toughness, well)
+         if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
+            regime_words(toughness), ", K_m = ", toughness, " (well '", &
+            trim(scene%injections(well)%name), "')"
          write (unit, "(2a)") "VTU files:    ", trim(merge("yes     ", "left out", &
                                                            scene%output%vtu))
          write (unit, "(a,i0,a,i0,a)") "about:        ", int(estimate%cells, lk), " cells, ", &

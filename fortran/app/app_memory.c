@@ -1,5 +1,5 @@
-// Memory of the process. A request that is refused must not be fatal without a word, nor be repeated
-// for ever, as OpenBLAS does.
+// Memory of the process, and what its environment says to libraries. A request that is refused must not be
+// fatal without a word, nor be repeated for ever, as OpenBLAS does.
 #include <malloc.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -63,6 +63,16 @@ void app_prepare_memory(void) {
     mallopt(M_TOP_PAD, 64 * 1024 * 1024);
 }
 
+// Take what speaks to Fortran's library out of the environment: another order of bytes, units or lengths of
+// lines would spoil the files.
+static void forget_fortran(char** environment) {
+    static const char prefix[] = "GFORTRAN_";
+    char** kept = environment;
+    for (; *environment != NULL; ++environment)
+        if (strncmp(*environment, prefix, strlen(prefix)) != 0) *kept++ = *environment;
+    *kept = NULL;
+}
+
 // Called by the loader before the libraries' own beginnings. OpenBLAS, and another one within gmsh, start
 // as many threads as OPENBLAS_NUM_THREADS says, or else as there are processors, and look for memory for
 // them for ever; so they begin with one each. Without that name the program begins again with it.
@@ -71,6 +81,7 @@ static void before_libraries(int argc, char** argv, char** environment) {
     static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
     size_t n = 0;
     (void)argc;
+    forget_fortran(environment);
     for (; environment[n] != NULL; ++n) {
         if (strncmp(environment[n], name, strlen(name)) != 0) continue;
         const long given = atol(environment[n] + strlen(name)), most = sysconf(_SC_NPROCESSORS_ONLN);

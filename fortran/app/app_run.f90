@@ -3,6 +3,7 @@ module app_run
    use app_journal, only: journal_t
    use app_interrupts, only: interrupted
    use app_simulations, only: allocate_simulation
+   use app_version, only: version
    use app_warnings, only: show_warnings
    use base_errors, only: error_t, keep_first
    use base_kinds, only: rk
@@ -22,14 +23,14 @@ module app_run
 contains
 
    !> Run a scene to its end. `refused`: the directory is a wrong choice, and nothing was written.
-   subroutine run_scene(scene, source, directory, version, quiet, refused, was_interrupted, error)
+  subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, error)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
-      character(len=*), intent(in) :: directory, version
+      character(len=*), intent(in) :: directory
       logical, intent(in) :: quiet
+      class(simulation_t), allocatable, intent(out) :: simulation  !< as it is at its end
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
-      class(simulation_t), allocatable :: simulation
       type(journal_t) :: journal
       type(run_record_t) :: record
       type(timers_t) :: timers

@@ -17,7 +17,7 @@ module coarse_solid
    implicit none(type, external)
    private
 
-   public :: add_moment, any_differ, make_room, mean_solid, number_stiffnesses, set_solid
+   public :: any_differ, make_room, mean_solid, number_stiffnesses, set_solid, shear_beside
    public :: solid_of, solid_t
 
    !> Poroelastic constants without those of flow, as in rock_t.
@@ -140,24 +140,21 @@ contains
       end if
    end function mean_solid
 
-   !> Add the moment of slip on fracture cells: each with the modulus beside it.
-   pure subroutine add_moment(rock, mesh, potency, moment)
+   !> The shear modulus beside each fracture cell, of both sides as mean_solid has it [Pa].
+   pure function shear_beside(rock, mesh) result(shear)
       type(rock_t), intent(in) :: rock
       type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: potency(:)  !< (fracture cells) slip times length [m2]
-      real(rk), intent(inout) :: moment  !< [J/m]
+      real(rk) :: shear(mesh%fracture%n_cells)
       type(solid_t) :: beside
       integer(ik) :: i
 
-      if (size(rock%shear) == 1) then
-         moment = moment + rock%shear(1)*sum(potency)
-         return
-      end if
+      shear = rock%shear(1)
+      if (size(rock%shear) == 1) return
       do i = 1, mesh%fracture%n_cells
          beside = mean_solid(rock, mesh%face_cells(1, mesh%fracture%cell_faces(:, i)))
-         moment = moment + beside%shear*potency(i)
+         shear(i) = beside%shear
       end do
-   end subroutine add_moment
+   end function shear_beside
 
    !> E', in plane strain E/(1 - nu^2) [Pa].
    elemental real(rk) function crack_modulus(self)

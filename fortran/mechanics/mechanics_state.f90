@@ -3,7 +3,7 @@ module mechanics_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use fine_elasticity, only: elasticity_t
+   use fine_elasticity, only: elasticity_t, is_same
    use growth_front, only: growth_rules_t
    use growth_law, only: growth_drive
    use growth_network, only: network_of_scene
@@ -201,14 +201,19 @@ contains
    pure real(rk) function seismic_moment(self) result(moment)
       class(loaded_body_t), intent(in) :: self
       real(rk), parameter :: share(3) = [1.0_rk, 1.0_rk, 4.0_rk]/6.0_rk  ! start, end, mid
-      type(elasticity_t) :: rock
+      type(elasticity_t) :: rock(2)  ! on side +, -
+      real(rk) :: shear, other
       integer(ik) :: cell
 
       moment = self%accepted_moment
       associate (body => self%body)
          do cell = 1, body%mesh%fracture%n_cells
-            rock = body%model%rocks%in_cell(body%model%mesh%face_cells(1, cell))
-            moment = moment + rock%shear_modulus() &
+            rock(1) = body%model%rocks%in_cell(body%model%mesh%face_cells(1, cell))
+            rock(2) = body%model%rocks%in_cell(body%model%mesh%face_cells(2, cell))
+            shear = rock(1)%shear_modulus()
+            other = rock(2)%shear_modulus()
+            if (.not. is_same(rock(1), rock(2))) shear = 2.0_rk*shear*other/(shear + other)
+            moment = moment + shear &
                      *body%model%mesh%face_length(cell) &
                      *dot_product(share, abs(body%contact%jump(1, :, cell) &
                                              - body%contact%slip_before(:, cell)))

@@ -141,9 +141,9 @@ contains
                     "the last digit, and those of a falling load stand in the order of their "// &
                     "load factor; with `factors` of `&load` history_row stands there.", &
                     matrix_fields)
-      call describe(unit, "fractures.vtu", "Fields of the fracture cells. The field data "// &
-                    "`fracture_names` are the names of fractures 1, 2 and so on, those in "// &
-                    "`state_names` the words of states 0, 1 and 2.", fracture_fields)
+      call describe(unit, "fractures.vtu", "Fields of the fracture cells. The names of "// &
+                    "fractures 1, 2 and so on are in network.json: VTU files hold numbers "// &
+                    "alone, as plain readers (meshio) want them.", fracture_fields)
       call describe(unit, "intersections.vtu", "Fields of the points where fractures meet; "// &
                     "written only if there are any and a fluid.", intersection_fields)
    end subroutine describe_output

@@ -1,21 +1,20 @@
 !> Directories, and files that appear whole: written aside as NAME.part, then renamed.
 module output_files
    use base_errors, only: error_t, raise_error
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32, int64, int8, real64
    implicit none(type, external)
    private
 
-   public :: make_directory, remove_file, rename_file, whole_file_t, write_text_file
+   public :: make_directory, remove_file, rename_file, reserve_file, whole_file_t, write_text_file
 
    !> A file that gets its name when it is complete. The first failure is kept; `commit` reports it.
    type :: whole_file_t
       private
       character(len=:), allocatable :: path
       character(len=:), allocatable :: fault
-      integer :: unit = 0
+      type(c_ptr) :: file = c_null_ptr
       logical :: is_open = .false.
-      integer(int64) :: n_bytes = 0_int64  !< that were put
    contains
       procedure :: open => open_aside
       procedure :: commit
@@ -28,6 +27,41 @@ module output_files
    end type whole_file_t
 
    interface
+      !> As output_files.c has it: each gives 0, or why not.
+      function c_open(path, file) result(status) bind(C, name="output_open")
+         import :: c_char, c_int, c_ptr
+         implicit none(type, external)
+         ! allow(C071)
+         character(kind=c_char), intent(in) :: path(*)
+         type(c_ptr), intent(out) :: file
+         integer(c_int) :: status
+      end function c_open
+
+      function c_put(file, bytes, n_bytes) result(status) bind(C, name="output_put")
+         import :: c_int, c_ptr, c_size_t
+         implicit none(type, external)
+         type(c_ptr), value, intent(in) :: file
+         ! allow(C071)
+         type(*), intent(in) :: bytes(*)
+         integer(c_size_t), value, intent(in) :: n_bytes
+         integer(c_int) :: status
+      end function c_put
+
+      function c_close(file) result(status) bind(C, name="output_close")
+         import :: c_int, c_ptr
+         implicit none(type, external)
+         type(c_ptr), value, intent(in) :: file
+         integer(c_int) :: status
+      end function c_close
+
+      subroutine c_reason(status, words, size) bind(C, name="output_reason")
+         import :: c_char, c_int
+         implicit none(type, external)
+         integer(c_int), value, intent(in) :: status, size
+         ! allow(C071, C072)
+         character(kind=c_char), intent(out) :: words(*)
+      end subroutine c_reason
+
       !> POSIX mkdir.
       function c_mkdir(path, mode) result(status) bind(C, name="mkdir")
          import :: c_char, c_int
@@ -113,18 +147,29 @@ contains
       call file%commit(error)
    end subroutine write_text_file
 
+   !> Take room for a file that will be written later: it waits aside until then, and a disk that
+   !! has become full takes as many bytes of the file itself.
+   subroutine reserve_file(path, n_bytes, error)
+      character(len=*), intent(in) :: path
+      integer, intent(in) :: n_bytes
+      type(error_t), allocatable, intent(out) :: error
+      type(whole_file_t) :: file
+
+      call file%open(path)
+      call file%put(repeat(" ", n_bytes))
+      call end_writing(file, error)
+   end subroutine reserve_file
+
    !> Begin to write; the file has its name only after `commit`.
    subroutine open_aside(self, path)
       class(whole_file_t), intent(out) :: self
       character(len=*), intent(in) :: path
-      character(len=256) :: message
-      integer :: status
+      integer(c_int) :: status
 
       self%path = path
-      open (newunit=self%unit, file=path//".part", access="stream", form="unformatted", &
-            action="write", status="replace", iostat=status, iomsg=message)
+      status = c_open(path//".part"//c_null_char, self%file)
       self%is_open = status == 0
-      call keep_fault(self, status, message)
+      call keep_fault(self, status)
    end subroutine open_aside
 
    !> Complete the file and give it its name; after a failure nothing is left but what was there
@@ -132,101 +177,77 @@ contains
    subroutine commit(self, error)
       class(whole_file_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
-      character(len=256) :: message
-      integer :: status
-      integer(int64) :: n_bytes
+
+      call end_writing(self, error)
+      if (.not. allocated(error)) call rename_file(self%path//".part", self%path, error)
+   end subroutine commit
+
+   !> Complete the file aside; after a failure it is gone.
+   subroutine end_writing(self, error)
+      class(whole_file_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
       logical :: was_there
 
-      if (self%is_open) then
-         close (self%unit, iostat=status, iomsg=message)
-         call keep_fault(self, status, message)
-      end if
-      if (.not. allocated(self%fault)) then  ! gfortran closes without a word what a full disk cut
-         inquire (file=self%path//".part", size=n_bytes)
-         if (n_bytes /= self%n_bytes) self%fault = "not all bytes were taken, the disk may be full"
-      end if
+      if (self%is_open) call keep_fault(self, c_close(self%file))
       self%is_open = .false.
-      if (allocated(self%fault)) then
-         call remove_file(self%path//".part", was_there)
-         call raise_error(error, "", "cannot write "//self%path//": "//self%fault)
-      else
-         call rename_file(self%path//".part", self%path, error)
-      end if
-   end subroutine commit
+      if (.not. allocated(self%fault)) return
+      call remove_file(self%path//".part", was_there)
+      call raise_error(error, "", "cannot write "//self%path//": "//self%fault)
+   end subroutine end_writing
 
    subroutine put_text(self, text)
       class(whole_file_t), intent(inout) :: self
       character(len=*), intent(in) :: text
-      character(len=256) :: message
-      integer :: status
 
       if (allocated(self%fault)) return
-      write (self%unit, iostat=status, iomsg=message) text
-      call count_bytes(self, len(text, kind=int64), status, message)
+      call keep_fault(self, c_put(self%file, [text], len(text, c_size_t)))
    end subroutine put_text
 
    subroutine put_int8(self, values)
       class(whole_file_t), intent(inout) :: self
       integer(int8), intent(in) :: values(:)
-      character(len=256) :: message
-      integer :: status
 
       if (allocated(self%fault)) return
-      write (self%unit, iostat=status, iomsg=message) values
-      call count_bytes(self, size(values, kind=int64), status, message)
+      call keep_fault(self, c_put(self%file, values, size(values, kind=c_size_t)))
    end subroutine put_int8
 
    subroutine put_int32(self, values)
       class(whole_file_t), intent(inout) :: self
       integer(int32), intent(in) :: values(:)
-      character(len=256) :: message
-      integer :: status
 
       if (allocated(self%fault)) return
-      write (self%unit, iostat=status, iomsg=message) values
-      call count_bytes(self, 4_int64*size(values, kind=int64), status, message)
+      call keep_fault(self, c_put(self%file, values, 4*size(values, kind=c_size_t)))
    end subroutine put_int32
 
    subroutine put_int64(self, value)
       class(whole_file_t), intent(inout) :: self
       integer(int64), intent(in) :: value
-      character(len=256) :: message
-      integer :: status
 
       if (allocated(self%fault)) return
-      write (self%unit, iostat=status, iomsg=message) value
-      call count_bytes(self, 8_int64, status, message)
+      call keep_fault(self, c_put(self%file, [value], 8_c_size_t))
    end subroutine put_int64
 
    subroutine put_real64(self, values)
       class(whole_file_t), intent(inout) :: self
       real(real64), intent(in) :: values(:)
-      character(len=256) :: message
-      integer :: status
 
       if (allocated(self%fault)) return
-      write (self%unit, iostat=status, iomsg=message) values
-      call count_bytes(self, 8_int64*size(values, kind=int64), status, message)
+      call keep_fault(self, c_put(self%file, values, 8*size(values, kind=c_size_t)))
    end subroutine put_real64
 
-   !> Count what was put, or keep the failure.
-   subroutine count_bytes(self, n_bytes, status, message)
-      class(whole_file_t), intent(inout) :: self
-      integer(int64), intent(in) :: n_bytes
-      integer, intent(in) :: status
-      character(len=*), intent(in) :: message
-
-      self%n_bytes = self%n_bytes + n_bytes
-      call keep_fault(self, status, message)
-   end subroutine count_bytes
-
    !> Keep the first failure.
-   subroutine keep_fault(self, status, message)
+   subroutine keep_fault(self, status)
       class(whole_file_t), intent(inout) :: self
-      integer, intent(in) :: status
-      character(len=*), intent(in) :: message
+      integer(c_int), intent(in) :: status  !< of output_files.c
+      character(kind=c_char) :: words(100)
+      integer :: i
 
-      if (status /= 0 .and. .not. allocated(self%fault)) self%fault = trim(message)
+      if (status == 0 .or. allocated(self%fault)) return
+      call c_reason(status, words, size(words, kind=c_int))
+      self%fault = ""
+      do i = 1, findloc(words, c_null_char, dim=1) - 1
+         self%fault = self%fault//words(i)
+      end do
    end subroutine keep_fault
 
 end module output_files

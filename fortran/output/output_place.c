@@ -46,4 +46,12 @@ int output_hold_folder(const char* path, int* holder) {
     return result;
 }
 
+// The path still leads to the folder that is held; where there are no locks, to some folder.
+int output_is_folder(const char* path, int descriptor) {
+    struct stat now, held;
+    if (stat(path, &now) != 0) return 0;
+    if (descriptor < 0) return 1;
+    return fstat(descriptor, &held) == 0 && now.st_dev == held.st_dev && now.st_ino == held.st_ino;
+}
+
 void output_release_folder(int descriptor) { close(descriptor); }

@@ -4,6 +4,7 @@ module output_place
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
+   use base_texts, only: text_t
    use output_files, only: make_directory, remove_file
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    implicit none(type, external)
@@ -26,6 +27,7 @@ module output_place
       procedure :: claim
       procedure :: has_results
       procedure :: clear
+      procedure :: check
       procedure :: release
    end type place_t
 
@@ -48,6 +50,15 @@ module output_place
          integer(c_int), intent(out) :: holder
          integer(c_int) :: hold
       end function c_hold_folder
+
+      function c_is_folder(path, hold) result(answer) bind(C, name="output_is_folder")
+         import :: c_char, c_int
+         implicit none(type, external)
+         ! allow(C071)
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value, intent(in) :: hold
+         integer(c_int) :: answer
+      end function c_is_folder
 
       subroutine c_release_folder(hold) bind(C, name="output_release_folder")
          import :: c_int
@@ -81,13 +92,33 @@ contains
          end if
       end do
       call make_directory(self%directory, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+         refused = leads_through_file(self%directory)
+         return
+      end if
       self%hold = c_hold_folder(self%directory//c_null_char, holder)
       refused = self%hold == is_held
       if (refused) call raise_error(error, "", "another run"//process_text(holder)// &
                                     " writes into "//self%directory// &
                                     ": wait for its end, or name another folder with --out")
    end subroutine claim
+
+   !> A path, or the beginning of it, is that of a file and no folder.
+   function leads_through_file(path) result(answer)
+      character(len=*), intent(in) :: path
+      logical :: answer, exists, is_folder
+      integer :: i
+
+      answer = .false.
+      do i = 1, len(path)
+         if (i < len(path)) then
+            if (path(i + 1:i + 1) /= "/") cycle
+         end if
+         inquire (file=path(:i), exist=exists)
+         inquire (file=path(:i)//"/.", exist=is_folder)
+         answer = answer .or. (exists .and. .not. is_folder)
+      end do
+   end function leads_through_file
 
    !> Which process, where that is known.
    pure function process_text(process) result(text)
@@ -121,6 +152,27 @@ contains
          if (top_files(i) /= "scene.nml") call remove_file(path_in(self, top_files(i)), was_there)
       end do
    end subroutine clear
+
+   !> Somebody has removed or replaced the folder, or files of the run that were written before.
+   subroutine check(self, files, error)
+      class(place_t), intent(in) :: self
+      type(text_t), intent(in) :: files(:)  !< paths in the folder
+      type(error_t), allocatable, intent(out) :: error
+      logical :: exists
+      integer :: i
+
+      if (c_is_folder(self%directory//c_null_char, self%hold) == 0) then
+         call raise_error(error, "", "the folder "//self%directory// &
+                          " was removed or replaced during the run")
+         return
+      end if
+      do i = 1, size(files)
+         inquire (file=path_in(self, files(i)%text), exist=exists)
+         if (exists) cycle
+         call raise_error(error, "", path_in(self, files(i)%text)//" was removed during the run")
+         return
+      end do
+   end subroutine check
 
    !> Let other runs have the folder.
    subroutine release(self)

@@ -9,7 +9,7 @@ module output_run
    use mesh_types, only: mesh_t, network_t
    use results_fields, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
-   use output_files, only: write_text_file
+   use output_files, only: reserve_file, write_text_file
    use output_network, only: network_record_t
    use output_place, only: place_t
    use output_record, only: run_record_t, status_failed
@@ -24,6 +24,7 @@ module output_run
 
    public :: run_output_t
 
+   integer, parameter :: room_for_record = 4096  !< kept on the disk for run.json, a block [byte]
    real(rk), parameter :: pause = 3.0_rk  !< between two writings of the tables [s]
    real(rk), parameter :: pause_per_cost = 200.0_rk  !< or times the last one's duration
 
@@ -88,6 +89,8 @@ contains
          if (allocated(error)) return
          self%keeps_earlier_run = .false.
          call self%place%clear()
+         call reserve_file(folder//"/run.json", room_for_record, error)
+         if (allocated(error)) return
          self%writes_vtu = scene%output%vtu
          self%interval = scene%output%interval
          call self%tables%open(folder, scene)
@@ -264,9 +267,15 @@ contains
       type(timers_t), intent(in) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: trouble
+      type(text_t), allocatable :: files(:)
 
       if (.not. self%keeps_earlier_run) then
          call self%flush(error)
+         if (.not. allocated(error)) then
+            call self%snapshots%list_files(files)
+            call add_text(files, "scene.nml")
+            call self%place%check(files, error)
+         end if
          if (allocated(error) .and. record%status /= status_failed) then
             record%status = status_failed
             record%reason = error%message

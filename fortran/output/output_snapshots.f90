@@ -3,8 +3,7 @@
 module output_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_texts, only: add_text, text_t
-   use contact_states, only: state_name, state_open, state_stick
+   use base_texts, only: text_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    use output_tensors, only: displacement_3d, permeability_tensor, stress_tensor, &
                              tensor_components
@@ -28,12 +27,12 @@ module output_snapshots
       integer :: n_written = 0  !< times
       character(len=:), allocatable, private :: directory
       type(material_t), private :: material
-      type(text_t), allocatable, private :: names(:)  !< of the fractures
       type(collection_t), private :: collections(3)
       logical, private :: counts = .false.  !< in these stand rows of the history, and not times
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
+      procedure :: list_files
       procedure :: flush => flush_snapshots
    end type snapshots_t
 
@@ -50,12 +49,6 @@ contains
       self%directory = directory
       self%counts = allocated(scene%load%factors)
       self%material = scene%material
-      allocate (self%names(0))
-      if (allocated(scene%fractures)) then
-         do i = 1, size(scene%fractures)
-            call add_text(self%names, trim(scene%fractures(i)%name))
-         end do
-      end if
       call remove_earlier(directory)
       do i = 1, 3
          call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
@@ -80,7 +73,7 @@ contains
       call fill_matrix(grid, time, mesh, matrix, self%material)
       call write_one(self, 1, time, history_row, grid, error)
       if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
-         call fill_fractures(grid, time, mesh%fracture, fracture, self%names)
+         call fill_fractures(grid, time, mesh%fracture, fracture)
          call write_one(self, 2, time, history_row, grid, error)
       end if
       if (.not. allocated(error) .and. allocated(intersections%point)) then
@@ -89,7 +82,7 @@ contains
             call write_one(self, 3, time, history_row, grid, error)
          end if
       end if
-      self%n_written = self%n_written + 1
+      if (.not. allocated(error)) self%n_written = self%n_written + 1
    end subroutine write_snapshot
 
    !> Write the collections that have changed.
@@ -103,6 +96,18 @@ contains
          if (allocated(error)) return
       end do
    end subroutine flush_snapshots
+
+   !> Paths of the VTU files of the rock that were written, from the run's directory.
+   pure subroutine list_files(self, paths)
+      class(snapshots_t), intent(in) :: self
+      type(text_t), allocatable, intent(out) :: paths(:)
+      integer :: n
+
+      allocate (paths(self%n_written))
+      do n = 1, self%n_written
+         paths(n)%text = file_name(1, n - 1)
+      end do
+   end subroutine list_files
 
    !> Write one grid and add it to its collection.
    subroutine write_one(self, i, time, history_row, grid, error)
@@ -153,13 +158,11 @@ contains
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
-   subroutine fill_fractures(grid, time, mesh, fields, names)
+   subroutine fill_fractures(grid, time, mesh, fields)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
       type(fracture_mesh_t), intent(in) :: mesh
       type(fracture_fields_t), intent(in) :: fields
-      type(text_t), intent(in) :: names(:)  !< of the fractures
-      integer(ik) :: i
 
       call grid%begin(mesh%point_xy, mesh%cell_points, vtk_line, time)
       call grid%add("fracture", mesh%cell_fracture)
@@ -173,8 +176,6 @@ contains
       if (allocated(fields%flow)) call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
-      call grid%add_legend("fracture_names", names)
-      call grid%add_legend("state_names", [(text_t(state_name(i)), i=state_stick, state_open)])
    end subroutine fill_fractures
 
    subroutine fill_intersections(grid, time, mesh, fields)

@@ -3,12 +3,11 @@
 !!
 !! Layout: VTK User's Guide, "VTK XML Formats". Every array is preceded by its size in bytes as
 !! UInt64, and its offset counts from the byte after the underscore. Reals are Float64: what is read
-!! back is what was computed.
+!! back is what was computed. There are no arrays of strings, which plain readers do not know.
 module output_vtu
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: exact_text, integer_text
-   use base_texts, only: text_t
    use output_files, only: whole_file_t
    use output_text, only: newline, text_buffer_t
    use, intrinsic :: iso_fortran_env, only: int64, int8
@@ -26,19 +25,12 @@ module output_vtu
    !> A field with a value, or several components, in each cell or at each point.
    type :: vtu_field_t
       character(len=:), allocatable :: name
-      character(len=:), allocatable :: components  !< XML attributes that name them; may be empty
-      integer :: n_components = 1
+      character(len=:), allocatable :: components  !< XML attributes; may be empty
       character(len=:), allocatable :: unit  !< unallocated: without
       logical :: at_points = .false.
       real(rk), allocatable :: reals(:)  !< component by component, cell by cell
       integer(ik), allocatable :: integers(:)  !< or these
    end type vtu_field_t
-
-   !> Words in the field data, which a number in a field counts from 0 or from 1.
-   type :: vtu_words_t
-      character(len=:), allocatable :: name
-      type(text_t), allocatable :: words(:)
-   end type vtu_words_t
 
    !> One file in the making.
    type :: vtu_grid_t
@@ -52,7 +44,6 @@ module output_vtu
       integer(ik) :: history_row = 0  !< of history.csv with the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
-      type(vtu_words_t), allocatable :: legends(:)
    contains
       procedure :: begin
       procedure, private :: add_scalar
@@ -60,7 +51,6 @@ module output_vtu
       procedure, private :: add_integer
       generic :: add => add_scalar, add_vector, add_integer
       procedure :: add_at_points
-      procedure :: add_legend
       procedure :: set_history_row
       procedure :: set_units
       procedure :: write => write_grid
@@ -86,7 +76,7 @@ contains
       self%connectivity = reshape(cells - 1_ik, [size(cells)])
       self%cell_type = cell_type
       self%time = time
-      allocate (self%fields(16), self%legends(0))
+      allocate (self%fields(16))
    end subroutine begin
 
    !> A number in each cell.
@@ -109,8 +99,8 @@ contains
 
       call new_field(self, name)
       associate (field => self%fields(self%n_fields))
-         field%n_components = size(values, 1)
          field%reals = reshape(values, [size(values)])
+         field%components = ' NumberOfComponents="'//integer_text(size(values, 1, ik))//'"'
          do i = 1, size(components)
             field%components = field%components//" ComponentName"//integer_text(int(i - 1, ik))// &
                & '="'//trim(components(i))//'"'
@@ -138,22 +128,6 @@ contains
       call new_field(self, name)
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
-
-   !> Words for the numbers in a field.
-   pure subroutine add_legend(self, name, words)
-      class(vtu_grid_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      type(text_t), intent(in) :: words(:)  !< ASCII
-      type(vtu_words_t), allocatable :: longer(:)
-      integer :: n
-
-      n = size(self%legends)
-      allocate (longer(n + 1))
-      longer(:n) = self%legends
-      longer(n + 1)%name = name
-      longer(n + 1)%words = words
-      call move_alloc(longer, self%legends)
-   end subroutine add_legend
 
    !> Say which row of history.csv has the same state.
    pure subroutine set_history_row(self, row)
@@ -232,7 +206,7 @@ contains
       call line("  <UnstructuredGrid>")
       call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
          & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)// &
-         & legends(self)//"</FieldData>")
+         & "</FieldData>")
       call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
          & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
       call line("      <Points>")
@@ -271,9 +245,8 @@ contains
             associate (field => self%fields(i))
                if (field%at_points .neqv. at_points) cycle
                if (allocated(field%reals)) then
-                  call array("Float64", field%name, ' NumberOfComponents="'// &
-                     & integer_text(int(field%n_components, ik))//'"'//field%components, &
-                     & 8*size(field%reals), field%unit)
+                  call array("Float64", field%name, field%components, 8*size(field%reals), &
+                             field%unit)
                else
                   call array("Int32", field%name, "", 4*size(field%integers))
                end if
@@ -307,28 +280,6 @@ contains
       xml = '<DataArray type="Int32" Name="history_row" NumberOfTuples="1" format="ascii">'// &
             integer_text(self%history_row)//"</DataArray>"
    end function state_number
-
-   !> The legends as arrays of strings: the codes of their characters, each string ended by a 0.
-   pure function legends(self) result(xml)
-      type(vtu_grid_t), intent(in) :: self
-      character(len=:), allocatable :: xml
-      integer :: i, j, k
-
-      xml = ""
-      do i = 1, size(self%legends)
-         associate (words => self%legends(i)%words)
-            xml = xml//newline//'      <Array type="String" Name="'//self%legends(i)%name// &
-               & '" NumberOfTuples="'//integer_text(size(words, kind=ik))//'" format="ascii">'
-            do j = 1, size(words)
-               do k = 1, len(words(j)%text)
-                  xml = xml//integer_text(iachar(words(j)%text(k:k), ik))//" "
-               end do
-               xml = xml//"0 "
-            end do
-            xml = xml(:len(xml) - 1)//"</Array>"
-         end associate
-      end do
-   end function legends
 
    subroutine new_field(self, name)
       class(vtu_grid_t), intent(inout) :: self

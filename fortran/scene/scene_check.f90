@@ -7,7 +7,7 @@ module scene_check
    use scene_check_column, only: check_column
    use scene_check_faces, only: check_faces
    use scene_check_fluid, only: check_fluid, check_given_fluid
-   use scene_check_geometry, only: check_domain, check_fractures, check_probes
+   use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_permeability, only: check_given_permeability, check_tensor
@@ -16,10 +16,9 @@ module scene_check
    use scene_check_table, only: check_table
    use scene_check_wells, only: check_given_wells, check_wells
    use scene_parameters, only: groups
-   use scene_sheet, only: line_text, refuse, sheet_t
+   use scene_sheet, only: line_text, parameter_index, refuse, sheet_t
    use scene_storage, only: least_compressibility, skempton, storage
    use scene_types, only: scene_t
-   use scene_values, only: value_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
@@ -49,6 +48,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call check_domain(sheet, scene, error)
+      if (.not. allocated(error)) call check_least_size(sheet, scene, error)
       if (.not. allocated(error)) call check_material(sheet, scene, error)
       if (.not. allocated(error) .and. allocated(scene%regions)) then
          call check_regions(sheet, scene, error)
@@ -76,26 +76,27 @@ contains
    pure subroutine check_names(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: name, other
-      integer :: i, j
+      integer :: i, item, j
 
       do i = 1, sheet%length
          select case (groups(sheet%records(i)%group)%name)
          case ("fracture", "region", "side", "probe", "injection")
-            name = sheet%records(i)%value("name")
+            item = parameter_index(sheet%records(i)%group, "name")
          case default
             cycle
          end select
-         if (.not. name%is_set) cycle  ! a well, called after its number
-         do j = 1, i - 1
-            if (sheet%records(j)%group /= sheet%records(i)%group) cycle
-            other = sheet%records(j)%value("name")
-            if (.not. other%is_set) cycle
-            if (name%text /= other%text) cycle
-            call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on "// &
-                        line_text(sheet, j, other%line, i)//" but must be unique")
-            return
-         end do
+         associate (name => sheet%records(i)%values(item))
+            if (.not. name%is_set) cycle  ! a well, called after its number
+            do j = 1, i - 1
+               if (sheet%records(j)%group /= sheet%records(i)%group) cycle
+               if (.not. sheet%records(j)%values(item)%is_set) cycle
+               if (name%text /= sheet%records(j)%values(item)%text) cycle
+               call refuse(error, sheet, i, "name", "'"//name%text//"' is already taken on "// &
+                           line_text(sheet, j, sheet%records(j)%values(item)%line, i)// &
+                           " but must be unique")
+               return
+            end do
+         end associate
       end do
    end subroutine check_names
 

@@ -13,7 +13,11 @@ module scene_check_geometry
    implicit none(type, external)
    private
 
-   public :: check_domain, check_fractures, check_probes, contains_point, distance_to, point_text
+   public :: check_domain, check_fractures, check_least_size, check_probes, contains_point
+   public :: distance_to, point_text
+
+   !> Smaller elements, over the body's diagonal, drown in the rounding of coordinates.
+   real(rk), parameter :: least_size = 1.0e-8_rk
 
 contains
 
@@ -44,6 +48,38 @@ contains
          end if
       end associate
    end subroutine check_domain
+
+   !> No size that a scene gives is lost in its body.
+   pure subroutine check_least_size(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: least
+
+      associate (body => scene%domain, sizes => scene%discretization)
+         least = least_size*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
+         if (size(scene%fractures) > 0 .and. sizes%size_fracture < least) then
+            call refuse(error, sheet, mesh_record(sheet), "size_fracture", &
+                        blurred(sizes%size_fracture, least))
+         else if (.not. scene%has_fluid() .and. sizes%rosette_radius < least) then
+            call refuse(error, sheet, mesh_record(sheet), "rosette_radius", &
+                        blurred(sizes%rosette_radius, least))
+         else if (scene%growth%intensities .and. scene%has_fluid()) then
+            if (sizes%fine_ratio*sizes%size_fracture >= least) return
+            call refuse(error, sheet, sheet%find("fine"), "size_ratio", &
+                        blurred(sizes%fine_ratio, least/sizes%size_fracture))
+         end if
+      end associate
+   end subroutine check_least_size
+
+   pure function blurred(given, least) result(reason)
+      real(rk), intent(in) :: given, least  !< [m], or shares of another size
+      character(len=:), allocatable :: reason
+
+      reason = "is "//real_text(given)//" but must be at least "//rounded_text(least)// &
+               ": elements of less than "//real_text(least_size)//" of the body's diagonal "// &
+               "cannot be meshed"
+   end function blurred
 
    !> What a shape needs.
    pure subroutine check_shape(sheet, scene, error)

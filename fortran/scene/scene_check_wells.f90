@@ -5,7 +5,7 @@ module scene_check_wells
    use base_number, only: integer_text
    use scene_check_geometry, only: contains_point, distance_to, point_text
    use scene_parameters, only: groups
-   use scene_sheet, only: refuse, sheet_t
+   use scene_sheet, only: group_index, parameter_index, refuse, sheet_t
    use scene_types, only: injection_t, name_length, scene_t
    use scene_values, only: value_t
    use scene_words, only: nearest_word, real_text, rounded_text
@@ -54,16 +54,19 @@ contains
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: well  !< index into sheet%records
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: value, wanted
+      type(value_t) :: wanted
       character(len=name_length), allocatable :: names(:)
       character(len=:), allocatable :: reason, likely
-      integer :: i, k
+      integer :: group, i, item, n
 
-      allocate (names(count([(groups(sheet%records(i)%group)%name == "fracture", i=1, &
-                              sheet%length)])))
-      do k = 1, size(names)
-         value = sheet%records(sheet%find("fracture", k))%value("name")
-         names(k) = value%text
+      group = group_index("fracture")
+      item = parameter_index(group, "name")
+      allocate (names(count(sheet%records(:sheet%length)%group == group)))
+      n = 0
+      do i = 1, sheet%length
+         if (sheet%records(i)%group /= group) cycle
+         n = n + 1
+         names(n) = sheet%records(i)%values(item)%text
       end do
       wanted = sheet%records(well)%value("fracture")
       if (size(names) == 0) then

@@ -2,6 +2,7 @@
 module scene_constants
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text, number_width
    use scene_expression, only: constant_t, evaluate
    use scene_parameter_types, only: kind_real, kind_reals, parameter_t
    use scene_sheet, only: place, sheet_t
@@ -12,7 +13,9 @@ module scene_constants
    implicit none(type, external)
    private
 
-   public :: parse_constants, read_resolved
+   public :: is_constant_name, parse_constants, read_resolved
+
+   integer, parameter :: most_constants = 1000
 
 contains
 
@@ -28,18 +31,19 @@ contains
       type(token_list_t) :: tokens
       integer(ik) :: fault_line
       real(rk) :: number
-      integer :: k
+      integer :: k, length
 
       if (size(constants) == 0 .or. .not. takes_expressions(parameter) .or. &
           all(items%kind /= token_text)) then
          call read_value(parameter, source, items, value, reason)
          return
       end if
-      resolved = ""
+      resolved = repeat(" ", sum(max(items%last - items%first, number_width) + 2))
+      length = 0
       do k = 1, size(items)
          associate (piece => source(items(k)%first:items(k)%last))
             if (items(k)%kind /= token_text) then
-               resolved = resolved//" "//piece
+               call add_word(resolved, length, piece)
                cycle
             end if
             call evaluate(unquoted(piece), constants, number, fault)
@@ -47,12 +51,22 @@ contains
                reason = "is "//shortened(piece)//", which is no expression: "//fault
                return
             end if
-            resolved = resolved//" "//real_text(number)
+            call add_word(resolved, length, real_text(number))
          end associate
       end do
       call tokenize(resolved, tokens, fault, fault_line)
       call read_value(parameter, resolved, tokens%items(:tokens%length - 1), value, reason)
    end subroutine read_resolved
+
+   !> Put a word and a blank behind the first characters of a text that has room for them.
+   pure subroutine add_word(text, length, word)
+      character(len=:), allocatable, intent(inout) :: text
+      integer, intent(inout) :: length  !< characters in use
+      character(len=*), intent(in) :: word
+
+      text(length + 1:length + len(word)) = word
+      length = length + len(word) + 1
+   end subroutine add_word
 
    !> Numbers, unless a text may stand in their place.
    pure logical function takes_expressions(parameter)
@@ -93,6 +107,9 @@ contains
          else
             earlier = findloc(sheet%constants%name == name, .true., dim=1)
             if (earlier > 0) fault = name//" is given twice, but must be given once"
+            if (size(sheet%constants) == most_constants) fault = name//" is one more than the "// &
+                                        integer_text(int(most_constants, ik))//" values that a "// &
+                                                                 "scene may give names to"
          end if
          if (.not. allocated(fault)) then
             word = source(tokens%items(next + 2)%first:tokens%items(next + 2)%last)
@@ -113,11 +130,12 @@ contains
       next = next + 1
    end subroutine parse_constants
 
+   !> Letters, digits and `_`, at most 64, beginning with a letter.
    pure logical function is_constant_name(word)
       character(len=*), intent(in) :: word  !< in lower case
       character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz"
 
-      is_constant_name = len(word) <= 64 .and. scan(word(1:1), letters) == 1 .and. &
+      is_constant_name = len(word) <= 64 .and. scan(word, letters) == 1 .and. &
                          verify(word, letters//"0123456789_") == 0
    end function is_constant_name
 

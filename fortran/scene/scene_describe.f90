@@ -37,10 +37,14 @@ module scene_describe
       "* Groups and names may be in upper or lower case. Texts are taken as they are.", &
       "* A group is given once, unless it says `repeated`: then once per item.", &
   "* `include 'rock.inc'` between groups stands for the groups of that file, which is looked for", &
-      "  beside the file that includes it, and may include others.", &
+      "  beside the file that includes it, and may include others: at most 1000 files, nested at", &
+      "  most 20 deep.", &
    "* `&define depth = 2500.0, stress = '-24.0e3*depth' /` gives names to numbers. From there on", &
       "  a text in place of a number is an expression of numbers, such names, + - * / ^ and", &
-      "  brackets: `sxx = 'stress', syy = '0.6*stress'`.", &
+      "  brackets: `sxx = 'stress', syy = '0.6*stress'`. At most 1000 values have names, and an", &
+      "  expression has at most 10000 characters.", &
+   "* A file has at most 4 MB, all files of a scene have at most 10 MB together, and a scene has", &
+      "  at most 10000 groups. Pipes and devices are not read.", &
       "* Unknown groups and names, values of the wrong kind, values out of range and values that", &
       "  contradict each other are errors; nothing is run or written then.", &
       "* Every run writes `scene.nml`, the scene as understood with every default written out."]

@@ -3,6 +3,7 @@
 module scene_expression
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use scene_words, only: lower_case
    implicit none(type, external)
    private
@@ -11,6 +12,7 @@ module scene_expression
 
    integer, parameter :: longest_name = 64
    integer, parameter :: most_brackets = 50
+   integer, parameter :: longest_expression = 10000  !< characters
 
    !> A named value.
    type :: constant_t
@@ -24,7 +26,6 @@ module scene_expression
       character(len=:), allocatable :: text  !< in lower case, with a blank at its end
       integer :: position = 1
       integer :: depth = 0  !< of brackets and signs
-      type(constant_t), allocatable :: constants(:)
       character(len=:), allocatable :: fault  !< what is wrong; unallocated: nothing so far
    end type reading_t
 
@@ -38,9 +39,13 @@ contains
       character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
       type(reading_t) :: reading
 
+      value = 0.0_rk
+      if (len(expression) > longest_expression) then
+         fault = "it has more than "//integer_text(int(longest_expression, ik))//" characters"
+         return
+      end if
       reading%text = lower_case(expression)//" "
-      reading%constants = constants
-      call read_sum(reading, value)
+      call read_sum(reading, constants, value)
       if (.not. allocated(reading%fault) .and. next(reading) /= " ") then
          reading%fault = "'"//next(reading)//"' stands where an operator or the end must stand"
       end if
@@ -54,7 +59,11 @@ contains
    pure character function next(reading)
       type(reading_t), intent(in) :: reading
 
-      next = adjustl(reading%text(reading%position:))
+      integer :: blanks
+
+      blanks = verify(reading%text(reading%position:), " ") - 1
+      next = " "
+      if (blanks >= 0) next = reading%text(reading%position + blanks:)
    end function next
 
    !> Go on behind a character that was the next one.
@@ -64,34 +73,36 @@ contains
       reading%position = reading%position + verify(reading%text(reading%position:), " ")
    end subroutine take
 
-   pure recursive subroutine read_sum(reading, value)
+   pure recursive subroutine read_sum(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
       real(rk) :: other
       character :: operator
 
-      call read_product(reading, value)
+      call read_product(reading, constants, value)
       do while (.not. allocated(reading%fault))
          operator = next(reading)
          if (scan(operator, "+-") == 0) return
          call take(reading)
-         call read_product(reading, other)
+         call read_product(reading, constants, other)
          value = merge(value + other, value - other, operator == "+")
       end do
    end subroutine read_sum
 
-   pure recursive subroutine read_product(reading, value)
+   pure recursive subroutine read_product(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
       real(rk) :: other
       character :: operator
 
-      call read_signed(reading, value)
+      call read_signed(reading, constants, value)
       do while (.not. allocated(reading%fault))
          operator = next(reading)
          if (scan(operator, "*/") == 0) return
          call take(reading)
-         call read_signed(reading, other)
+         call read_signed(reading, constants, other)
          if (operator == "*") then
             value = value*other
          else if (abs(other) <= 0.0_rk) then
@@ -103,38 +114,40 @@ contains
    end subroutine read_product
 
    !> A sign binds less than a power: -2^2 is -4.
-   pure recursive subroutine read_signed(reading, value)
+   pure recursive subroutine read_signed(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
       character :: sign
 
       value = 0.0_rk
       sign = next(reading)
       if (scan(sign, "+-") == 0) then
-         call read_power(reading, value)
+         call read_power(reading, constants, value)
          return
       end if
       call take(reading)
       call go_down(reading)
       if (allocated(reading%fault)) return
-      call read_signed(reading, value)
+      call read_signed(reading, constants, value)
       reading%depth = reading%depth - 1
       if (sign == "-") value = -value
    end subroutine read_signed
 
    !> Powers bind from the right: 2^3^2 is 2^9.
-   pure recursive subroutine read_power(reading, value)
+   pure recursive subroutine read_power(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
       real(rk) :: exponent
 
-      call read_operand(reading, value)
+      call read_operand(reading, constants, value)
       if (allocated(reading%fault)) return
       if (next(reading) /= "^") return
       call take(reading)
       call go_down(reading)
       if (allocated(reading%fault)) return
-      call read_signed(reading, exponent)
+      call read_signed(reading, constants, exponent)
       reading%depth = reading%depth - 1
       if (abs(exponent - anint(exponent)) > 0.0_rk .or. abs(exponent) > 1.0e6_rk) then
          value = value**exponent
@@ -143,8 +156,9 @@ contains
       end if
    end subroutine read_power
 
-   pure recursive subroutine read_operand(reading, value)
+   pure recursive subroutine read_operand(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
 
       value = 0.0_rk
@@ -153,7 +167,7 @@ contains
          call take(reading)
          call go_down(reading)
          if (allocated(reading%fault)) return
-         call read_sum(reading, value)
+         call read_sum(reading, constants, value)
          reading%depth = reading%depth - 1
          if (allocated(reading%fault)) return
          if (next(reading) == ")") then
@@ -164,7 +178,7 @@ contains
       case ("0":"9", ".")
          call read_number(reading, value)
       case ("a":"z")
-         call read_name(reading, value)
+         call read_name(reading, constants, value)
       case (" ")
          reading%fault = "it ends where a number or a name must stand"
       case default
@@ -191,7 +205,7 @@ contains
       last = first + length - 1
       if (scan(reading%text(last + 1:last + 1), "ed") > 0) then
          length = 1
-         if (scan(reading%text(last + 2:), "+-") == 1) length = 2
+         if (scan(reading%text(last + 2:min(last + 2, len(reading%text))), "+-") == 1) length = 2
          last = last + length + verify(reading%text(last + length + 1:), "0123456789") - 1
       end if
       reading%position = last + 1
@@ -199,8 +213,9 @@ contains
       if (status /= 0) reading%fault = "'"//reading%text(first:last)//"' is no number"
    end subroutine read_number
 
-   pure subroutine read_name(reading, value)
+   pure subroutine read_name(reading, constants, value)
       type(reading_t), intent(inout) :: reading
+      type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
       character(len=:), allocatable :: name
       integer :: first, k
@@ -211,9 +226,9 @@ contains
       name = reading%text(first:first + k - 1)
       reading%position = first + k
       value = 0.0_rk
-      do k = 1, size(reading%constants)
-         if (reading%constants(k)%name /= name) cycle
-         value = reading%constants(k)%value
+      do k = 1, size(constants)
+         if (constants(k)%name /= name) cycle
+         value = constants(k)%value
          return
       end do
       reading%fault = "there is no value '"//name//"' of &define before it"

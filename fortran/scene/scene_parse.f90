@@ -1,10 +1,11 @@
 !> Reads a scene file into a sheet: syntax, names, kinds and ranges are checked here, one by one.
 module scene_parse
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, lk
+   use base_kinds, only: ik
    use base_number, only: integer_text
    use base_texts, only: text_t
-   use scene_constants, only: parse_constants, read_resolved
+   use scene_constants, only: is_constant_name, parse_constants, read_resolved
+   use scene_files, only: load_file
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
                                need_choice, need_fluid, need_fracture, need_growth, need_tips, &
                                parameters
@@ -20,8 +21,8 @@ module scene_parse
 
    public :: parse_scene
 
-   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene
    integer, parameter :: most_groups = 10000
+   integer, parameter :: most_included = 1000  !< files, each as often as it is included
    integer, parameter :: most_nested = 20  !< files that include each other
 
 contains
@@ -31,9 +32,15 @@ contains
       character(len=*), intent(in) :: path
       type(sheet_t), intent(out) :: sheet
       type(error_t), allocatable, intent(out) :: error
+      logical :: exists
 
       sheet%path = trim(path)
       allocate (sheet%constants(0))
+      inquire (file=sheet%path, exist=exists)
+      if (.not. exists) then
+         call raise_error(error, "", sheet%path//": there is no such scene file")
+         return
+      end if
       call parse_file([text_t ::], sheet, error)
       if (allocated(error)) return
       call complete(sheet, error)
@@ -48,15 +55,39 @@ contains
       type(token_list_t) :: tokens
       integer(ik) :: fault_line
 
-      call load(sheet%path, source, error)
-      if (allocated(error)) return
-      call tokenize(source, tokens, fault, fault_line)
+      call load_file(sheet%path, sheet%n_bytes, source, fault)
       if (allocated(fault)) then
-         call raise_error(error, "", sheet%path//":"//integer_text(fault_line)//": "//fault)
+         call raise_error(error, "", sheet%path//": is "//fault)
          return
       end if
-      call parse_groups(source, tokens, parents, sheet, error)
+      call tokenize(source, tokens, fault, fault_line)
+      if (.not. begins_as_scene(source, tokens, allocated(fault))) then
+         call raise_error(error, "", sheet%path//": is no scene file, which begins with a "// &
+                          "group, as &domain, or with include")
+      else if (allocated(fault)) then
+         call raise_error(error, "", sheet%path//":"//integer_text(fault_line)//": "//fault)
+      else
+         call parse_groups(source, tokens, parents, sheet, error)
+      end if
    end subroutine parse_file
+
+   !> The first that is no comment is the name of a group or an include, or there is nothing else.
+   pure logical function begins_as_scene(source, tokens, is_cut)
+      character(len=*), intent(in) :: source
+      type(token_list_t), intent(in) :: tokens
+      logical, intent(in) :: is_cut  !< at something that is no token
+
+      associate (token => tokens%items(1))
+         select case (token%kind)
+         case (token_group)
+            begins_as_scene = is_constant_name(lower_case(source(token%first:token%last)))
+         case (token_end)
+            begins_as_scene = .not. is_cut
+         case default
+            begins_as_scene = is_include(source, token, tokens%items(2))
+         end select
+      end associate
+   end function begins_as_scene
 
    !> `include 'path'` between groups: the groups of that file stand here. Its path is seen from the
    !! folder of the file that includes it.
@@ -74,6 +105,7 @@ contains
       here = sheet%path
       chain = [parents, text_t(here)]
       sheet%path = path_beside(here, unquoted(quoted))
+      sheet%n_included = sheet%n_included + 1
       inquire (file=sheet%path, exist=exists)
       do k = 1, size(chain)
          if (chain(k)%text /= sheet%path) cycle
@@ -85,6 +117,10 @@ contains
          call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
                           " is nested too deeply, in more than "// &
                           integer_text(int(most_nested, ik))//" files")
+      else if (sheet%n_included > most_included) then
+         call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
+                          " is one more than the "//integer_text(int(most_included, ik))// &
+                          " files that a scene may include")
       else if (.not. exists) then
          call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
                           ": there is no file "//sheet%path)
@@ -93,39 +129,6 @@ contains
       end if
       if (.not. allocated(error)) sheet%path = here
    end subroutine include_file
-
-   !> The bytes of a file.
-   subroutine load(path, source, error)
-      character(len=*), intent(in) :: path
-      character(len=:), allocatable, intent(out) :: source
-      type(error_t), allocatable, intent(out) :: error
-      character(len=256) :: reason
-      integer(lk) :: n_bytes
-      integer :: unit, status
-      logical :: exists
-
-      inquire (file=path, exist=exists)
-      if (.not. exists) then
-         call raise_error(error, "", path//": there is no such scene file")
-         return
-      end if
-      reason = ""
-      open (newunit=unit, file=path, action="read", status="old", access="stream", &
-            form="unformatted", iostat=status, iomsg=reason)
-      if (status /= 0) then
-         call raise_error(error, "", path//": cannot be opened as a scene file: "//trim(reason))
-         return
-      end if
-      inquire (unit=unit, size=n_bytes)
-      if (n_bytes < 0 .or. n_bytes > largest_file) then
-         call raise_error(error, "", path//": is no scene file, which is a text of at most 4 MB")
-      else
-         allocate (character(len=n_bytes) :: source)
-         read (unit, iostat=status, iomsg=reason) source
-         if (status /= 0) call raise_error(error, "", path//": cannot be read: "//trim(reason))
-      end if
-      close (unit)
-   end subroutine load
 
    !> All groups of a file.
    recursive subroutine parse_groups(source, tokens, parents, sheet, error)
@@ -149,9 +152,8 @@ contains
          end if
          associate (token => tokens%items(next))
             if (token%kind /= token_group) then
-               call raise_error(error, "", place(sheet, token%line)//"'"// &
-                                shortened(source(token%first:token%last))// &
-                                "' stands outside of a group, where only comments may stand")
+               call raise_error(error, "", place(sheet, token%line)//"text stands outside of "// &
+                                "a group, where only comments may stand")
                return
             end if
             if (lower_case(source(token%first:token%last)) == "define") then

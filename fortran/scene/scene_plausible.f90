@@ -7,6 +7,7 @@ module scene_plausible
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
    use scene_check_permeability, only: anisotropy
+   use scene_growth_regime, only: find_regime, least_verified
    use scene_near_ends, only: near_end_t, near_ends
    use scene_region_outline, only: body_part
    use scene_storage, only: skempton
@@ -34,7 +35,7 @@ module scene_plausible
                          of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
                          of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
                          of_weightless = 23, of_uniform = 24, of_tension = 25, &
-                         of_dry = 26, of_overpressure = 27
+                         of_dry = 26, of_overpressure = 27, of_viscous = 28
 
    ! The table keeps its own layout.
    !&<
@@ -106,7 +107,11 @@ module scene_plausible
               "pressure or another y_datum"), &
       doubt_t("initial", "pressure", "Pa", &
               "above the smallest compression in situ somewhere", &
-              "fractures across that compression are open from the start")]
+              "fractures across that compression are open from the start"), &
+      doubt_t("injection", "K_m", "-", &
+              "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
+              "the fluid's viscosity decides about growth then, not the toughness; growth is "// &
+              "verified for K_m of 1 and more, and below it the run may end early")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
@@ -126,6 +131,7 @@ contains
       has_fluid = scene%has_fluid()
       call doubt_material(scene, has_fluid, list)
       call doubt_fractures(scene%fractures, has_fluid, list)
+      call doubt_growth(scene, list)
       if (has_fluid) call doubt_flow(scene, list)
       if (has_fluid) call doubt_column(scene, list)
       if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
@@ -173,6 +179,20 @@ contains
          end associate
       end do
    end subroutine doubt_fractures
+
+   !> Growth by so viscous a fluid, or at such a rate, that none like it has been verified.
+   pure subroutine doubt_growth(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk), parameter :: nearly = 0.99_rk
+      real(rk) :: value
+      integer :: well
+
+      call find_regime(scene, value, well)
+      if (well == 0) return
+      call add(list, value < nearly*least_verified, of_viscous, value, &
+               " '"//trim(scene%injections(well)%name)//"'")
+   end subroutine doubt_growth
 
    !> Ends that almost touch something, or lie just past it.
    pure subroutine doubt_ends(scene, list)

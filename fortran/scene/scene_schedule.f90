@@ -9,13 +9,14 @@
 !! follows, scene.nml as well, knows of lists alone.
 module scene_schedule
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use base_texts, only: text_t
+   use scene_files, only: load_file
    use scene_parameters, only: groups, kind_reals, parameter_t, parameters
    use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
    use scene_tokens, only: token_list_t, tokenize
-   use scene_values, only: read_value, shortened, value_t
+   use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
    implicit none(type, external)
    private
@@ -38,8 +39,6 @@ module scene_schedule
                               [unit_t("min", "s", 60.0_rk), unit_t("h", "s", 3600.0_rk), &
                                unit_t("d", "s", 86400.0_rk), unit_t("kpa", "pa", 1.0e3_rk), &
                                unit_t("mpa", "pa", 1.0e6_rk), unit_t("bar", "pa", 1.0e5_rk)]
-
-   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no table
 
 contains
 
@@ -88,7 +87,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(text_t), allocatable :: cells(:), rows(:)
       integer, allocatable :: item(:)
-      real(rk), allocatable :: factor(:)
+      real(rk), allocatable :: factor(:), numbers(:, :)
       type(value_t) :: value
       character(len=:), allocatable :: reason
       character :: mark
@@ -103,6 +102,7 @@ contains
          cells = split(rows(row)%text, mark)
          if (.not. allocated(item)) then
             call find_columns(cells, sheet%records(record)%group, item, factor, reason)
+            allocate (numbers(min(size(rows) - row, most_values), size(item)))
             if (.not. allocated(reason)) then
                call refuse_both(sheet, record, [character(len=20) :: &
                                                 parameters(item)%name, start], error)
@@ -110,13 +110,16 @@ contains
             end if
          else if (size(cells) /= size(item)) then
             reason = wrong_count(size(cells), size(item), mark)
+         else if (n == most_values) then
+            reason = "the table has more than the "//integer_text(int(most_values, ik))// &
+                     " rows that it may have"
          else
             n = n + 1
             do k = 1, size(item)
                if (mark /= ",") cells(k)%text = with_point(cells(k)%text)
                call read_cell(cells(k)%text, parameters(item(k)), value, reason)
                if (allocated(reason)) exit
-               call append(sheet%records(record)%values(item(k)), factor(k)*value%reals(1), n, line)
+               numbers(n, k) = factor(k)*value%reals(1)
             end do
          end if
          if (.not. allocated(reason)) cycle
@@ -124,9 +127,18 @@ contains
                           " (see docs/input.md)")
          return
       end do
-      if (n == 0) call refuse(error, sheet, record, "schedule", "is '"//path//"', a table "// &
-                              "without rows, but must have a row per stage below the names of "// &
-                              "its columns")
+      if (n == 0) then
+         call refuse(error, sheet, record, "schedule", "is '"//path//"', a table without rows, "// &
+                     "but must have a row per stage below the names of its columns")
+         return
+      end if
+      do k = 1, size(item)
+         associate (list => sheet%records(record)%values(item(k)))
+            list%is_set = .true.
+            list%line = line
+            list%reals = numbers(:n, k)
+         end associate
+      end do
    end subroutine load_table
 
    !> A row has not one value per column.
@@ -143,41 +155,30 @@ contains
 
    !> The rows of a file, without line ends.
    subroutine read_rows(sheet, record, path, rows, error)
-      type(sheet_t), intent(in) :: sheet
+      type(sheet_t), intent(inout) :: sheet
       integer, intent(in) :: record
       character(len=*), intent(in) :: path
       type(text_t), allocatable, intent(out) :: rows(:)
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: source
-      integer(lk) :: n_bytes
-      integer :: first, last, unit, status
-      logical :: exists
+      character(len=:), allocatable :: fault, source
+      integer :: first, last, row
 
-      inquire (file=path, exist=exists)
-      status = 1
-      if (exists) open (newunit=unit, file=path, action="read", status="old", access="stream", &
-         & form="unformatted", iostat=status)
-      if (status /= 0) then
-         call refuse(error, sheet, record, "schedule", "is '"//path//"', which is no file that "// &
-                     "can be read")
+      call load_file(path, sheet%n_bytes, source, fault)
+      if (allocated(fault)) then
+         call refuse(error, sheet, record, "schedule", "is '"//path//"', which is "//fault)
          return
       end if
-      inquire (unit=unit, size=n_bytes)
-      n_bytes = min(n_bytes, largest_file)
-      allocate (character(len=n_bytes) :: source)
-      read (unit, iostat=status) source
-      close (unit)
       if (index(source, byte_order_mark) == 1) source = source(len(byte_order_mark) + 1:)
       allocate (rows(count([(source(first:first) == new_line("a"), first=1, len(source))]) + 1))
       first = 1
-      do status = 1, size(rows)
+      do row = 1, size(rows)
          last = index(source(first:), new_line("a")) + first - 2
          if (last < first - 1) last = len(source)
-         rows(status)%text = source(first:last)
+         rows(row)%text = source(first:last)
          first = last + 2
-         last = len(rows(status)%text)
+         last = len(rows(row)%text)
          if (last == 0) cycle
-         if (rows(status)%text(last:) == achar(13)) rows(status)%text = rows(status)%text(:last - 1)
+         if (rows(row)%text(last:) == achar(13)) rows(row)%text = rows(row)%text(:last - 1)
       end do
    end subroutine read_rows
 
@@ -252,9 +253,15 @@ contains
             if (.not. is_column(parameters(m), group)) cycle
             call compare(lower_case(names(k)%text), parameters(m), m, item(k), factor(k))
          end do
+      end do
+      known = known(3:)//"; or in place of _s _min, _h or _d, and of _pa _kpa, _mpa or _bar"
+      if (all(item == 0)) then  ! perhaps a file of another kind, whose content is not to be told
+         reason = "the file is no table, whose first row has the names of its columns: "//known
+         return
+      end if
+      do k = 1, size(names)
          if (item(k) == 0) then
-            reason = "the column '"//shortened(names(k)%text)//"' must be one of "//known(3:)// &
-                     "; or in place of _s _min, _h or _d, and of _pa _kpa, _mpa or _bar"
+            reason = "the column '"//shortened(names(k)%text)//"' must be one of "//known
          else if (any(item(:k - 1) == item(k))) then
             reason = "the column '"//column_name(parameters(item(k)))//"' is given twice"
          end if
@@ -323,21 +330,5 @@ contains
       end if
       if (allocated(reason)) reason = column_name(parameter)//" "//reason
    end subroutine read_cell
-
-   !> Make a number the n-th of a list.
-   pure subroutine append(value, number, n, line)
-      type(value_t), intent(inout) :: value
-      real(rk), intent(in) :: number  !< [unit of the name]
-      integer, intent(in) :: n
-      integer(ik), intent(in) :: line
-
-      if (n == 1) then
-         value%is_set = .true.
-         value%line = line
-         value%reals = [number]
-      else
-         value%reals = [value%reals, number]
-      end if
-   end subroutine append
 
 end module scene_schedule

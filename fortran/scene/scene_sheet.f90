@@ -1,7 +1,7 @@
 !> A scene file as it stands: its groups in order, each with its values and lines.
 module scene_sheet
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik
+   use base_kinds, only: ik, lk
    use base_number, only: integer_text
    use scene_expression, only: constant_t
    use scene_parameters, only: choice_name, choice_value, groups, parameters
@@ -34,6 +34,8 @@ module scene_sheet
       type(record_t), allocatable :: records(:)
       integer :: length = 0  !< records in use
       type(constant_t), allocatable :: constants(:)  !< named values, in their order
+      integer :: n_included = 0  !< files, each as often as it is included
+      integer(lk) :: n_bytes = 0_lk  !< of all its files, tables among them
    contains
       procedure :: find
       procedure :: has
@@ -142,13 +144,14 @@ contains
       class(sheet_t), intent(in) :: self
       character(len=*), intent(in) :: name
       integer, intent(in), optional :: n  !< default 1
-      integer :: seen, wanted
+      integer :: group, seen, wanted
 
       wanted = 1
       if (present(n)) wanted = n
+      group = group_index(name)
       seen = 0
       do record = 1, self%length
-         if (groups(self%records(record)%group)%name == name) seen = seen + 1
+         if (self%records(record)%group == group) seen = seen + 1
          if (seen == wanted) return
       end do
       record = 0

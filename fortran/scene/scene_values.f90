@@ -14,7 +14,7 @@ module scene_values
    private
 
    public :: value_t
-   public :: default_value, read_value, shortened
+   public :: default_value, most_values, read_value, shortened
 
    !> The value of a parameter in one group of a file.
    type :: value_t

@@ -12,11 +12,12 @@
 !! The static stress drop is the mean over the event's patch of the fall of the shear traction, from
 !! the state before its first step to that after its last one.
 !!
-!! Seismic moment M0 = G times the sum of slip times area (Aki 1966), with an assumed length out of
-!! the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5 (Hanks and Kanamori 1979, in SI
-!! units as the IASPEI standard of 2005 has it).
+!! Seismic moment M0 = sum of G times slip times area (Aki 1966), with the G of the rock beside each
+!! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
+!! (Hanks and Kanamori 1979, in SI units as the IASPEI standard of 2005 has it).
 module simulation_slip
    use base_kinds, only: ik, rk
+   use contact_states, only: state_open, state_stick
    use mesh_types, only: fracture_mesh_t
    use results_rows, only: slip_event_t
    use simulation_shear, only: shear_t
@@ -28,9 +29,10 @@ module simulation_slip
    !> Slip of one step, or of several.
    type :: amount_t
       real(rk) :: potency = 0.0_rk  !< slip times length [m2]
-      real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [m2]
-      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [m2]
-      real(rk) :: place(2) = 0.0_rk  !< its first moment [m3]
+      real(rk) :: moment = 0.0_rk  !< seismic moment per metre out of the plane [N]
+      real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [N]
+      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [N]
+      real(rk) :: place(2) = 0.0_rk  !< its first moment [N m]
       real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
       real(rk) :: rate = 0.0_rk  !< largest of a cell [m/s]
       real(rk) :: fastest(2) = 0.0_rk  !< where that was first so [m]
@@ -54,7 +56,6 @@ module simulation_slip
 
    !> The events so far.
    type :: slip_catalogue_t
-      real(rk) :: shear = 0.0_rk  !< modulus G [Pa]
       real(rk) :: breadth = 1.0_rk  !< out of the plane [m]
       real(rk) :: least_slip = 0.0_rk  !< mean slip that makes an event [m]
       real(rk) :: seismic_rate = huge(1.0_rk)  !< slip rate from which an event is seismic [m/s]
@@ -73,14 +74,12 @@ module simulation_slip
 contains
 
    !> Nothing slides.
-   subroutine begin(self, shear, breadth, least_slip, seismic_rate)
+   subroutine begin(self, breadth, least_slip, seismic_rate)
       class(slip_catalogue_t), intent(out) :: self
-      real(rk), intent(in) :: shear  !< modulus [Pa]
       real(rk), intent(in) :: breadth  !< out of the plane [m]
       real(rk), intent(in) :: least_slip  !< mean slip that makes an event [m]
       real(rk), intent(in) :: seismic_rate  !< slip rate from which it is seismic [m/s]
 
-      self%shear = shear
       self%breadth = breadth
       self%least_slip = least_slip
       self%seismic_rate = seismic_rate
@@ -97,18 +96,20 @@ contains
    end subroutine remember
 
    !> A step of length dt that led to a time.
-   pure subroutine follow(self, time, dt, fracture, potency, slides, is_open, is_sudden, traction)
+   pure subroutine follow(self, time, dt, fracture, potency, shear, state, is_sudden, traction)
       class(slip_catalogue_t), intent(inout) :: self
       real(rk), intent(in) :: time, dt  !< [s]; dt > 0
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
-      logical, intent(in) :: slides(:)  !< (cells) its faces do
-      logical, intent(in) :: is_open(:)  !< (cells) they do not touch
+      real(rk), intent(in) :: shear(:)  !< (cells) modulus G of the rock beside it [Pa]
+      integer(ik), intent(in) :: state(:)  !< (cells) of contact_states
       logical, intent(in) :: is_sudden  !< growth was unstable in the step
       real(rk), intent(in) :: traction(:)  !< (cells) f_tau after it [Pa]
       type(patch_t), allocatable :: patches(:)
+      logical :: slides(size(state))
       integer(ik) :: cell, first, p
 
+      slides = state /= state_stick .and. potency > 0.0_rk
       allocate (patches(0))
       if (.not. allocated(self%last%s)) call self%last%keep(fracture, traction)
       do p = 1, size(self%live)
@@ -127,7 +128,7 @@ contains
          call assign_patch(self, patches)
          p = size(patches)
          call add(self%live(patches(p)%live)%now, &
-                  amount_of(fracture, first, cell, dt, potency, is_open, is_sudden))
+                  amount_of(fracture, first, cell, dt, potency, shear*potency, state, is_sudden))
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
@@ -214,24 +215,27 @@ contains
    end subroutine take_in
 
    !> Slip of some cells that follow each other.
-   pure function amount_of(fracture, first, last, dt, potency, is_open, is_sudden) result(amount)
+   pure function amount_of(fracture, first, last, dt, potency, moment, state, is_sudden) &
+      result(amount)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: first, last
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: potency(:)  !< (cells) [m2]
-      logical, intent(in) :: is_open(:)  !< (cells)
+      real(rk), intent(in) :: moment(:)  !< (cells) [N]
+      integer(ik), intent(in) :: state(:)  !< (cells)
       logical, intent(in) :: is_sudden
       type(amount_t) :: amount
       real(rk) :: centre(2), rate
       integer(ik) :: cell
 
       amount%potency = sum(potency(first:last))
-      amount%open = sum(potency(first:last), mask=is_open(first:last))
-      if (is_sudden) amount%sudden = amount%potency
+      amount%moment = sum(moment(first:last))
+      amount%open = sum(moment(first:last), mask=state(first:last) == state_open)
+      if (is_sudden) amount%sudden = amount%moment
       amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
       do cell = first, last
          centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
-         amount%place = amount%place + potency(cell)*centre
+         amount%place = amount%place + moment(cell)*centre
          rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
          if (.not. rate > amount%rate) cycle
          amount%rate = rate
@@ -245,6 +249,7 @@ contains
       type(amount_t), intent(in) :: more
 
       amount%potency = amount%potency + more%potency
+      amount%moment = amount%moment + more%moment
       amount%open = amount%open + more%open
       amount%sudden = amount%sudden + more%sudden
       amount%place = amount%place + more%place
@@ -276,7 +281,7 @@ contains
          end if
          live%event%end = time
          live%event%largest_rate = max(live%event%largest_rate, &
-                                       self%shear*live%now%potency*self%breadth/dt)
+                                       live%now%moment*self%breadth/dt)
          call add(live%before, live%now)
       end associate
    end subroutine book_step
@@ -326,15 +331,15 @@ contains
       if (.not. event%mean_slip >= self%least_slip) return
       self%n = self%n + 1
       event%number = self%n
-      event%xy = live%before%place/live%before%potency
+      event%xy = live%before%place/live%before%moment
       event%area = length*self%breadth
-      event%moment = self%shear*live%before%potency*self%breadth
+      event%moment = live%before%moment*self%breadth
       event%magnitude = magnitude(event%moment)
       event%largest_slip_rate = live%before%rate
       event%mean_slip_rate = event%mean_slip/(event%end - event%time)
       event%stress_drop = live%start%fall(self%last, event%s)
-      event%open_share = live%before%open/live%before%potency
-      event%sudden_share = live%before%sudden/live%before%potency
+      event%open_share = live%before%open/live%before%moment
+      event%sudden_share = live%before%sudden/live%before%moment
       event%ended_by = ended_by
       self%news = [self%news, event]
    end subroutine list

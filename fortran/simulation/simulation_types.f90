@@ -199,18 +199,18 @@ contains
    end subroutine note_contact
 
    !> Note what has slipped in the step of length dt that led to the present state.
-   pure subroutine note_slip(self, dt, fracture, potency, state, is_sudden, traction)
+   pure subroutine note_slip(self, dt, fracture, potency, shear, state, is_sudden, traction)
       class(simulation_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: potency(:)  !< (fracture cells) slip of the step times length [m2]
+      real(rk), intent(in) :: shear(:)  !< (fracture cells) modulus G of the rock beside it [Pa]
       integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_states
       logical, intent(in) :: is_sudden  !< growth was unstable in the step
       real(rk), intent(in) :: traction(:)  !< (fracture cells) f_tau after it [Pa]
 
-      call self%catalogue%follow(self%time(), dt, fracture, potency, &
-                                 state /= state_stick .and. potency > 0.0_rk, &
-                                 state == state_open, is_sudden, traction)
+      call self%catalogue%follow(self%time(), dt, fracture, potency, shear, state, is_sudden, &
+                                 traction)
       call list_events(self)
    end subroutine note_slip
 

@@ -4,8 +4,7 @@ module twolevel_simulation
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_rock, only: shear_of
-   use coarse_solid, only: add_moment
+   use coarse_solid, only: shear_beside
    use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_rows, only: history_row_t, probe_row_t, well_row_t
@@ -62,7 +61,7 @@ contains
       call self%stepper%begin(scene%time)
       call self%mesh_levels(scene, timers, error)
       if (allocated(error)) return
-      call self%catalogue%begin(shear_of(scene%material), scene%output%out_of_plane_length, &
+      call self%catalogue%begin(scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump, scene%output%seismic_slip_rate)
       call self%notes%begin(size(self%tip))
       call watch_mesh(self, error)
@@ -146,7 +145,7 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
       type(fracture_mesh_t) :: fracture
       real(rk), parameter :: rounding = 1.0e-12_rk  ! in slip, relative
-      real(rk), allocatable :: potency(:)
+      real(rk), allocatable :: potency(:), shear(:)
 
       if (self%is_initial) then
          call self%stimulation%begin(self)
@@ -156,7 +155,8 @@ contains
       fracture = self%mesh%fracture
       if (fracture%n_cells == 0) return
       potency = slip_potency(self)
-      call add_moment(self%model%rock, self%mesh, potency, self%seismic_moment)
+      shear = shear_beside(self%model%rock, self%mesh)
+      self%seismic_moment = self%seismic_moment + sum(shear*potency)
       call end_at_tips(self, fracture)
       associate (traction => 0.5_rk*sum(self%state%traction(2, :, :), dim=1), &
                  largest => maxval(abs(self%state%jump(2, :, :))))
@@ -165,7 +165,7 @@ contains
          if (self%is_initial) then
             call self%catalogue%remember(fracture, traction)
          else
-            call self%note_slip(self%dt, fracture, potency, cell_states(self), &
+            call self%note_slip(self%dt, fracture, potency, shear, cell_states(self), &
                                 self%is_unstable, traction)
          end if
       end associate

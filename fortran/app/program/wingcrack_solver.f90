@@ -11,6 +11,7 @@ program wingcrack_solver
    use app_version, only: version
    use base_errors, only: error_t
    use simulation_describe, only: describe_limits
+   use simulation_types, only: simulation_t
    use output_describe, only: describe_output
    use scene_describe, only: describe_input
    use scene_namelist, only: read_scene
@@ -25,6 +26,8 @@ program wingcrack_solver
                                   "ranks SCENE.nml | "// &
                                   "--describe-input | --describe-output | "// &
                                   "--describe-limits | --version"
+   !> Kept to the program's end: gfortran 12 loses parts of what it deallocates by its dynamic type.
+   class(simulation_t), allocatable :: simulation
 
    select case (argument(1))
    case ("run")
@@ -79,7 +82,7 @@ contains
       call begin_ranks()
       call read_judged(scene)
       if (len(directory) == 0) directory = "out/"//trim(scene%name)
-      call run_scene(scene, argument(2), directory, version, quiet, refused, was_interrupted, error)
+   call run_scene(scene, argument(2), directory, quiet, simulation, refused, was_interrupted, error)
       if (allocated(error)) then
          if (refused) call leave(error%message, exit_usage)
          call leave(error%message, exit_failed)

@@ -2,6 +2,7 @@
 program test_app_mechanics
    use app_run, only: run_scene
    use testing_files, only: file_text
+   use simulation_types, only: simulation_t
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -49,12 +50,13 @@ contains
    !! before, and the last increment is in the table of the tips.
    subroutine test_broken_body()
       type(error_t), allocatable :: error
+      class(simulation_t), allocatable :: simulation
       logical :: refused, was_interrupted
       character(len=:), allocatable :: directory
       real(rk) :: fields(7), tips(13), history(2)
 
       directory = "test_app_mechanics.out/broken"
-      call run_scene(strip(), "", directory, "0.0.0", .true., refused, was_interrupted, error)
+      call run_scene(strip(), "", directory, .true., simulation, refused, was_interrupted, error)
       call checks%no_error(error, "the run")
       call checks%is_true(index(file_text(directory//"/run.json"), "has come loose") > 0, &
                           "the reason is on record")

@@ -3,6 +3,7 @@
 program test_app_run
    use app_run, only: run_scene
    use testing_files, only: file_exists, file_text
+   use simulation_types, only: simulation_t
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -37,9 +38,11 @@ contains
    subroutine run(scene, error)
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
+      class(simulation_t), allocatable :: simulation
       logical :: refused, was_interrupted
 
-      call run_scene(scene, "", directory(scene), "0.0.0", .true., refused, was_interrupted, error)
+      call run_scene(scene, "", directory(scene), .true., simulation, refused, &
+                     was_interrupted, error)
       call checks%is_true(.not. refused, trim(scene%name)//": it begins")
       call checks%is_true(.not. was_interrupted, trim(scene%name)//": nobody interrupts it")
    end subroutine run

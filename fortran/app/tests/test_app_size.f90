@@ -58,8 +58,8 @@ contains
                           "1000000000000000 steps, and a run counts up to 2150000000")
       call read_and_judge("0.01", "0.1", "end=1e9 step=1", "7: &time: step asks for about "// &
                           "1000000000 steps; their tables need at least 4300 GB")
-      call read_and_judge("1e-9", "1e-9", "end=60 step=60", "8: &coarse: the sizes ask for "// &
-                          "about 4.62e+18 cells, and a run numbers up to 10700000")
+      call read_and_judge("1e-7", "1e-7", "end=60 step=60", "8: &coarse: the sizes ask for "// &
+                          "about 462000000000000 cells, and a run numbers up to 10700000")
       call read_and_judge("1e-3", "1e-3", "end=60 step=60", "8: &coarse: the sizes ask for "// &
                           "about 4620000 cells and 13900000 unknowns, which need at least 37 "// &
                           "GB of memory, and this machine has 16: give larger ones")
@@ -67,7 +67,7 @@ contains
       call read_and_judge("2e-5", "0.1 condensation='full'", "end=60 step=60", &
                           "8: &coarse: size_fracture asks for about 10000 fracture cells, "// &
                           "which need at least")
-      call read_and_judge("1e-8", "0.1", "end=60 step=60", "8: &coarse: the sizes ask for about")
+      call read_and_judge("1e-7", "0.1", "end=60 step=60", "8: &coarse: the sizes ask for about")
    end subroutine check_limits
 
    subroutine read_and_judge(near, far, times, words)

@@ -77,7 +77,9 @@ contains
       call refuse(26, "&probe 'p' x=0.5 y=0.5 /", &
                   ":26: &probe: ''p'' stands where 'name = value' or the closing '/' must stand")
       call refuse(1, "onset &scene /", &
-                  ":1: 'onset' stands outside of a group, where only comments may stand")
+                  ": is no scene file, which begins with a group, as &domain, or with include")
+      call refuse(7, "/ onset", &
+                  ":7: text stands outside of a group, where only comments may stand")
       call refuse(1, "&scene name='base /", ":1: a text in quotes is not closed on its line")
       call refuse(5, "  biot= porosity=0.01", ":5: &material: biot has no value"//doc)
       call refuse(10, "  x=0.9,,1.1", ":10: &fracture: x lacks a value before a comma"//doc)
@@ -231,10 +233,10 @@ contains
       call checks%fails_with(error, "no_such_scene.nml: there is no such scene file", &
                              "a missing file")
       call read_scene(".", scene, error)
-      call checks%fails_with(error, ".: cannot be", "a folder")
+      call checks%fails_with(error, ".: is no file that can be read", "a folder")
       call put_lines(path, [character(len=1) ::])
       call read_scene(path, scene, error)
-      call checks%fails_with(error, path//": group &domain is missing", "an empty file")
+      call checks%fails_with(error, path//": is empty, a pipe or a device", "an empty file")
       call put_lines(bad_name, [character(len=100) :: "&scene /", good(2:)])
       call read_scene(bad_name, scene, error)
       call checks%fails_with(error, bad_name//":1: &scene: name is missing, and '1 bad name', "// &

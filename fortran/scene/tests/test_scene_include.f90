@@ -96,7 +96,7 @@ call put_lines(rock, [character(len=100) :: granite, "&injection fracture='f1' s
       call read_scene(path, scene, error)
       call checks%is_true(allocated(error), "a circle by another name ends too")
       call put_lines(path, [character(len=100) :: base, "include rock.inc"])
-      call expect(path//":7: 'include' stands outside of a group, where only comments may stand")
+      call expect(path//":7: text stands outside of a group, where only comments may stand")
       call put_lines(path, [character(len=100) :: base, "&output include 'rock.inc' /"])
       call read_scene(path, scene, error)
       call checks%is_true(allocated(error), "within a group it is no include")

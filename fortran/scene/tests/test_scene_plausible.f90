@@ -26,10 +26,38 @@ program test_scene_plausible
    call test_column()
    call test_regions()
    call test_ends()
+   call test_regime()
    call checks%is_true(provoked == size(doubts), "every doubt is provoked")
    call checks%finish()
 
 contains
+
+   !> K_m of 1 and 0.9: E' = 32 GPa, and mu' Q such that (E'^3 mu' Q)**(1/4) is K' or K'/0.9.
+   subroutine test_regime()
+      type(scene_t) :: s
+      real(rk), parameter :: k = 3.191538243211461e6_rk  ! sqrt(32/pi) times 1 MPa sqrt(m)
+
+      s = sound()
+      s%growth%enabled = .true.
+      s%material%young = 30.0e9_rk
+      s%material%poisson = 0.25_rk
+      s%material%toughness = 1.0e6_rk
+      s%fluid%viscosity = 1.0e-3_rk
+      s%fractures = [fracture_t(name="a", x=[0.3_rk, 0.7_rk], y=[1.0_rk, 1.0_rk])]
+      s%injections = [injection_t(name="w", fracture=1, &
+                                  rate=[0.0_rk, k**4/(32.0e9_rk**3*12.0e-3_rk)])]
+      call expect(s, "", "K_m = 1")
+      s%injections(1)%rate = s%injections(1)%rate/0.9_rk**4
+      call expect(s, "&injection 'w': K_m is 0.9: the fluid's viscosity decides", "K_m = 0.9")
+      s%injections(1)%rate = -s%injections(1)%rate
+      call expect(s, "", "a well that draws")
+      s%injections(1)%rate = -s%injections(1)%rate
+      s%injections(1)%fracture = 0
+      call expect(s, "", "a well in the rock")
+      s%injections(1)%fracture = 1
+      s%growth%enabled = .false.
+      call expect(s, "", "without growth")
+   end subroutine test_regime
 
    !> Ends within 1 mm, 0.05 increments, of a fracture or a side.
    subroutine test_ends()
@@ -150,6 +178,7 @@ contains
       call expect(s, "", "permeability without a fluid")
       s = sound()
       s%material%toughness = 0.7_rk
+      s%injections%fracture = 0  ! in one, viscosity would decide about growth
       call expect(s, "&material: toughness is 0.7 Pa m^1/2: ", "toughness")
       s%growth%enabled = .false.
       call expect(s, "", "toughness without growth")
@@ -188,6 +217,7 @@ contains
       call expect(s, "", "Skempton's coefficient below 1")
       s = sound()
       s%fluid%viscosity = 100.0_rk
+      s%growth%enabled = .false.  ! it would not be the toughness that decides
       call expect(s, "&fluid: viscosity is 100.0 Pa s: ", "viscosity")
       s = sound()
       s%sides(4)%traction(2) = 10.0e6_rk

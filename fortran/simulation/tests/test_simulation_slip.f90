@@ -2,6 +2,7 @@
 !! stress drop, and what is seismic.
 program test_simulation_slip
    use base_kinds, only: ik, rk
+   use contact_states, only: state_open, state_slip, state_stick
    use mesh_types, only: fracture_mesh_t
    use simulation_slip, only: magnitude, slip_catalogue_t
    use testing_checks, only: checks_t
@@ -12,10 +13,13 @@ program test_simulation_slip
    type(checks_t) :: checks
    type(fracture_mesh_t) :: fracture
    type(slip_catalogue_t) :: catalogue
+   real(rk) :: modulus(n) = shear
 
    call make_fractures()
    call test_one()
    call test_division_and_meeting()
+   call test_meeting_rates()
+   call test_two_rocks()
    call test_other_mesh()
    call test_end_of_run()
    call test_seismic()
@@ -46,24 +50,24 @@ contains
       real(rk), intent(in), optional :: faster(:)  !< (n) times 1 mm that the cells slip [-]
       real(rk), intent(in), optional :: traction(:)  !< (n) f_tau after the step; default: 0 [Pa]
       real(rk) :: after(n), potency(n)
-      logical :: is_open(n), slides(n), sudden
+      integer(ik) :: state(n)
+      logical :: sudden
 
-      is_open = .false.
-      slides = .false.
-      slides(cells) = .true.
-      is_open(apart) = .true.
+      state = state_stick
+      state(cells) = state_slip
+      state(apart) = state_open
       sudden = .false.
       if (present(is_sudden)) sudden = is_sudden
-      potency = merge(slip, 0.0_rk, slides)
+      potency = merge(slip, 0.0_rk, state /= state_stick)
       if (present(faster)) potency = faster*potency
       after = 0.0_rk
       if (present(traction)) after = traction
-      call catalogue%follow(time, dt, fracture, potency, slides, is_open, sudden, after)
+      call catalogue%follow(time, dt, fracture, potency, modulus, state, sudden, after)
    end subroutine step
 
    !> Two steps on a patch that moves, then rest.
    subroutine test_one()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [2, 3], [integer ::])
       call step(1.0_rk, [3, 4], [3], is_sudden=.true.)
       call checks%is_true(size(catalogue%news) == 0, "it is not over")
@@ -88,7 +92,7 @@ contains
    !> A patch that divides stays one event; two that meet become the earlier one. The end of one
    !! fracture and the beginning of the next are neighbours in the list only.
    subroutine test_division_and_meeting()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [5, 6], [integer ::])
       call step(1.0_rk, [2, 5, 6], [integer ::])
       call step(1.5_rk, [2, 3, 4, 5, 6, 8], [integer ::])
@@ -113,12 +117,49 @@ contains
       end associate
    end subroutine test_division_and_meeting
 
+   !> Of two events that meet, the faster one's rate stays, whichever comes first.
+   subroutine test_meeting_rates()
+      integer :: fast, i
+
+      do fast = 1, 5, 4
+         call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
+        call step(0.5_rk, [1, 5], [integer ::], faster=[(merge(9.0_rk, 1.0_rk, i == fast), i=1, n)])
+         call step(1.0_rk, [1, 2, 3, 4, 5], [integer ::])
+         call catalogue%end_all()
+         call checks%is_true(size(catalogue%news) == 1, "they meet")
+         call checks%is_close(catalogue%news(1)%largest_rate*dt/(slip*shear*breadth), 9.0_rk, &
+                              1.0e-12_rk, "the faster one's rate")
+      end do
+   end subroutine test_meeting_rates
+
+   !> Slip in two rocks, the second a tenth as stiff: shares, moment and place are those of the
+   !! moment, the mean slip is that of both.
+   subroutine test_two_rocks()
+      call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
+      modulus(3:) = 0.1_rk*shear
+      call step(0.5_rk, [2, 3], [3])
+      call step(1.0_rk, [3], [integer ::], is_sudden=.true.)
+      call catalogue%end_all()
+      modulus = shear
+      associate (event => catalogue%news(1))
+         call checks%is_close(event%moment/(slip*shear*breadth), 1.2_rk, 1.0e-12_rk, "both rocks")
+         call checks%is_close(event%largest_rate*dt/(slip*shear*breadth), 1.1_rk, 1.0e-12_rk, &
+                              "rate in both rocks")
+         call checks%is_close(event%magnitude, (log10(event%moment) - 9.1_rk)/1.5_rk, 1.0e-12_rk, &
+                              "magnitude of that moment")
+         call checks%is_close(event%open_share, 0.1_rk/1.2_rk, 1.0e-12_rk, "open share of it")
+         call checks%is_close(event%sudden_share, 0.1_rk/1.2_rk, 1.0e-12_rk, "sudden share of it")
+         call checks%is_close(event%xy(1), (1.5_rk + 0.2_rk*2.5_rk)/1.2_rk, 1.0e-12_rk, "place")
+         call checks%is_close(event%mean_slip, 1.5_rk*slip, 1.0e-15_rk, "mean slip")
+      end associate
+   end subroutine test_two_rocks
+
    !> Growth divides cells: the event goes on, told by arc lengths.
    subroutine test_other_mesh()
       type(fracture_mesh_t) :: finer
       integer(ik) :: i
 
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
       call step(0.5_rk, [3], [integer ::])
       finer%n_cells = 10
       finer%cell_fracture = spread(1_ik, 1, 10)
@@ -126,7 +167,8 @@ contains
       finer%cell_s = reshape([(0.5_rk*(i - 1), 0.5_rk*i, i=1, 10)], [2, 10])
       finer%point_xy = reshape([(0.5_rk*i, 0.0_rk, i=0, 10)], [2, 11])
       call catalogue%follow(1.0_rk, dt, finer, [(merge(0.5_rk*slip, 0.0_rk, i == 6), i=1, 10)], &
-                            [(i == 6, i=1, 10)], spread(.false., 1, 10), .false., &
+                            spread(shear, 1, 10), &
+                            [(merge(state_slip, state_stick, i == 6), i=1, 10)], .false., &
                             spread(0.0_rk, 1, 10))
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "one event on two meshes")
@@ -137,7 +179,7 @@ contains
 
    !> What still slips when the run ends is listed as such; what slips too little is not.
    subroutine test_end_of_run()
-      call catalogue%begin(shear, breadth, 1.5_rk*slip, 1.0_rk)
+      call catalogue%begin(breadth, 1.5_rk*slip, 1.0_rk)
       call step(0.5_rk, [1, 7], [integer ::])
       call step(1.0_rk, [7], [integer ::])
       call catalogue%end_all()
@@ -151,7 +193,7 @@ contains
    !> Creep, 10 mm/s for two steps, creep again: three events, with the slip of each; the fast one
    !! nucleates where it is fastest in its first step.
    subroutine test_seismic()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 4.5e-3_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 4.5e-3_rk)
       call step(0.5_rk, [2, 3, 4], [integer ::])
       call step(1.0_rk, [2, 3, 4], [integer ::], faster=real([1, 1, 3, 5, 1, 1, 1, 1], rk))
       call step(1.5_rk, [1, 2, 3, 4], [integer ::], faster=real([1, 1, 9, 5, 1, 1, 1, 1], rk))
@@ -183,7 +225,7 @@ contains
    !> Tractions fall from before the first step to after the last one, of either sign, and on cells
    !! that are reached later; others of the fracture do not count.
    subroutine test_stress_drop()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 1.0_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 1.0_rk)
       call catalogue%remember(fracture, 1.0e6_rk*real([1, -5, 5, 5, 7, 9, 9, 9], rk))
       call step(0.5_rk, [2, 3], [integer ::], traction=1.0e6_rk*real([2, -4, 4, 6, 6, 0, 0, 0], rk))
       call step(1.0_rk, [3, 4], [integer ::], traction=1.0e6_rk*real([2, 1, 2, 3, 5, 0, 0, 0], rk))
@@ -196,7 +238,7 @@ contains
 
    !> A creeping patch that meets a fast one is over; the fast one goes on with what follows.
    subroutine test_meeting_speeds()
-      call catalogue%begin(shear, breadth, 1.0e-6_rk, 4.5e-3_rk)
+      call catalogue%begin(breadth, 1.0e-6_rk, 4.5e-3_rk)
       call step(0.5_rk, [1, 4], [integer ::], faster=real([1, 1, 1, 5, 1, 1, 1, 1], rk))
       call step(1.0_rk, [1, 2, 3, 4], [integer ::], faster=real([1, 1, 1, 5, 1, 1, 1, 1], rk))
       call step(1.5_rk, [integer ::], [integer ::])
