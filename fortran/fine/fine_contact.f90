@@ -137,7 +137,9 @@ contains
       end do
       do i = 1, problem%n
          call problem%law(i)%divide(weight(i))
-         if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
+         if (.not. problem%slip_given(i)) cycle
+         problem%law(i)%friction = 0.0_rk
+         problem%law(i)%weakening = 0.0_rk
       end do
       problem%fresh_law = problem%law
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)
