@@ -154,3 +154,35 @@ def test_shear_that_equals_the_strength(tmp_path: Path, residual: float) -> None
     )
     assert history[0.48] < 1e-12
     assert history[0.485] > 1e-6
+
+
+# Fractures of 0.107 m next to each other, 0.094 mm apart; friction is below 1.
+CLOSE = """\
+&domain x_min = 0.0, x_max = 1.0, y_min = 0.0, y_max = 1.0 /
+&material young = 40e9, poisson = 0.2, biot = 0.8, porosity = 0.01, permeability = 5e-20 /
+&fluid compressibility = 4e-10, viscosity = 1e-4 /
+{fractures}
+&side name = 'left', x_displacement = 0 /
+&side name = 'bottom', y_displacement = 0 /
+&side name = 'right', x_traction = -20e6 /
+&side name = 'top', y_traction = -10e6 /
+&injection fracture = 'f0', rate = 1e-7 /
+&initial fracture_pressure = 'equilibrated' /
+&time end = 20.0, step = 10.0 /
+&coarse size_fracture = 0.03, size_boundary = 0.15 /
+&output vtu = .false. /
+"""
+
+
+def test_fractures_that_nearly_touch(tmp_path: Path) -> None:
+    """Newton's iteration cycles; contact by pivoting leads to the initial state."""
+    from_x, to_x, dx = 0.5201800613237769, 0.5932278134911787, -6.89942278729e-5
+    from_y, to_y, dy = 0.39766369407205854, 0.47589321316011163, 6.44241881759e-5
+    fractures = "\n".join(
+        f"&fracture name = 'f{i}', friction = 0.5, dilation_deg = 1, aperture = 1e-4"
+        f"  x = {from_x + i * dx}, {to_x + i * dx}, y = {from_y + i * dy}, {to_y + i * dy} /"
+        for i in range(4)
+    )
+    history = run(tmp_path, CLOSE.format(fractures=fractures)) / "history.csv"
+    assert max(numbers(history, "mass_error_relative")) < 1e-9
+    assert numbers(history, "time_s")[-1] == 20.0

@@ -64,12 +64,15 @@ module coarse_fractures
       integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
       real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
       logical, allocatable :: is_flow(:)  !< (unknowns of x)
+      real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
       type(kinds_t) :: kinds  !< which of them may leave the full matrix
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
       type(contact_law_t), allocatable :: law_held(:, :)  !< (2, n) see hold_strength
       logical :: holds_strength = .false.
+      !> Contact's equations are that the tractions are zero
+      logical :: is_without_contact = .false.
    contains
       procedure :: may_wear
       procedure :: hold_strength

@@ -51,6 +51,7 @@ module contact_newton
    type, abstract :: contact_system_t
       real(rk), allocatable :: residual(:)  !< (n) where last evaluated [Pa]
       real(rk) :: stress_scale = 0.0_rk  !< residuals are relative to it [Pa]
+      logical :: is_propped = .false.  !< what only contact holds is held, since a restart
       ! Points where the law of contact holds.
       integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
       integer(ik), allocatable :: state(:)  !< of contact_states
@@ -282,7 +283,9 @@ contains
       if (report%outcome /= outcome_converged) then
          report%outcome = first_outcome
       else if (has_start) then
-         if (is_loose(system, x)) report%outcome = outcome_singular
+         if (system%is_propped) then
+            if (is_loose(system, x)) report%outcome = outcome_singular
+         end if
       end if
    end subroutine persevere
 

@@ -212,6 +212,7 @@ contains
       integer(ik) :: i
 
       on_spring = self%condensed
+      self%is_propped = .true.
       self%spring = 0.0_rk
       do i = 1, 2*self%n
          self%spring = self%spring + softness*abs(self%condensed(i, i))/(2*self%n)
@@ -235,6 +236,7 @@ contains
    subroutine end_restart(self)
       class(contact_pairs_t), intent(inout) :: self
 
+      self%is_propped = .false.
       self%spring = 0.0_rk
    end subroutine end_restart
 

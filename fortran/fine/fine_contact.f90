@@ -240,7 +240,8 @@ contains
       case (outcome_singular)
          reason = "a part of the body that only contact holds is free to move"
       case default
-         reason = "the iteration on the fracture faces did not converge"
+         reason = "no state of the faces was found that obeys friction; fractures that nearly "// &
+                  "touch, and friction above 1, make that hard"
       end select
       if (allocated(reason)) return
 
