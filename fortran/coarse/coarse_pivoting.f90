@@ -21,7 +21,7 @@ module coarse_pivoting
 
    !> Jumps and what depends on them, around x.
    type :: condensed_jumps_t
-      integer(ik), allocatable :: jumps(:), others(:)  !< unknowns, n and tau point by point; the rest
+      integer(ik), allocatable :: jumps(:), others(:)  !< n and tau point by point; all else
       !> (others, jumps + 1) change by that of each jump [-], and with none [Pa]
       real(rk), allocatable :: response(:, :)
       real(rk), allocatable :: slope(:, :)  !< (jump, traction) [-]

@@ -15,7 +15,7 @@
 !! Friction that weakens and bonds that break (contact_law) allow several solutions: faces within
 !! their strength stick, but had they slipped they would be too weak to. The one that counts is that
 !! which a rising load reaches from the last accepted state. So such a system holds its strength as
-!! it was before the step and is solved; if no face has slipped or opened then, that is the solution.
+!! it was before the step and is solved; if no face has slipped or opened, that is the solution.
 !! Else the strength is let fall by what they have slipped and opened, for good, again and again
 !! until none falls further, or until Newton's method finds the rest of the way. Where the strength
 !! falls faster than the body unloads, that leads to the next solution that is stable.

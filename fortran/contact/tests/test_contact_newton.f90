@@ -130,7 +130,7 @@ contains
       pairs%state = -1
    end subroutine some_pairs
 
-   !> Faces that loads leave within their strength stick, though they could not had they slipped; and
+   !> Faces that loads leave within their strength stick, though they could not had they slipped,
    !! wherever the iteration begins.
    subroutine many_within_strength(name, kind, n_bodies, cohesion)
       character(len=*), intent(in) :: name
@@ -165,8 +165,8 @@ contains
       call checks%is_true(n_stuck == n_bodies, name//": all stick")
    end subroutine many_within_strength
 
-   !> One pair on a spring S: it slips by (tau - mu_s p)/(S/L - weakening p) where that is stable, and
-   !! to the residual friction where it is not.
+   !> One pair on a spring S: it slips by (tau - mu_s p)/(S/L - weakening p) where that is stable,
+   !! and to the residual friction where it is not.
    subroutine one_beyond_strength()
       type(contact_pairs_t) :: pairs
       type(iteration_report_t) :: report
