@@ -186,3 +186,16 @@ def test_fractures_that_nearly_touch(tmp_path: Path) -> None:
     history = run(tmp_path, CLOSE.format(fractures=fractures)) / "history.csv"
     assert max(numbers(history, "mass_error_relative")) < 1e-9
     assert numbers(history, "time_s")[-1] == 20.0
+
+
+def test_friction_follows_the_path_of_slip(tmp_path: Path) -> None:
+    """Slip that is stable: step after step friction has lost what the whole slip takes from it."""
+    text = SLIDER.replace("weakening_slip = 2e-3", "weakening_slip = 2e-2")
+    out = run(tmp_path, text.replace("\n  radiation_damping = 4e6", ""))
+    last = [row for row in rows(out / "fractures.csv") if float(row["time_s"]) == 5554.5]
+    assert last
+    for row in last:
+        slip = abs(float(row["jump_t_m"]))
+        assert slip > 1e-4
+        shear, normal = float(row["traction_t_pa"]), float(row["traction_n_pa"])
+        assert abs(shear / normal) == pytest.approx(0.6 - 0.35 * slip / 2e-2, rel=1e-6)
