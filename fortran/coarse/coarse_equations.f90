@@ -7,6 +7,7 @@ module coarse_equations
    use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_equilibrium, fill_exchange, fill_flow
    use coarse_joint_flow, only: fill_branch, fill_joint
+   use coarse_pivoting, only: pivot_fractures
    use coarse_well_flow, only: fill_well
    use coarse_fractures, only: cell_fluid_t, fracture_system_t
    use contact_law, only: contact_equations
@@ -19,6 +20,7 @@ module coarse_equations
    type, extends(fracture_system_t) :: equations_t
    contains
       procedure :: evaluate
+      procedure :: restart
    end type equations_t
 
 contains
@@ -64,6 +66,18 @@ contains
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate
 
+   !> Contact by pivoting, from where the step started.
+   subroutine restart(self, x, has_start)
+      class(equations_t), intent(inout) :: self
+      real(rk), intent(inout) :: x(:)  !< [Pa]
+      logical, intent(out) :: has_start
+      real(rk) :: found(size(x))
+
+      found = self%start
+      call pivot_fractures(self, found, has_start)
+      if (has_start) x = found
+   end subroutine restart
+
    !> The two contact equations at one end of cell i.
    pure subroutine fill_contact(i, end, x, eq)
       integer(ik), intent(in) :: i
@@ -83,6 +97,11 @@ contains
       call contact_equations(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
                              eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
                              eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
+      if (eq%is_without_contact) then
+         eq%residual(row:row + 1) = eq%traction(:, end, i)
+         by_traction = reshape([1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [2, 2])
+         by_jump = 0.0_rk
+      end if
       do k = 1, 2
          associate (slopes => eq%slopes, equation => row + k - 1)
             do m = 1, 2

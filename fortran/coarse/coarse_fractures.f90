@@ -16,6 +16,7 @@ module coarse_fractures
    use coarse_wells, only: wells_t
    use contact_law, only: contact_law_t
    use contact_newton, only: contact_system_t, step_quality_t
+   use contact_wear, only: weaken
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
@@ -63,16 +64,19 @@ module coarse_fractures
       integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
       real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
       logical, allocatable :: is_flow(:)  !< (unknowns of x)
+      real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
       type(kinds_t) :: kinds  !< which of them may leave the full matrix
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
-      real(rk), allocatable :: bond_held(:, :)  !< (2, n) see hold_bonds [-]
-      logical :: holds_bonds = .false.
+      type(contact_law_t), allocatable :: law_held(:, :)  !< (2, n) see hold_strength
+      logical :: holds_strength = .false.
+      !> Contact's equations are that the tractions are zero
+      logical :: is_without_contact = .false.
    contains
-      procedure :: has_bonds
-      procedure :: hold_bonds
-      procedure :: let_bonds_wear
+      procedure :: may_wear
+      procedure :: hold_strength
+      procedure :: let_wear
       procedure :: find_forces
       procedure :: find_step
       procedure :: size_of_terms
@@ -341,61 +345,63 @@ contains
       integer(ik), intent(in) :: cell
       integer(ik), intent(in) :: end  !< 1 start, 2 end
 
+      if (self%holds_strength) then
+         law = self%law_held(end, cell)
+         return
+      end if
       law = self%cells%law(cell)
       if (allocated(self%before%slip_path)) then
          law = law%aged(self%before%slip_path(end, cell), self%before%opened(end, cell))
       end if
-      if (self%holds_bonds) then
-         law%bond = self%bond_held(end, cell)
-         law%wears = .false.
-      end if
    end function law_at
 
-   !> Something is bonded.
-   pure logical function has_bonds(self)
+   !> Friction may weaken or a bond break within the step.
+   pure logical function may_wear(self)
       class(fracture_system_t), intent(in) :: self
 
-      has_bonds = any(self%cells%law%is_bonded())
-   end function has_bonds
+      may_wear = any(self%cells%law%ages())
+   end function may_wear
 
-   !> Hold the bonds as they have become where last evaluated.
-   subroutine hold_bonds(self, x, is_first, tolerance, is_worn)
+   !> Hold the strength: as before the step, or as it has become where last evaluated.
+   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
       class(fracture_system_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
       logical, intent(in) :: is_first
       real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
       logical, intent(out) :: is_worn
-      type(contact_law_t) :: law
-      real(rk) :: apart, jump(2), left
+      real(rk) :: jump(2), lost
       integer(ik) :: end, i, row
 
-      if (is_first) self%bond_held = spread(spread(1.0_rk, 1, size(self%cells%law)), 1, 2)
-      self%holds_bonds = .false.
+      self%holds_strength = .false.
       is_worn = .false.
+      if (is_first .and. .not. allocated(self%law_held)) then
+         allocate (self%law_held(2, self%layout%n_cells))
+      end if
       do i = 1, self%layout%n_cells
          do end = 1, 2
-            law = self%law_at(i, end)
-            row = self%layout%at_jump(i, end)
-            jump = x(row:row + 1)/self%stiffness
-            apart = law%apart(self%traction(:, end, i), jump)
-            left = law%bond_left(apart, jump(2) - self%before%jump(2, end, i))
-            associate (held => self%bond_held(end, i))
-               left = min(held, left)
-               is_worn = is_worn .or. (held - left)*max(law%tension, law%cohesion) &
-                         > tolerance*self%stress_scale
-               held = left
+            associate (law => self%law_at(i, end), held => self%law_held(end, i))
+               if (is_first) then
+                  held = law
+                  held%wears = .false.
+                  cycle
+               end if
+               row = self%layout%at_jump(i, end)
+               jump = x(row:row + 1)/self%stiffness
+               call weaken(law, self%traction(:, end, i), jump, &
+                           jump(2) - self%before%jump(2, end, i), held, lost)
+               is_worn = is_worn .or. lost > tolerance*self%stress_scale
             end associate
          end do
       end do
-      self%holds_bonds = .true.
-   end subroutine hold_bonds
+      self%holds_strength = .true.
+   end subroutine hold_strength
 
-   !> Let them go on from where they were before the step.
-   subroutine let_bonds_wear(self)
+   !> Let it fall from what it was before the step.
+   subroutine let_wear(self)
       class(fracture_system_t), intent(inout) :: self
 
-      self%holds_bonds = .false.
-   end subroutine let_bonds_wear
+      self%holds_strength = .false.
+   end subroutine let_wear
 
    !> Opening of a cell, the mean of its ends' [u]_n.
    pure function opening(self, x, cell) result(mean)

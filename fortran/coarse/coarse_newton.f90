@@ -54,6 +54,7 @@ contains
                                  allows_rounding=.true.)
       call find_start(eq, state, start)
       x = start
+      eq%start = start
       spent = 0
       if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
          x = guess%from(start, dt)
@@ -81,11 +82,11 @@ contains
       case (outcome_converged)
          report%converged = .true.
       case (outcome_not_a_number)
-         report%reason = "the Newton iteration on the fractures met a value that is not a number"
+         report%reason = "contact and flow on the fractures met a value that is not a number"
       case (outcome_singular)
-         report%reason = "the Newton matrix on the fractures is singular"
+         report%reason = "contact and flow on the fractures do not follow from the loads"
       case default
-         report%reason = "the Newton iteration on the fractures did not converge"
+         report%reason = "the iteration on contact and flow of the fractures did not converge"
       end select
       if (report%converged) call accept(condensed, cells, dt, eq, x, state, report)
    end subroutine solve_fractures

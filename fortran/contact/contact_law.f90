@@ -32,8 +32,7 @@
 !! (a cohesive crack, initially rigid: Hillerborg 1976; Camacho and Ortiz 1996). Faces apart by w
 !! bear f_n = T b(w); where they were farther apart before, by W, this falls with w to zero, so that
 !! opening takes the energy T W_c/2 and shear C D_c/2 [J/m2], each once. In a law that does not
-!! `wear` within the step b stands still: it is the way to a solution where there is no near one
-!! (contact_newton).
+!! `wear` within the step mu and b stand still: contact_newton looks for solutions from there.
 !! A bilateral law knows no open state: the faces keep the gap g under tension too, where z <= 0,
 !! and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the model of reference solutions for
 !! cracks that are closed all along; friction under tension drives the slip, either way, so it makes
@@ -71,7 +70,7 @@ module contact_law
       real(rk) :: wear_by_opening = 0.0_rk  !< 1/W_c [1/m]
       real(rk) :: bond = 1.0_rk  !< b [-]
       real(rk) :: opened = 0.0_rk  !< W, how far the faces have been apart so far [m]
-      logical :: wears = .true.  !< b falls within the step
+      logical :: wears = .true.  !< mu and b fall within the step
    contains
       procedure :: add_share
       procedure :: divide
@@ -208,8 +207,10 @@ contains
       real(rk), intent(out) :: friction  !< [-]
       real(rk), intent(out) :: slope  !< [1/m]
 
-      friction = self%friction - self%weakening*min(abs(slip), self%weakening_slip)
+      friction = self%friction
       slope = 0.0_rk
+      if (.not. self%wears) return
+      friction = friction - self%weakening*min(abs(slip), self%weakening_slip)
       if (abs(slip) < self%weakening_slip) slope = -self%weakening
    end subroutine friction_at
 

@@ -12,10 +12,13 @@
 !! start, once; a system may know a slower way that always leads to a solution (contact_pairs). If
 !! that is one of many, as for a piece that floats, the system counts as singular.
 !!
-!! Bonds that break (contact_law) soften faster than the body may follow: there is no solution near
-!! by then, and Newton's method finds none. Such a system holds its bonds as they are and is solved,
-!! as plastic faces are; then they are let wear by what these have slipped and opened, for good,
-!! again and again until none wears further, or Newton's method finds the rest of the way.
+!! Friction that weakens and bonds that break (contact_law) allow several solutions: faces within
+!! their strength stick, but had they slipped they would be too weak to. The one that counts is that
+!! which a rising load reaches from the last accepted state. So such a system holds its strength as
+!! it was before the step and is solved; if no face has slipped or opened, that is the solution.
+!! Else the strength is let fall by what they have slipped and opened, for good, again and again
+!! until none falls further, or until Newton's method finds the rest of the way. Where the strength
+!! falls faster than the body unloads, that leads to the next solution that is stable.
 !!
 !! What still cycles is iterated with shortened steps. Where states change the residuals keep their
 !! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
@@ -48,6 +51,7 @@ module contact_newton
    type, abstract :: contact_system_t
       real(rk), allocatable :: residual(:)  !< (n) where last evaluated [Pa]
       real(rk) :: stress_scale = 0.0_rk  !< residuals are relative to it [Pa]
+      logical :: is_propped = .false.  !< what only contact holds is held, since a restart
       ! Points where the law of contact holds.
       integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
       integer(ik), allocatable :: state(:)  !< of contact_states
@@ -59,9 +63,9 @@ module contact_newton
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
-      procedure :: has_bonds
-      procedure :: hold_bonds
-      procedure :: let_bonds_wear
+      procedure :: may_wear
+      procedure :: hold_strength
+      procedure :: let_wear
    end type contact_system_t
 
    type :: iteration_settings_t
@@ -166,16 +170,16 @@ contains
       class(contact_system_t), intent(inout) :: self
    end subroutine end_restart
 
-   !> Something is bonded. In most systems nothing is.
-   pure logical function has_bonds(self)
+   !> Friction may weaken or a bond break within the step. In most systems none does.
+   pure logical function may_wear(self)
       class(contact_system_t), intent(in) :: self
 
-      has_bonds = .false.
-   end function has_bonds
+      may_wear = .false.
+   end function may_wear
 
-   !> Hold the bonds as they have become at x, where the system was last evaluated, no stronger than
-   !! they have been held since the first time; whether that is noticeably weaker.
-   subroutine hold_bonds(self, x, is_first, tolerance, is_worn)
+   !> Hold the strength: at first as it was before the step, then as it has become at x, where the
+   !! system was last evaluated, but no stronger than before; whether that is noticeably weaker.
+   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
       class(contact_system_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
       logical, intent(in) :: is_first
@@ -183,12 +187,12 @@ contains
       logical, intent(out) :: is_worn
 
       is_worn = .false.
-   end subroutine hold_bonds
+   end subroutine hold_strength
 
-   !> Let the bonds go on from where they were before the step.
-   subroutine let_bonds_wear(self)
+   !> Let the strength fall from what it was before the step.
+   subroutine let_wear(self)
       class(contact_system_t), intent(inout) :: self
-   end subroutine let_bonds_wear
+   end subroutine let_wear
 
    !> Solve the system, from the x and the states that it has at the start.
    subroutine iterate(system, x, settings, report)
@@ -196,30 +200,33 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(out) :: report
-      real(rk) :: start(size(x))
-      logical :: is_worn
 
-      start = x
-      call iterate_from(system, x, settings, report)
-      if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
-      if (.not. settings%perseveres) return
-      if (system%has_bonds()) then
-         x = start
-         call system%evaluate(x)
-         call system%hold_bonds(x, .true., settings%tolerance, is_worn)
+      if (system%may_wear()) then
          call iterate_worn(system, x, settings, report)
       else
-         call persevere(system, x, settings, report)
+         call iterate_held(system, x, settings, report)
       end if
    end subroutine iterate
 
-   !> Solve the system with its bonds held, from which they wear, until none does any more.
-   subroutine iterate_worn(system, x, settings, report)
+   !> Solve a system whose strength does not depend on the step.
+   subroutine iterate_held(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
-      real(rk), intent(inout) :: x(:)  !< where the bonds are held first [Pa]
+      real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
-      ! Next to the stiffness that would hold a bond it wears slowly.
+
+      call iterate_from(system, x, settings, report)
+      if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
+      if (settings%perseveres) call persevere(system, x, settings, report)
+   end subroutine iterate_held
+
+   !> Solve the system with its strength held, from which it falls, until it does no more.
+   subroutine iterate_worn(system, x, settings, report)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(inout) :: x(:)  !< [Pa]
+      type(iteration_settings_t), intent(in) :: settings
+      type(iteration_report_t), intent(inout) :: report
+      ! Next to the stiffness that would hold a face its strength falls slowly.
       integer(ik), parameter :: rounds = 300, iterations_of_trial = 8
       real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
       type(iteration_settings_t) :: briefly
@@ -230,15 +237,13 @@ contains
 
       briefly = settings
       briefly%iterations_max = min(settings%iterations_max, iterations_of_trial)
+      call system%hold_strength(x, .true., settings%tolerance, is_worn)
       do k = 1, rounds
-         call iterate_from(system, x, settings, report)
-         if (report%outcome == outcome_stuck .or. report%outcome == outcome_singular) then
-            call persevere(system, x, settings, report)
-         end if
+         call iterate_held(system, x, settings, report)
          if (report%outcome /= outcome_converged) exit
-         call system%hold_bonds(x, .false., settings%tolerance, is_worn)
+         call system%hold_strength(x, .false., settings%tolerance, is_worn)
          if (.not. is_worn) exit
-         call system%let_bonds_wear()
+         call system%let_wear()
          trial = x
          found%iterations = report%iterations
          call iterate_from(system, trial, briefly, found)
@@ -250,11 +255,11 @@ contains
          end if
          report%outcome = outcome_stuck
          call system%evaluate(x)
-         call system%hold_bonds(x, .false., settings%tolerance, is_worn)
+         call system%hold_strength(x, .false., settings%tolerance, is_worn)
       end do
-      call system%let_bonds_wear()
+      call system%let_wear()
       if (report%outcome /= outcome_converged) return
-      ! A point that has moved and come back has a bond weaker than where it is now says.
+      ! A point that has moved and come back has been held weaker than where it is now says.
       call system%evaluate(x)
       if (.not. maxval(abs(system%residual)) <= kept*system%stress_scale) then
          report%outcome = outcome_stuck
@@ -278,7 +283,9 @@ contains
       if (report%outcome /= outcome_converged) then
          report%outcome = first_outcome
       else if (has_start) then
-         if (is_loose(system, x)) report%outcome = outcome_singular
+         if (system%is_propped) then
+            if (is_loose(system, x)) report%outcome = outcome_singular
+         end if
       end if
    end subroutine persevere
 

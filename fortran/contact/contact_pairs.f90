@@ -9,6 +9,7 @@ module contact_pairs
    use contact_newton, only: contact_system_t, step_quality_t
    use contact_pivoting, only: pivot_to_solution
    use contact_ties, only: new_ties, ties_t
+   use contact_wear, only: weaken
    implicit none(type, external)
    private
 
@@ -33,7 +34,8 @@ module contact_pairs
       !> Added to S in the derivatives, after a restart: a part that only contact holds, and that no
       !! load moves, stays where it is [Pa]
       real(rk) :: spring = 0.0_rk
-      real(rk), allocatable :: bond_before(:), bond_held(:)  !< (n) see hold_bonds [-]
+      !> (n) at the start of the step, and held as weak as they have become since
+      type(contact_law_t), allocatable :: law_before(:), law_held(:)
    contains
       procedure :: evaluate
       procedure :: find_step
@@ -42,9 +44,9 @@ module contact_pairs
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
-      procedure :: has_bonds
-      procedure :: hold_bonds
-      procedure :: let_bonds_wear
+      procedure :: may_wear
+      procedure :: hold_strength
+      procedure :: let_wear
    end type contact_pairs_t
 
 contains
@@ -210,6 +212,7 @@ contains
       integer(ik) :: i
 
       on_spring = self%condensed
+      self%is_propped = .true.
       self%spring = 0.0_rk
       do i = 1, 2*self%n
          self%spring = self%spring + softness*abs(self%condensed(i, i))/(2*self%n)
@@ -233,52 +236,48 @@ contains
    subroutine end_restart(self)
       class(contact_pairs_t), intent(inout) :: self
 
+      self%is_propped = .false.
       self%spring = 0.0_rk
    end subroutine end_restart
 
-   !> Something is bonded.
-   pure logical function has_bonds(self)
+   !> Friction may weaken or a bond break within the step.
+   pure logical function may_wear(self)
       class(contact_pairs_t), intent(in) :: self
 
-      has_bonds = any(self%law%is_bonded())
-   end function has_bonds
+      may_wear = any(self%law%ages())
+   end function may_wear
 
-   !> Hold the bonds as they have become where last evaluated.
-   subroutine hold_bonds(self, x, is_first, tolerance, is_worn)
+   !> Hold the strength: as before the step, or as it has become where last evaluated.
+   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
       class(contact_pairs_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
       logical, intent(in) :: is_first
       real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
       logical, intent(out) :: is_worn
-      real(rk) :: apart, jump(2), left
+      real(rk) :: jump(2), lost
       integer(ik) :: i
 
-      if (is_first) then
-         self%bond_before = self%law%bond
-         self%bond_held = self%bond_before
-      end if
-      call self%let_bonds_wear()
       is_worn = .false.
-      do i = 1, self%n
-         associate (law => self%law(i), held => self%bond_held(i))
+      if (is_first) then
+         self%law_before = self%law
+         self%law_held = self%law
+         self%law_held%wears = .false.
+      else
+         do i = 1, self%n
             jump = x(2*i - 1:2*i)/self%stiffness
-            apart = law%apart(self%traction(:, i), jump)
-            left = min(held, law%bond_left(apart, jump(2) - self%slip_before(i)))
-            is_worn = is_worn .or. (held - left)*max(law%tension, law%cohesion) &
-                      > tolerance*self%stress_scale
-            held = left
-            law%bond = held
-            law%wears = .false.
-         end associate
-      end do
-   end subroutine hold_bonds
+            call weaken(self%law_before(i), self%traction(:, i), jump, &
+                        jump(2) - self%slip_before(i), self%law_held(i), lost)
+            is_worn = is_worn .or. lost > tolerance*self%stress_scale
+         end do
+      end if
+      self%law = self%law_held
+   end subroutine hold_strength
 
-   !> Let them go on from where they were before the step.
-   subroutine let_bonds_wear(self)
+   !> Let it fall from what it was before the step.
+   subroutine let_wear(self)
       class(contact_pairs_t), intent(inout) :: self
 
-      self%law%bond = self%bond_before
-      self%law%wears = .true.
-   end subroutine let_bonds_wear
+      self%law = self%law_before
+   end subroutine let_wear
 
 end module contact_pairs

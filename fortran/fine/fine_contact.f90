@@ -137,7 +137,9 @@ contains
       end do
       do i = 1, problem%n
          call problem%law(i)%divide(weight(i))
-         if (problem%slip_given(i)) problem%law(i)%friction = 0.0_rk
+         if (.not. problem%slip_given(i)) cycle
+         problem%law(i)%friction = 0.0_rk
+         problem%law(i)%weakening = 0.0_rk
       end do
       problem%fresh_law = problem%law
       if (problem%n > 0) problem%stiffness = young*problem%n/sum(problem%length)
@@ -238,7 +240,8 @@ contains
       case (outcome_singular)
          reason = "a part of the body that only contact holds is free to move"
       case default
-         reason = "the iteration on the fracture faces did not converge"
+         reason = "no state of the faces was found that obeys friction; fractures that nearly "// &
+                  "touch, and friction above 1, make that hard"
       end select
       if (allocated(reason)) return
 

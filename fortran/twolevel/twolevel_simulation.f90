@@ -182,7 +182,9 @@ contains
       self%report%mass_error = 0.0_rk
       call self%follow_trend(at_rest=.true.)
       if (self%report%converged) return
-      call raise_error(error, "", "the initial state was not found: "//self%report%reason)
+      call raise_error(error, "", "the initial state was not found: "//self%report%reason// &
+                       "; fractures that nearly touch are the usual cause: move them apart, or "// &
+                       "make them one; so is friction above 1")
    end subroutine find_initial_state
 
    !> What the wells have done.

@@ -73,7 +73,7 @@ contains
          if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
          if (is_last .or. (is_too_short .and. .not. trial%converged)) then
             call raise_error(error, "", trial%why_cut()//", even with a time step of " &
-                             //brief_text(self%dt, 4)//" s")
+                             //brief_text(self%dt, 4)//" s"//way_out(trial))
             return
          end if
          is_last = is_too_short
@@ -88,6 +88,16 @@ contains
       call accept_step(self, trial, is_unstable)
       if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
    end subroutine take_step
+
+   !> What a user may do about a step whose equations are not solved however short it is.
+   pure function way_out(trial) result(words)
+      type(trial_t), intent(in) :: trial
+      character(len=:), allocatable :: words
+
+      words = ""
+      if (.not. trial%converged) words = &
+         ": fluid or sides may act faster; &time smallest_factor allows shorter steps"
+   end function way_out
 
    !> The present step is so short that it does not matter when in it tips jump.
    pure logical function is_moment(self)

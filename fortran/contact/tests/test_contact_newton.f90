@@ -63,6 +63,9 @@ program test_contact_newton
    call many_joints("joints, crack", crack, 200)
    call many_bonds("bonds, any body", any_body, 200)
    call many_bonds("bonds, crack", crack, 200)
+   call many_within_strength("friction weakens, any body", any_body, 100, 0.0_rk)
+   call many_within_strength("bonds wear, crack", crack, 100, 4.0e6_rk)
+   call one_beyond_strength()
    call checks%finish()
 
 contains
@@ -126,6 +129,69 @@ contains
       pairs%way = 0
       pairs%state = -1
    end subroutine some_pairs
+
+   !> Faces that loads leave within their strength stick, though they could not had they slipped,
+   !! wherever the iteration begins.
+   subroutine many_within_strength(name, kind, n_bodies, cohesion)
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: kind, n_bodies
+      real(rk), intent(in) :: cohesion  !< of a bond, or 0 [Pa]
+      integer(ik), parameter :: n_largest = 40
+      real(rk), parameter :: pressure = 1.0e7_rk
+      type(contact_pairs_t) :: pairs
+      type(iteration_report_t) :: report
+      real(rk) :: number(2), x(2*n_largest)
+      integer(ik) :: body, i, n, n_stuck
+
+      n_stuck = 0
+      do body = 1, n_bodies
+         n = 1 + mod(body*7_ik, n_largest)
+         call some_pairs(kind, n, pairs)
+         do i = 1, n
+            call random_number(number)
+            pairs%law(i) = contact_law_t(friction=0.6_rk, cohesion=cohesion)
+            pairs%law(i)%weakening_slip = pressure/stiffness*10.0_rk**(2.0_rk*number(1) - 2.0_rk)
+            pairs%law(i)%weakening = 0.5_rk/pairs%law(i)%weakening_slip
+            pairs%law(i)%wear_by_slip = 1.0_rk/pairs%law(i)%weakening_slip
+            pairs%load(2*i - 1:2*i) = [-pressure, (0.8_rk + 0.19_rk*number(2)) &
+                                       *(0.6_rk*pressure + cohesion)]*pairs%length(i)
+         end do
+         x(:2*n) = 10.0_rk*pressure*random(2*n)
+         call iterate(pairs, x(:2*n), iteration_settings_t(), report)
+         if (report%outcome == outcome_converged .and. &
+             maxval(abs(x(:2*n))) < 1.0e-6_rk*pressure) n_stuck = n_stuck + 1
+      end do
+      print "(a,t36,i0,a,i0)", name//", all stick", n_stuck, " of ", n_bodies
+      call checks%is_true(n_stuck == n_bodies, name//": all stick")
+   end subroutine many_within_strength
+
+   !> One pair on a spring S: it slips by (tau - mu_s p)/(S/L - weakening p) where that is stable,
+   !! and to the residual friction where it is not.
+   subroutine one_beyond_strength()
+      type(contact_pairs_t) :: pairs
+      type(iteration_report_t) :: report
+      real(rk), parameter :: pressure = 1.0e7_rk, shear = 6.3e6_rk, drop = 0.5_rk
+      real(rk), parameter :: spring = 0.01_rk*stiffness  ! [Pa/m]
+      ! What friction loses by slip, over the spring; and the slip, times the spring.
+      real(rk), parameter :: loss(2) = [0.5_rk, 2.0_rk]
+      real(rk), parameter :: slip(2) = [(shear - 0.6_rk*pressure)/0.5_rk, shear - 0.1_rk*pressure]
+      real(rk) :: x(2)
+      integer(ik) :: k
+
+      do k = 1, 2
+         call some_pairs(any_body, 1_ik, pairs)
+         pairs%length = 1.0_rk
+         pairs%condensed = reshape([spring, 0.0_rk, 0.0_rk, spring], [2, 2])
+         pairs%law(1) = contact_law_t(friction=0.6_rk, weakening=loss(k)*spring/pressure)
+         pairs%law(1)%weakening_slip = drop/pairs%law(1)%weakening
+         pairs%load = [-pressure, shear]
+         x = 0.0_rk
+         call iterate(pairs, x, iteration_settings_t(), report)
+         call checks%is_true(report%outcome == outcome_converged, "beyond its strength: solved")
+         call checks%is_close(x(2)/stiffness*spring, slip(k), 1.0e-9_rk*slip(k), &
+                              merge("slip that is stable  ", "slip that is unstable", k == 1))
+      end do
+   end subroutine one_beyond_strength
 
    !> Many bodies of a kind.
    subroutine many(name, kind, n_bodies, friction, dilation, with_history)
