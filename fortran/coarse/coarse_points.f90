@@ -34,34 +34,79 @@ contains
       end do
    end subroutine add_point_forces
 
-   !> Hold the points that the scene restrains: springs against the displacement that is given.
+   !> Hold the points that the scene restrains: each component by one spring between what is given
+   !! and the displacement of the point, as the cells around it give it. So a point takes three
+   !! motions from the body at most, and no strain.
    pure subroutine hold_points(scene, mesh, matrix, force)
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: mesh
       type(matrix_t), intent(inout) :: matrix
       real(rk), intent(inout) :: force(:, :)  !< (2, n_cells) [N/m]
       real(rk) :: spring  ! [Pa]
+      real(rk), allocatable :: weight(:)
+      integer(ik), allocatable :: cells(:)
       integer(ik) :: axis, i, k
 
+      spring = support*scene%material%young
       do i = 1, size(scene%restraints, kind=ik)
          associate (point => scene%restraints(i))
-            associate (cells => cells_at(mesh, [point%x, point%y]))
-               spring = support*scene%material%young/size(cells)
+            cells = cells_at(mesh, [point%x, point%y])
+            weight = weights_at(mesh, cells, [point%x, point%y])
+            do axis = 1, 2
+               if (.not. point%displacement_given(axis)) cycle
                do k = 1, size(cells, kind=ik)
-                  do axis = 1, 2
-                     if (.not. point%displacement_given(axis)) cycle
-                     associate (entry => matrix%elastic(axis, axis, &
-                                                        matrix%columns%last(cells(k))), &
-                                known => force(axis, cells(k)))
-                        entry = entry + spring
-                        known = known + spring*point%displacement(axis)
-                     end associate
-                  end do
+                  call add_products(matrix, axis, cells(k), spring*weight(k), cells, weight)
+                  force(axis, cells(k)) = force(axis, cells(k)) &
+                                          + spring*weight(k)*point%displacement(axis)
                end do
-            end associate
+            end do
          end associate
       end do
    end subroutine hold_points
+
+   !> Add a row of a spring between cells to the lower triangle. Cells around a vertex meet there.
+   pure subroutine add_products(matrix, axis, row, factor, cells, weight)
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik), intent(in) :: axis, row
+      real(rk), intent(in) :: factor  !< [Pa]
+      integer(ik), intent(in) :: cells(:)
+      real(rk), intent(in) :: weight(:)  !< [-]
+      integer(ik) :: entry, k
+
+      do k = 1, size(cells, kind=ik)
+         if (cells(k) > row) cycle
+         entry = matrix%columns%first(row)
+         do while (matrix%columns%item(entry) /= cells(k))
+            entry = entry + 1
+         end do
+         matrix%elastic(axis, axis, entry) = matrix%elastic(axis, axis, entry) + factor*weight(k)
+      end do
+   end subroutine add_products
+
+   !> Shares of cells in the displacement of a point: exact for linear fields where there are three
+   !! cells or more, their squares as small as can be; else equal.
+   pure function weights_at(mesh, cells, xy) result(weight)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cells(:)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk) :: weight(size(cells))
+      real(rk), parameter :: flat = 1.0e-3_rk  ! centres nearly on a line
+      real(rk) :: centre(2, size(cells)), determinant, mean(2), moment(2, 2), slope(2)
+      integer(ik) :: k
+
+      do k = 1, size(cells, kind=ik)
+         centre(:, k) = sum(mesh%xy(:, mesh%cell_nodes(:, cells(k))), dim=2)/3.0_rk - xy
+      end do
+      mean = sum(centre, dim=2)/size(cells)
+      centre = centre - spread(mean, 2, size(cells))
+      moment = matmul(centre, transpose(centre))
+      determinant = moment(1, 1)*moment(2, 2) - moment(1, 2)**2
+      weight = 1.0_rk/size(cells)
+      if (.not. determinant > flat*(moment(1, 1) + moment(2, 2))**2) return
+      slope = [moment(2, 2)*mean(1) - moment(1, 2)*mean(2), &
+               moment(1, 1)*mean(2) - moment(1, 2)*mean(1)]/determinant
+      weight = weight - matmul(slope, centre)
+   end function weights_at
 
    !> The cells that have a corner at a point, else the one that the point lies in.
    pure function cells_at(mesh, xy) result(cells)

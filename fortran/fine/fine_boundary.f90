@@ -14,10 +14,13 @@ module fine_boundary
    public :: add_point_force, add_side_pressure, add_side_stress, add_side_traction
    public :: check_boundary, check_support, find_loose
    public :: clamped_boundary, fine_boundary_t, free_boundary, hold_side, nearest_node
+   public :: stand_on_springs
 
    !> What is given on the outer boundary, or anywhere else; the values belong to the loads.
    type :: fine_boundary_t
       logical, allocatable :: prescribed(:, :)  !< (2, n_nodes) displacement component given
+      !> (2, n_nodes) component against which springs of the elements act (fine_springs)
+      logical, allocatable :: sprung(:, :)
    end type fine_boundary_t
 
 contains
@@ -30,6 +33,7 @@ contains
       allocate (boundary%prescribed(2, fine%n_nodes))
       boundary%prescribed(1, :) = fine%on_boundary
       boundary%prescribed(2, :) = fine%on_boundary
+      allocate (boundary%sprung(2, fine%n_nodes), source=.false.)
    end function clamped_boundary
 
    !> Nothing given yet: the body floats.
@@ -38,6 +42,7 @@ contains
       type(fine_boundary_t) :: boundary
 
       allocate (boundary%prescribed(2, fine%n_nodes), source=.false.)
+      boundary%sprung = boundary%prescribed
    end function free_boundary
 
    !> Give a displacement component on one side of the body: 1 alone and 2 alone are rollers, both
@@ -47,14 +52,33 @@ contains
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
       integer(ik), intent(in) :: component  !< 1: u_x, 2: u_y
       type(fine_boundary_t), intent(inout) :: boundary
+
+      call mark_side(fine, side, boundary%prescribed(component, :))
+   end subroutine hold_side
+
+   !> Count the springs of a side, which are part of the elements' stiffness, as what holds the body.
+   pure subroutine stand_on_springs(fine, side, component, boundary)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      integer(ik), intent(in) :: component  !< 1: u_x, 2: u_y
+      type(fine_boundary_t), intent(inout) :: boundary
+
+      call mark_side(fine, side, boundary%sprung(component, :))
+   end subroutine stand_on_springs
+
+   !> The nodes on a side.
+   pure subroutine mark_side(fine, side, is_marked)
+      type(fine_mesh_t), intent(in) :: fine
+      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
+      logical, intent(inout) :: is_marked(:)  !< (n_nodes)
       integer(ik) :: face
 
       do face = 1, size(fine%boundary_sides)
          if (fine%boundary_sides(face) /= side) cycle
-         boundary%prescribed(component, fine%boundary_faces(:, face)) = .true.
-         boundary%prescribed(component, fine%boundary_middles(face)) = .true.
+         is_marked(fine%boundary_faces(:, face)) = .true.
+         is_marked(fine%boundary_middles(face)) = .true.
       end do
-   end subroutine hold_side
+   end subroutine mark_side
 
    !> Corner node of an element nearest to a point, for point forces and single-point restraints.
    pure integer(ik) function nearest_node(fine, xy)
@@ -163,7 +187,7 @@ contains
    end subroutine check_boundary
 
    !> Refuse a body, or a piece of it, that could move as a rigid one: what has no given
-   !! displacements that exclude it has no unique solution.
+   !! displacements or springs that exclude it has no unique solution.
    pure subroutine check_support(fine, boundary, bonds, error)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -174,10 +198,10 @@ contains
       call find_loose(fine, boundary, bonds, place)
       if (.not. allocated(place)) return
       call raise_error(error, "check_support", "the piece of the body at "//place// &
-                       " can move freely; give more displacements on its boundary")
+                       " can move freely; give more displacements or springs on its boundary")
    end subroutine check_support
 
-   !> Find a piece of the body that the given displacements leave a rigid motion.
+   !> Find a piece of the body that the given displacements and springs leave a rigid motion.
    !!
    !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
    pure subroutine find_loose(fine, boundary, bonds, place)
@@ -202,14 +226,15 @@ contains
       end do
       piece = pieces%numbers()
 
-      ! Sums of the products of the three rigid motions' values, over the given components.
+      ! Sums of the products of the three rigid motions' values, over the held components.
       centre = 0.5_rk*(maxval(fine%xy, dim=2) + minval(fine%xy, dim=2))
       reach = maxval(maxval(fine%xy, dim=2) - minval(fine%xy, dim=2))
       allocate (held(3, 3, pieces%count_groups()), source=0.0_rk)
       do node = 1, fine%n_nodes
          associate (sums => held(:, :, piece(node)), arm => (fine%xy(:, node) - centre)/reach)
             do component = 1, 2
-               if (.not. boundary%prescribed(component, node)) cycle
+               if (.not. (boundary%prescribed(component, node) &
+                          .or. boundary%sprung(component, node))) cycle
                row = merge([1.0_rk, 0.0_rk, -arm(2)], [0.0_rk, 1.0_rk, arm(1)], component == 1)
                do k = 1, 3
                   sums(:, k) = sums(:, k) + row(k)*row

@@ -7,8 +7,11 @@
 !!
 !! At a joint one link follows from the others (fine_joints). Its jump is C w, and its traction f_c
 !! that of the middle of its cell, at the node m: S w - g = -L f - C' L_c f_c with f_c = -(S w -
-!! g)_m/L_m. Rows of S and g combined accordingly leave the form above.
+!! g)_m/L_m. Rows of S and g combined accordingly leave the form above. Where such an end loads
+!! unknowns that are no jumps of pairs, these stand behind w; combined, their rows have no f left, and
+!! they are eliminated.
 module fine_contact
+   use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
    use contact_law, only: contact_law_t
@@ -22,8 +25,8 @@ module fine_contact
    implicit none(type, external)
    private
 
-   public :: close_joints, contact_problem_t, contact_t, new_contact, set_contact_problem
-   public :: solve_contact
+   public :: close_joints, contact_problem_t, contact_t, eliminate_loose, loose_unknowns
+   public :: new_contact, set_contact_problem, show_closing, solve_contact
 
    !> Contact on all faces, node by node as start, end, mid of each fracture cell; what several
    !! cells share has the same value in each of them. Zero and open where there is no contact.
@@ -43,17 +46,27 @@ module fine_contact
       procedure :: accept
    end type contact_t
 
-   !> A link that closes a ring at a joint.
+   !> An end of a cell whose traction is that of the cell's middle.
    type :: closing_t
       integer(ik) :: cell = 0, end = 0  !< fracture cell and its end at the joint
       integer(ik) :: middle = 0  !< contact number of the middle of the cell
       real(rk) :: ratio = 0.0_rk  !< nodal length at the joint over that of the middle [-]
-      real(rk), allocatable :: jump_of(:, :)  !< C (n tau, 2 n) its jump from all jumps
+      real(rk), allocatable :: jump_of(:, :)  !< C (n tau, kept) its jump from all kept unknowns
    end type closing_t
+
+   !> Unknowns that such ends load and that are no jumps of pairs, as functions of these.
+   type :: loose_t
+      integer(ik) :: n = 0
+      real(rk), allocatable :: factors(:, :)  !< (n, n) of their own equations
+      integer(ik), allocatable :: pivots(:)  !< (n)
+      real(rk), allocatable :: by_jump(:, :)  !< (n, 2 pairs) what jumps take off them [-]
+      real(rk), allocatable :: in_rows(:, :)  !< (n, 2 pairs) theirs in the pairs' equations [Pa]
+   end type loose_t
 
    !> The pairs of a mesh.
    type, extends(contact_pairs_t) :: contact_problem_t
       type(closing_t), allocatable :: closing(:)
+      type(loose_t) :: loose
       type(contact_law_t), allocatable :: fresh_law(:)  !< (n) of faces that have not slipped
       real(rk), allocatable :: share(:, :)  !< (3, fracture cells) of each cell in L [m]
       integer(ik), allocatable :: place(:, :)  !< (3, fracture cells) contact number, or 0
@@ -146,7 +159,7 @@ contains
       call find_closing(fine, constraints, problem)
    end subroutine set_contact_problem
 
-   !> The links that close rings, with their jumps as sums of others.
+   !> The ends without a law, with their jumps as sums of unknowns.
    pure subroutine find_closing(fine, constraints, problem)
       type(fine_mesh_t), intent(in) :: fine
       type(constraints_t), intent(in) :: constraints
@@ -155,21 +168,23 @@ contains
       integer(ik) :: column, i, j, node, side, row
 
       allocate (problem%closing(size(constraints%closing, 2)))
-      allocate (problem%is_symmetric(2*problem%n), source=.true.)
+      problem%loose%n = size(constraints%kept_dofs, kind=ik) - 2*problem%n
+      ! Rows of S that close_joints combines are not; eliminate_loose changes all of them.
+      allocate (problem%is_symmetric(2*problem%n), source=problem%loose%n == 0)
       do i = 1, size(problem%closing)
          associate (link => problem%closing(i))
             link%cell = constraints%closing(1, i)
             link%end = constraints%closing(2, i)
             link%middle = problem%place(3, link%cell)
             link%ratio = problem%share(link%end, link%cell)/problem%length(link%middle)
-            allocate (link%jump_of(2, 2*problem%n), source=0.0_rk)
+            allocate (link%jump_of(2, size(constraints%kept_dofs)), source=0.0_rk)
             tau = fine%face_tangent(:, link%cell)
             axes = reshape([turned_left(tau), tau], [2, 2])
             do side = 1, 2
                node = fine%face_nodes(link%end, side, link%cell)
                do column = 1, constraints%n_columns(node)
                   ! The motion of the joint as a whole is no jump, and falls out of the difference.
-                  row = findloc(constraints%contact_dofs, constraints%dof(column, node), dim=1)
+                  row = findloc(constraints%kept_dofs, constraints%dof(column, node), dim=1)
                   if (row == 0) cycle
                   do j = 1, 2
                      link%jump_of(j, row) = link%jump_of(j, row) + (2*side - 3) &
@@ -178,22 +193,23 @@ contains
                   end do
                end do
             end do
-            ! Rows of S that close_joints combines.
-            where (any(abs(link%jump_of) > 0.0_rk, dim=1)) problem%is_symmetric = .false.
+            where (any(abs(link%jump_of(:, :2*problem%n)) > 0.0_rk, dim=1))
+               problem%is_symmetric = .false.
+            end where
          end associate
       end do
    end subroutine find_closing
 
-   !> Let the tractions of closing links act: combine the rows of the condensed system or the load.
+   !> Let the tractions of closing ends act: combine the rows of the condensed system or the load.
    pure subroutine close_joints(problem, rows)
       type(contact_problem_t), intent(in) :: problem
-      !> (any, 2 n) an equation per column [Pa], or the load [N/m]
+      !> (any, kept) an equation per column [Pa], or the load [N/m]
       real(rk), intent(inout) :: rows(:, :)
       integer(ik) :: i, row
 
       do i = 1, size(problem%closing)
          associate (link => problem%closing(i), middle => problem%closing(i)%middle)
-            do row = 1, 2*problem%n
+            do row = 1, size(rows, 2, kind=ik)
                if (.not. any(abs(link%jump_of(:, row)) > 0.0_rk)) cycle
                rows(:, row) = rows(:, row) &
                               - link%ratio*(link%jump_of(1, row)*rows(:, 2*middle - 1) &
@@ -202,6 +218,69 @@ contains
          end associate
       end do
    end subroutine close_joints
+
+   !> Eliminate the unknowns that are no jumps of pairs from the condensed system.
+   subroutine eliminate_loose(problem, is_singular)
+      type(contact_problem_t), intent(inout) :: problem
+      logical, intent(out) :: is_singular
+      real(rk), allocatable :: rows(:, :)
+      integer(ik) :: info
+
+      is_singular = .false.
+      if (problem%loose%n == 0) return
+      call move_alloc(problem%condensed, rows)
+      associate (loose => problem%loose, m => 2*problem%n)
+         loose%factors = rows(m + 1:, m + 1:)
+         loose%by_jump = transpose(rows(:m, m + 1:))
+         loose%in_rows = rows(m + 1:, :m)
+         allocate (loose%pivots(loose%n))
+         call dgetrf(loose%n, loose%n, loose%factors, loose%n, loose%pivots, info)
+         is_singular = info /= 0
+         if (is_singular) return
+         call dgetrs("T", loose%n, m, loose%factors, loose%n, loose%pivots, loose%by_jump, &
+                     loose%n, info)
+         problem%condensed = rows(:m, :m) - matmul(transpose(loose%by_jump), loose%in_rows)
+      end associate
+   end subroutine eliminate_loose
+
+   !> The eliminated unknowns without jumps of pairs; `by_jump` takes off what jumps do to them.
+   function loose_unknowns(loose, load) result(x)
+      type(loose_t), intent(in) :: loose
+      real(rk), intent(in) :: load(:)  !< (n) [N/m]
+      real(rk), allocatable :: x(:)  !< (n) [m]
+      real(rk) :: column(loose%n, 1)
+      integer(ik) :: info
+
+      column(:, 1) = load
+      if (loose%n > 0) then
+         call dgetrs("T", loose%n, 1_ik, loose%factors, loose%n, loose%pivots, column, loose%n, &
+                     info)
+      end if
+      x = column(:, 1)
+   end function loose_unknowns
+
+   !> Jumps, tractions and states of the closing ends, from a solution.
+   pure subroutine show_closing(fine, problem, displacement, contact)
+      type(fine_mesh_t), intent(in) :: fine
+      type(contact_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(contact_t), intent(inout) :: contact
+      integer(ik) :: i
+      real(rk) :: jump(2), tau(2)
+
+      do i = 1, size(problem%closing)
+         associate (cell => problem%closing(i)%cell, end => problem%closing(i)%end)
+            associate (nodes => fine%face_nodes(end, :, cell))
+               jump = displacement(:, nodes(2)) - displacement(:, nodes(1))
+            end associate
+            tau = fine%face_tangent(:, cell)
+            contact%jump(:, end, cell) = [dot_product(tau, jump), &
+                                          dot_product(turned_left(tau), jump)]
+            contact%traction(:, end, cell) = contact%traction(:, 3, cell)
+            contact%state(end, cell) = contact%state(3, cell)
+         end associate
+      end do
+   end subroutine show_closing
 
    !> Find the jumps that fulfil equilibrium and the law. A reason is given if that fails.
    subroutine solve_contact(problem, load, given_jump, contact, jump, reason)
@@ -280,7 +359,7 @@ contains
       real(rk), intent(in) :: traction(:, :)  !< (n tau, n) [Pa]
       integer(ik), intent(in) :: state(:)
       type(contact_t), intent(inout) :: contact
-      integer(ik) :: cell, i_closing, k
+      integer(ik) :: cell, k
 
       do cell = 1, size(problem%place, 2)
          do k = 1, 3
@@ -292,13 +371,6 @@ contains
                contact%state(k, cell) = state(i)
             end associate
          end do
-      end do
-      do i_closing = 1, size(problem%closing)
-         associate (link => problem%closing(i_closing))
-            contact%jump([2, 1], link%end, link%cell) = matmul(link%jump_of, jump)
-            contact%traction(:, link%end, link%cell) = traction([2, 1], link%middle)
-            contact%state(link%end, link%cell) = state(link%middle)
-         end associate
       end do
    end subroutine scatter
 

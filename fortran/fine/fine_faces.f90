@@ -9,7 +9,8 @@
 !!
 !! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
 !! whatever the conditions of the cells around, unless these are in contact (fine_joints). A pair of
-!! which a node is held at the outer boundary stays free, too.
+!! which a displacement is given stays free, too; in contact it has the traction of the middle of its
+!! cell.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -63,7 +64,8 @@ module fine_faces
       ! Pairs in contact.
       integer(ik), allocatable :: contact_pairs(:)  !< (n_contact) which pairs
       integer(ik), allocatable :: contact_dofs(:)  !< (2 n_contact) unknowns [u]_n, [u]_tau of each
-      integer(ik), allocatable :: closing(:, :)  !< (2, n) cell and end whose jump others decide
+      integer(ik), allocatable :: closing(:, :)  !< (2, n) cell and end in contact without a law
+      integer(ik), allocatable :: kept_dofs(:)  !< contact_dofs, then what else those ends load
    end type constraints_t
 
 contains

@@ -6,11 +6,15 @@
 !! before it and the jump of the link between them. The two unknowns that a node loses become the
 !! jump. The link that closes the ring has no law: its traction is that of the middle of
 !! its cell (fine_contact).
+!!
+!! So has every other end of a cell whose nodes cannot be tied, as those are of which a displacement
+!! is given: on a roller the support bears a part of the force there, and what is left for the law
+!! cannot be told from it. The nodes keep their own unknowns, which the traction of the middle loads.
 module fine_joints
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
    use fine_boundary, only: fine_boundary_t
-   use fine_faces, only: columns_max, constraints_t, face_contact, face_conditions_t
+   use fine_faces, only: columns_max, constraints_t, face_contact, face_conditions_t, face_loaded
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
@@ -26,7 +30,7 @@ module fine_joints
 
 contains
 
-   !> Add the links of all joints to the pairs in contact.
+   !> Add the links of all joints to the pairs in contact, and find the ends without a law.
    pure subroutine tie_joints(fine, boundary, conditions, constraints)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -37,20 +41,74 @@ contains
       integer(ik) :: i, root
 
       call find_links(fine, boundary, conditions, constraints, links)
-      if (links%n == 0) return
       allocate (reached(fine%n_nodes), source=.false.)
       do i = 1, links%n
          if (any(reached(links%nodes(:, i)))) cycle
          root = root_of(fine, links, links%nodes(1, i))
          call grow_tree(fine, links, root, reached, constraints)
       end do
-      do i = 1, links%n
-         if (constraints%face_pair(links%end(i), links%cell(i)) > 0) cycle
-         if (.not. all(reached(links%nodes(:, i)))) cycle
-         constraints%closing = reshape([constraints%closing, links%cell(i), links%end(i)], &
-                                       [2_ik, size(constraints%closing, 2, ik) + 1_ik])
-      end do
+      call find_closing(fine, conditions, constraints)
    end subroutine tie_joints
+
+   !> The ends in contact that have no law, and the unknowns that they load beside the jumps.
+   pure subroutine find_closing(fine, conditions, constraints)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_conditions_t), intent(in) :: conditions
+      type(constraints_t), intent(inout) :: constraints
+      integer(ik) :: cell, k
+
+      constraints%kept_dofs = constraints%contact_dofs
+      do cell = 1, fine%fracture%n_cells
+         if (conditions%condition(cell) /= face_contact) cycle
+         if (.not. has_law(3_ik, cell)) cycle
+         do k = 1, 2
+            associate (nodes => fine%face_nodes(k, :, cell))
+               if (nodes(1) == nodes(2) .or. has_law(k, cell)) cycle
+               if (all(constraints%n_columns(nodes) == 0)) cycle
+               constraints%closing = reshape([constraints%closing, cell, k], &
+                                             [2_ik, size(constraints%closing, 2, ik) + 1_ik])
+               call keep_loaded(nodes(1), nodes(2), constraints)
+            end associate
+         end do
+      end do
+
+   contains
+
+      !> The node of a cell belongs to a pair that is not just loaded.
+      pure logical function has_law(node, of_cell)
+         integer(ik), intent(in) :: node, of_cell  !< 1 to 3
+
+         has_law = .false.
+         associate (pair => constraints%face_pair(node, of_cell))
+            if (pair > 0) has_law = constraints%pair_condition(pair) /= face_loaded
+         end associate
+      end function has_law
+
+   end subroutine find_closing
+
+   !> Keep the unknowns on which opposite forces on two nodes do work.
+   pure subroutine keep_loaded(plus, minus, constraints)
+      integer(ik), intent(in) :: plus, minus
+      type(constraints_t), intent(inout) :: constraints
+      integer(ik) :: column, nodes(2), other, side
+      real(rk) :: motion(2)
+
+      nodes = [plus, minus]
+      do side = 1, 2
+         other = nodes(3 - side)
+         do column = 1, constraints%n_columns(nodes(side))
+            associate (dof => constraints%dof(column, nodes(side)))
+               if (any(constraints%kept_dofs == dof)) cycle
+               associate (same => findloc(constraints%dof(:constraints%n_columns(other), other), &
+                                          dof, dim=1))
+                  motion = constraints%basis(:, column, nodes(side))
+                  if (same > 0) motion = motion - constraints%basis(:, same, other)
+               end associate
+               if (any(abs(motion) > 0.0_rk)) constraints%kept_dofs = [constraints%kept_dofs, dof]
+            end associate
+         end do
+      end do
+   end subroutine keep_loaded
 
    !> Ends at joints have two nodes and belong to no pair.
    pure subroutine find_links(fine, boundary, conditions, constraints, links)

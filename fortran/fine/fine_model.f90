@@ -7,8 +7,9 @@ module fine_model
    use fine_assembly, only: find_blocks, list_blocks, tied_elements_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
                             fine_boundary_t
-   use fine_contact, only: close_joints, contact_problem_t, contact_t, new_contact, &
-                           set_contact_problem, solve_contact
+   use fine_contact, only: close_joints, contact_problem_t, contact_t, eliminate_loose, &
+                           loose_unknowns, new_contact, set_contact_problem, show_closing, &
+                           solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t, rocks_t
    use fine_element, only: stiffness_matrix
    use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
@@ -129,7 +130,8 @@ contains
       if (self%constraints%n_dofs > 0) then
          call factorize(self, error)
          if (allocated(error)) return
-         call condense_contact(self)
+         call condense_contact(self, error)
+         if (allocated(error)) return
       end if
       self%ready = .true.
    end subroutine prepare
@@ -143,7 +145,7 @@ contains
 
       call find_blocks(self%constraints, pattern%first_unknown)
       pattern%blocks = list_blocks(self%mesh%cell_nodes, self%constraints, pattern%first_unknown)
-      pattern%kept = self%constraints%contact_dofs
+      pattern%kept = self%constraints%kept_dofs
       if (.not. pattern%is_same_as(self%analysed)) then
          if (allocated(self%analysed%first_unknown)) deallocate (self%analysed%first_unknown)
          call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, kept=pattern%kept)
@@ -177,8 +179,10 @@ contains
    !! The Schur complement that the elimination leaves costs no more than solving for one right-hand
    !! side per jump: it is what those solutions would compute, restricted to the fronts that hold
    !! the jumps.
-   subroutine condense_contact(self)
+   subroutine condense_contact(self, error)
       class(fine_model_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_singular
 
       call set_contact_problem(self%mesh, self%conditions, self%constraints, &
                                self%rocks%elasticity(1)%young, self%contact_problem)
@@ -186,6 +190,10 @@ contains
          if (problem%n == 0) return
          call self%solver%get_schur(problem%condensed)
          call close_joints(problem, problem%condensed)
+         call eliminate_loose(problem, is_singular)
+         if (.not. is_singular) return
+         call raise_error(error, "fine_model_t%prepare", "the end of a fracture on a side "// &
+                          "with given displacements is free to move")
       end associate
    end subroutine condense_contact
 
@@ -287,6 +295,7 @@ contains
             end do
          end do
       end associate
+      call show_closing(self%mesh, self%contact_problem, displacement, contact)
    end subroutine solve_free_part
 
    !> The unknowns from their loads, by way of the condensed system where faces touch.
@@ -296,7 +305,8 @@ contains
       type(contact_t), intent(inout) :: contact
       real(rk), intent(inout), contiguous :: x(:, :)  !< (n_dofs, 1) loads [N/m], then unknowns [m]
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: load(1, 2*self%contact_problem%n), jump(2*self%contact_problem%n)
+      real(rk) :: load(1, size(self%constraints%kept_dofs)), jump(2*self%contact_problem%n)
+      real(rk), allocatable :: loose(:)
       character(len=:), allocatable :: reason
 
       if (self%contact_problem%n == 0) then
@@ -305,13 +315,18 @@ contains
       end if
       call self%solver%condense(x(:, 1), load(1, :), error)
       if (allocated(error)) return
-      call close_joints(self%contact_problem, load)
-      call solve_contact(self%contact_problem, load(1, :), given_jump, contact, jump, reason)
-      if (allocated(reason)) then
-         call raise_error(error, "fine_model_t%solve", "contact: "//reason//loose_place(self))
-         return
-      end if
-      call self%solver%expand(jump, x(:, 1), error)
+      associate (problem => self%contact_problem, m => size(jump))
+         call close_joints(problem, load)
+         loose = loose_unknowns(problem%loose, load(1, m + 1:))
+         if (problem%loose%n > 0) load(1, :m) = load(1, :m) - matmul(loose, problem%loose%in_rows)
+         call solve_contact(problem, load(1, :m), given_jump, contact, jump, reason)
+         if (allocated(reason)) then
+            call raise_error(error, "fine_model_t%solve", "contact: "//reason//loose_place(self))
+            return
+         end if
+         if (problem%loose%n > 0) loose = loose - matmul(problem%loose%by_jump, jump)
+      end associate
+      call self%solver%expand([jump, loose], x(:, 1), error)
    end subroutine solve_unknowns
 
    !> Where a piece is that nothing but contact holds, for messages; empty if there is none.

@@ -3,7 +3,7 @@
 module mechanics_loads
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, fine_boundary_t, &
-                            free_boundary, hold_side, nearest_node
+                            free_boundary, hold_side, nearest_node, stand_on_springs
    use fine_in_situ, only: add_in_situ_tractions, set_in_situ_stress
    use fine_loads, only: fine_loads_t, no_loads
    use fine_mesh, only: fine_mesh_t
@@ -18,7 +18,7 @@ module mechanics_loads
 
 contains
 
-   !> Which displacements are given.
+   !> Which displacements are given, and what stands on springs.
    pure function held_boundary(scene, fine) result(boundary)
       type(scene_t), intent(in) :: scene
       type(fine_mesh_t), intent(in) :: fine
@@ -32,6 +32,8 @@ contains
          do axis = 1, 2
             if (sides(side)%displacement_given(axis)) then
                call hold_side(fine, side, axis, boundary)
+            else if (sides(side)%spring(axis) > 0.0_rk) then
+               call stand_on_springs(fine, side, axis, boundary)
             end if
          end do
       end do

@@ -10,6 +10,9 @@ module scene_check_mechanics
    private
 
    public :: check_laws, check_load, check_restraints, check_support, check_weight
+   public :: surplus_restraints
+
+   real(rk), parameter :: smallest = 1.0e-12_rk  !< of the sums of held motions that hold [-]
 
 contains
 
@@ -19,34 +22,10 @@ contains
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: smallest = 1.0e-12_rk  ! of the sums' own scale
-      real(rk) :: centre(2), reach, held(3, 3), rest, ends(2, 2, 4)
+      real(rk) :: held(3, 3), rest
       character(len=:), allocatable :: holder
-      integer :: side, k
 
-      associate (d => scene%domain)
-         centre = 0.5_rk*[d%x_min + d%x_max, d%y_min + d%y_max]
-         reach = hypot(d%x_max - d%x_min, d%y_max - d%y_min)
-         ends = reshape([d%x_min, d%y_min, d%x_min, d%y_max, d%x_max, d%y_min, d%x_max, d%y_max, &
-                         d%x_min, d%y_min, d%x_max, d%y_min, d%x_min, d%y_max, d%x_max, d%y_max], &
-                        [2, 2, 4])
-      end associate
-      held = 0.0_rk
-      do side = 1, merge(4, 0, scene%domain%shape == "rectangle")
-         do k = 1, 2
-            call hold(ends(:, k, side), bears(scene%sides(side)), held)
-         end do
-      end do
-      if (allocated(scene%parts)) then
-         do side = 1, size(scene%parts)
-            call hold_part(scene%parts(side), held)
-         end do
-      end if
-      do k = 1, size(scene%restraints)
-         associate (point => scene%restraints(k))
-            call hold([point%x, point%y], point%displacement_given, held)
-         end associate
-      end do
+      held = held_motions(scene, .true.)
       holder = "&side or a &restraint"
       if (.not. held(1, 1) > 0.0_rk) then
         call raise_error(error, "", sheet%path//": nothing holds the body against moving in x; "// &
@@ -68,6 +47,61 @@ contains
          call raise_error(error, "", sheet%path//": the body can rotate; give a "//holder// &
                           " (see docs/input.md)")
       end if
+   end subroutine check_support
+
+   !> Components of restraints beyond those that take the rigid motions which the sides leave.
+   pure integer function surplus_restraints(scene) result(surplus)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: held(3, 3)
+      integer :: i, k
+
+      surplus = -3
+      do i = 1, size(scene%restraints)
+         surplus = surplus + count(scene%restraints(i)%displacement_given)
+      end do
+      held = held_motions(scene, .false.)
+      do k = 1, 3  ! the rank, by elimination
+         i = maxloc([held(1, 1), held(2, 2), held(3, 3)], dim=1)
+         if (.not. held(i, i) > smallest) exit
+         surplus = surplus + 1
+         held = held - spread(held(:, i), 2, 3)*spread(held(i, :), 1, 3)/held(i, i)
+         held(i, :) = 0.0_rk
+         held(:, i) = 0.0_rk
+      end do
+   end function surplus_restraints
+
+   !> Sums of the products of what a, b and w do to the held components.
+   pure function held_motions(scene, of_restraints) result(held)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: of_restraints  !< beside those of the sides
+      real(rk) :: held(3, 3)
+      real(rk) :: centre(2), reach, ends(2, 2, 4)
+      integer :: side, k
+
+      associate (d => scene%domain)
+         centre = 0.5_rk*[d%x_min + d%x_max, d%y_min + d%y_max]
+         reach = hypot(d%x_max - d%x_min, d%y_max - d%y_min)
+         ends = reshape([d%x_min, d%y_min, d%x_min, d%y_max, d%x_max, d%y_min, d%x_max, d%y_max, &
+                         d%x_min, d%y_min, d%x_max, d%y_min, d%x_min, d%y_max, d%x_max, d%y_max], &
+                        [2, 2, 4])
+      end associate
+      held = 0.0_rk
+      do side = 1, merge(4, 0, scene%domain%shape == "rectangle")
+         do k = 1, 2
+            call hold(ends(:, k, side), bears(scene%sides(side)), held)
+         end do
+      end do
+      if (allocated(scene%parts)) then
+         do side = 1, size(scene%parts)
+            call hold_part(scene%parts(side), held)
+         end do
+      end if
+      if (.not. of_restraints) return
+      do k = 1, size(scene%restraints)
+         associate (point => scene%restraints(k))
+            call hold([point%x, point%y], point%displacement_given, held)
+         end associate
+      end do
 
    contains
 
@@ -126,7 +160,7 @@ contains
          end do
       end subroutine hold
 
-   end subroutine check_support
+   end function held_motions
 
    !> The load changes.
    pure subroutine check_load(sheet, scene, error)

@@ -65,7 +65,10 @@ module scene_parameters
               "rotation. With a fluid all values may change with time."), &
       group_t("restraint", repeated=.true., &
               meaning="A point of the body held in place. It becomes a node of the mesh, and "// &
-              "must not lie on a fracture, unless at a tip: each face has nodes of its own."), &
+              "must not lie on a fracture, unless at a tip: each face has nodes of its own. "// &
+              "Three components hold a body that nothing else does, and bear nothing where its "// &
+              "loads are in balance; what they bear otherwise is a point load, around which "// &
+              "results depend on the size of cells."), &
       group_t("point_load", repeated=.true., &
               meaning="A force at a point of the body, per metre of thickness, times the load "// &
               "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &

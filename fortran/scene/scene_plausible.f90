@@ -6,6 +6,7 @@ module scene_plausible
    use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
+   use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
    use scene_growth_regime, only: find_regime, least_verified
    use scene_near_ends, only: near_end_t, near_ends
@@ -35,7 +36,8 @@ module scene_plausible
                          of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
                          of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
                          of_weightless = 23, of_uniform = 24, of_tension = 25, &
-                         of_dry = 26, of_overpressure = 27, of_viscous = 28
+                         of_dry = 26, of_overpressure = 27, of_viscous = 28, &
+                          of_surplus = 29
 
    ! The table keeps its own layout.
    !&<
@@ -111,7 +113,11 @@ module scene_plausible
       doubt_t("injection", "K_m", "-", &
               "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
               "the fluid's viscosity decides about growth then, not the toughness; growth is "// &
-              "verified for K_m of 1 and more, and below it the run may end early")]
+              "verified for K_m of 1 and more, and below it the run may end early"), &
+      doubt_t("restraint", "surplus", "-", &
+              "above 0: given components beyond what holds the body", &
+              "they are point loads then, around which results depend on the size of cells; "// &
+              "give sides displacements or springs instead")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
@@ -136,6 +142,12 @@ contains
       if (has_fluid) call doubt_column(scene, list)
       if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
       if (allocated(scene%regions)) call doubt_regions(scene, list)
+      if (scene%has_points()) then
+         associate (surplus => surplus_restraints(scene))
+            call add(list, surplus > 0 .and. size(scene%restraints) > 0, of_surplus, &
+                     real(surplus, rk))
+         end associate
+      end if
    end function doubts_of_scene
 
    pure subroutine doubt_material(scene, has_fluid, list)

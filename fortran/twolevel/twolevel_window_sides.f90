@@ -2,7 +2,8 @@
 module twolevel_window_sides
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, &
-                            fine_boundary_t, free_boundary, hold_side, nearest_node
+                            fine_boundary_t, free_boundary, hold_side, nearest_node, &
+                            stand_on_springs
    use fine_mesh, only: fine_mesh_t
    use fine_springs, only: add_side_springs
    use scene_outline, only: sides_of_scene
@@ -71,8 +72,13 @@ contains
       boundary = free_boundary(fine)
       do side = 1, size(self%on_body, kind=ik)
          do axis = 1, 2
-            if (self%on_body(side) .and. .not. self%of(side)%displacement_given(axis)) cycle
-            call hold_side(fine, side, axis, boundary)
+            if (self%on_body(side) .and. .not. self%of(side)%displacement_given(axis)) then
+               if (self%of(side)%spring(axis) > 0.0_rk) then
+                  call stand_on_springs(fine, side, axis, boundary)
+               end if
+            else
+               call hold_side(fine, side, axis, boundary)
+            end if
          end do
       end do
       do side = 1, size(self%restraints, kind=ik)

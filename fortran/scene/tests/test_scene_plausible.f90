@@ -4,7 +4,8 @@ program test_scene_plausible
    use base_kinds, only: rk
    use base_texts, only: text_t
    use scene_plausible, only: doubts, doubts_of_scene
-   use scene_types, only: boundary_part_t, fracture_t, injection_t, region_t, scene_t
+   use scene_types, only: boundary_part_t, fracture_t, injection_t, point_load_t, region_t, &
+                          restraint_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  ! per degree
@@ -27,6 +28,7 @@ program test_scene_plausible
    call test_regions()
    call test_ends()
    call test_regime()
+   call test_restraints()
    call checks%is_true(provoked == size(doubts), "every doubt is provoked")
    call checks%finish()
 
@@ -92,6 +94,25 @@ contains
       s%growth%enabled = .false.
       call expect(s, "", "no growth")
    end subroutine test_ends
+
+   !> What sides leave of the rigid motions, restraints may take.
+   subroutine test_restraints()
+      type(scene_t) :: s
+
+      s = sound()
+      s%sides(1)%displacement_given(1) = .true.
+      s%point_loads = [point_load_t ::]
+      s%restraints = [restraint_t(0.0_rk, 0.0_rk, [.false., .true.], [0.0_rk, 0.0_rk])]
+      call expect(s, "", "a component beside a side of rollers")
+      s%restraints(1)%displacement_given(1) = .true.
+      call expect(s, "&restraint: surplus is 1.0: they are point loads", "held twice")
+      s%sides(1)%displacement_given(1) = .false.
+      s%restraints = [s%restraints, &
+                      restraint_t(1.0_rk, 0.0_rk, [.false., .true.], [0.0_rk, 0.0_rk])]
+      call expect(s, "", "three components")
+      s%sides(3)%spring(2) = 1.0e9_rk
+      call expect(s, "&restraint: surplus is 2.0: ", "three beside springs", .true.)
+   end subroutine test_restraints
 
    !> A band through the body of 2 m, thinner than cells far from fractures, or very permeable.
    subroutine test_regions()
