@@ -260,8 +260,8 @@ contains
       if (.not. search%may_jump) then
          trial%goes_too_far = any(joins .and. search%has_begun)
          trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=joins)
-         trial%is_late = (1.0_rk - trial%arrival)*search%dt > punctual &
-                         *(self%before%time - last_switch(self%scene, self%before%time))
+         trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
+         trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
          if (search%is_over) return
       end if
