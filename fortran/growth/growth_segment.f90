@@ -22,6 +22,7 @@ module growth_segment
       real(rk) :: start(2) = 0.0_rk  !< [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector
       real(rk) :: length = 0.0_rk  !< [m]
+      real(rk), private :: shortest = 0.0_rk  !< that the tip may go along it [m]
       real(rk) :: reached = 0.0_rk  !< how far the tip is [m]
       real(rk) :: accepted = 0.0_rk  !< how far it was in the last accepted state [m]
       real(rk) :: gain = 0.0_rk  !< of the whole path, in that state [m]
@@ -35,6 +36,7 @@ module growth_segment
    contains
       procedure :: open_segment
       procedure :: leave_rest
+      procedure :: stop_after
       procedure :: stay_at_start
       procedure :: stays
       procedure :: finish
@@ -86,7 +88,8 @@ contains
       self%start = start
       self%direction = direction
       self%length = length
-      self%reached = least*length
+      self%shortest = least*length
+      self%reached = self%shortest
       self%accepted = 0.0_rk
       call self%forget_tries()
    end subroutine open_segment
@@ -97,8 +100,17 @@ contains
       real(rk), intent(in) :: rest  !< share that it does not go along by itself [-]
 
       self%length = (1.0_rk - rest)*self%length
-      self%reached = least*self%length
+      self%shortest = least*self%length
+      self%reached = self%shortest
    end subroutine leave_rest
+
+   !> The tip is to go along no more than a length of the piece, but as far as it has to.
+   elemental subroutine stop_after(self, length)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: length  !< [m]
+
+      self%length = max(self%shortest, min(self%length, length))
+   end subroutine stop_after
 
    !> The tip does not go along the piece at all by itself.
    elemental subroutine stay_at_start(self)
@@ -322,7 +334,7 @@ contains
    elemental real(rk) function lowest(self)
       class(segment_t), intent(in) :: self
 
-      lowest = max(self%accepted, least*self%length)
+      lowest = max(self%accepted, self%shortest)
    end function lowest
 
    !> Be as far along as another one, but never behind the last accepted state, and know of the

@@ -235,6 +235,8 @@ contains
       if (.not. search%may_jump) trial%onset = first_onset(self, search%tip%drive%intensity)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
+      call stop_gained(self, search, wants, trial)
+      if (search%is_over) return
       joins = wants .and. can_join(self)
       wants = wants .and. self%tip%heads_for == target_none
       if (.not. (trial%has_joined .or. trial%jumps)) then
@@ -248,6 +250,26 @@ contains
          call conclude(self, search, timers, trial, error)
       end if
    end subroutine go_on
+
+   !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
+   !! step: then they would exceed their toughness by more than others do.
+   subroutine stop_gained(self, search, wants, trial)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      type(trial_t), intent(inout) :: trial
+      logical :: stops(size(wants))
+
+      stops = wants .and. self%has_gained()
+      if (.not. any(stops)) return
+      wants = wants .and. .not. stops
+      if (search%may_jump) return
+      trial%goes_too_far = any(stops .and. search%has_begun)
+      trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=stops)
+      trial%gains_all = trial%arrival < 1.0_rk
+      trial%is_late = trial%gains_all
+      search%is_over = trial%goes_too_far .or. trial%is_late
+   end subroutine stop_gained
 
    !> Tips join what they have come to, unless that is too early in the step. The error in time is
    !! that up to the joint: what follows is a jump.

@@ -46,6 +46,7 @@ module twolevel_stepping
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
+      logical :: gains_all = .false.  !< it comes not to a joint, but as far as growth is wanted
       real(rk) :: arrival = 1.0_rk  !< share of the step after which it does [-]
       real(rk) :: moment = 0.0_rk  !< length of a step in which it does not matter when it does [s]
       real(rk) :: switch = 1.0_rk  !< share of the step after which a well comes to its limit [-]
@@ -133,7 +134,7 @@ contains
       else if (trial%converged .and. trial%switch < 1.0_rk) then
          dt = max(0.01_rk, trial%switch)*dt
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
-         call cut_to(max(soonest, trial%arrival), trial%moment, self%arrival_cuts, dt)
+         call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), self%arrival_cuts, dt)
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else if (trial%converged) then
@@ -253,6 +254,8 @@ contains
          words = "a tip begins to grow in it"
       else if (self%switch < 1.0_rk) then
          words = "a well reaches or leaves its limit in it"
+      else if (self%is_late .and. self%gains_all) then
+         words = "a tip gains stop_gain in it"
       else if (self%is_late) then
          words = "a tip comes to a joint in it"
       else

@@ -139,9 +139,9 @@ contains
    !! tip does not exceed its toughness but for the tolerance, unless it is at the end of its piece;
    !! nor is it below but beside a place where it exceeds it, or where it cannot go back.
    subroutine test_searches()
-      character(len=*), parameter :: name(8) = [character(len=16) :: "monotone", "sudden", "noisy", &
-                                                "two roots", "of D4", "flat", "always above", &
-                                                "always below"]
+     character(len=*), parameter :: name(8) = [character(len=16) :: "monotone", "sudden", "noisy", &
+                                                     "two roots", "of D4", "flat", "always above", &
+                                                                                     "always below"]
       real(rk), parameter :: start(3) = [0.05_rk, 0.3045_rk, 0.9_rk], &
                              slope(3) = [0.0_rk, -0.02_rk, -40.0_rk]
       integer :: i, j, k, most
@@ -183,7 +183,7 @@ contains
       call checks%is_true(.not. has_moved, name//" ends")
       left = sample(number, segment%reached)
       call checks%is_true(left <= 5.0_rk*tolerance .or. segment%is_complete(), name//" is at rest")
-      call checks%is_true(left >= -5.0_rk*tolerance .or. segment%reached <= segment%lowest() + near &
+     call checks%is_true(left >= -5.0_rk*tolerance .or. segment%reached <= segment%lowest() + near &
                           .or. sample(number, segment%reached - near) > 0.0_rk .or. &
                           segment%is_complete(), name//" is no farther than it has to")
    end subroutine search
