@@ -166,7 +166,7 @@ contains
          call stepper%step_done(trial_t(converged=.true.), dt)
          dt = 100.0_rk
          do cuts = 0, 49
-            trial = trial_t(converged=.true., is_late=.true., arrival=shares(k), moment=1.0e-4_rk)
+            trial = trial_t(converged=.true., is_late=.true., arrival=shares(k), moment=0.01_rk)
             if ((1.0_rk - shares(k))*dt <= trial%moment) exit
             call stepper%cut(trial, dt, is_too_short)
          end do
