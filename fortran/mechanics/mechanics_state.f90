@@ -90,6 +90,8 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
+      call timers%heed(error)
+      if (allocated(error)) return
       call self%body%respond(self%scene, factor, timers, error)
       if (allocated(error)) return
       self%factor = factor

@@ -20,6 +20,7 @@ module output_progress
       real(rk) :: share = 0.0_rk  !< of the run that is done, by what will end it first [-]
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       integer(ik) :: step = 0
+      integer(ik) :: solutions = 0  !< tried for the next one so far
       integer(ik) :: n_stick = 0
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0
@@ -115,6 +116,7 @@ contains
       integer, intent(in) :: width  !< characters at most
       character(len=:), allocatable :: line
       real(rk) :: share
+      integer(ik), parameter :: many = 50  ! solutions, which a step rarely takes
       real(rk), parameter :: first_guess = 0.01_rk  ! of the run, before which nobody knows
 
       share = min(max(values%share, 0.0_rk), 1.0_rk)
@@ -125,6 +127,7 @@ contains
          call add("t "//brief_text(values%time, 5)//" s")
       end if
       call add("step "//integer_text(values%step))
+      if (values%solutions > many) call add("next: "//integer_text(values%solutions)//" solutions")
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if

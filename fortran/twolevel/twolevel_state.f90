@@ -36,7 +36,7 @@ module twolevel_state
    implicit none(type, external)
    private
 
-   public :: coarse_spec, two_levels_t
+   public :: coarse_spec, remesh_coarse, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -322,6 +322,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: asked(size(self%tip))
 
+      call timers%heed(error)
+      if (allocated(error)) return
       asked = .true.
       if (allocated(self%asked)) asked = self%asked
       call follow_sides(self%scene, self%state%time, self%state%time)
@@ -376,6 +378,8 @@ contains
       type(mesh_t) :: mesh
       type(mesh_map_t) :: map
 
+      call timers%heed(error)
+      if (allocated(error)) return
       associate (size_fracture => self%scene%discretization%size_fracture)
          call timers%start(phase_remesh)
          call remesh(self%mesher, self%coarse_network, centres, &

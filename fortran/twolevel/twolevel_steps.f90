@@ -120,13 +120,16 @@ contains
          self%before = self%state
          guess = self%model%guess
          call self%try_step(self%dt, timers, self%report, error)
-         trial%converged = self%report%converged
          if (allocated(error)) return
+         trial%converged = self%report%converged
          if (trial%converged) then
             trial%time_error = self%step_error(self%dt)
             if (.not. is_last) then
                call share_before_switch(self, self%dt, punctual, trial%switch, timers, error)
-               if (allocated(error)) return
+               if (allocated(error)) then
+                  self%state = self%before
+                  return
+               end if
                if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) then
                   self%state = self%before
                   self%model%guess = guess
