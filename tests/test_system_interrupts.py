@@ -115,7 +115,16 @@ def test_the_same_wish_may_arrive_twice(rows_before: int, tmp_path: Path) -> Non
 
 def test_a_time_limit_ends_a_run_at_a_good_state(tmp_path: Path) -> None:
     """`timeout` signals the launcher and the whole group, which the launcher hands on."""
-    command = ["timeout", "6", TOP / "wingcrack", "run", NETWORK, "--out", "out", "--quiet"]
+    command: list[str | Path] = [
+        "timeout",
+        "6",
+        TOP / "wingcrack",
+        "run",
+        NETWORK,
+        "--out",
+        "out",
+        "--quiet",
+    ]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 124
     assert "wingcrack: interrupted; the last state is in out" in done.stderr

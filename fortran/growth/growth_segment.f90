@@ -242,8 +242,8 @@ contains
       end associate
    end subroutine narrow
 
-   !> Where the tip is tried to be next, within the bracket and so that this is halved time and again
-   !! [m].
+   !> Where the tip is tried to be next, within the bracket and so that this is halved time and
+   !! again [m].
    elemental real(rk) function next_place(self, excess) result(to)
       class(segment_t), intent(in) :: self
       real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]

@@ -20,7 +20,6 @@ module output_progress
       real(rk) :: share = 0.0_rk  !< of the run that is done, by what will end it first [-]
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       integer(ik) :: step = 0
-      integer(ik) :: solutions = 0  !< tried for the next one so far
       integer(ik) :: n_stick = 0
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0
@@ -29,6 +28,7 @@ module output_progress
       real(rk) :: well_pressure = 0.0_rk  !< [Pa]
       real(rk) :: keq_over_kic = 0.0_rk  !< largest of the tips now; 0: left out [-]
       logical :: is_load = .false.  !< mechanics only
+      integer(ik) :: solutions = 0  !< tried for the next state so far
    end type progress_values_t
 
    !> The line and when it was last renewed.

@@ -11,10 +11,10 @@
 !! each further cut of a step in which tips grow too far squares the share that is left of it: six
 !! cuts instead of thirty to the shortest one.
 !!
-!! Where a tip begins to grow, or comes to a joint, is found by straight lines between the ends of the
-!! step. An intensity that is another one as soon as the step begins, however short that is, makes
-!! them lead to the same share time and again: after three such cuts of a step the share is squared
-!! with each of them, and the sixth leads to where it does not matter any more.
+!! Where a tip begins to grow, or comes to a joint, is found by straight lines between the ends of
+!! the step. An intensity that is another one as soon as the step begins, however short that is,
+!! makes them lead to the same share time and again: after three such cuts of a step the share is
+!! squared with each of them, and the sixth leads to where it does not matter any more.
 !!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
@@ -134,7 +134,8 @@ contains
       else if (trial%converged .and. trial%switch < 1.0_rk) then
          dt = max(0.01_rk, trial%switch)*dt
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
-         call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), self%arrival_cuts, dt)
+         call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), &
+                     self%arrival_cuts, dt)
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else if (trial%converged) then
@@ -151,8 +152,8 @@ contains
       self%next = dt
    end subroutine cut
 
-   !> Cut a step to the share of it after which something happens; at the last such cut to where that
-   !! does not matter.
+   !> Cut a step to the share of it after which something happens; at the last such cut to where
+   !! that does not matter.
    pure subroutine cut_to(share, least, cuts, dt)
       real(rk), intent(in) :: share  !< [-]
       real(rk), intent(in) :: least  !< [s]

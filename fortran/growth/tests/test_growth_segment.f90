@@ -135,9 +135,9 @@ contains
       call checks%is_close(segment%reached, segment%length, 0.0_rk, "all behind the tip")
    end subroutine test_bounds
 
-   !> However the excess depends on the place, the search ends within 60 tries, and where it ends the
-   !! tip does not exceed its toughness but for the tolerance, unless it is at the end of its piece;
-   !! nor is it below but beside a place where it exceeds it, or where it cannot go back.
+   !> However the excess depends on the place, the search ends within 60 tries, and where it ends
+   !! the tip does not exceed its toughness but for the tolerance, unless it is at the end of its
+   !! piece; nor is it below but beside a place where it exceeds it, or where it cannot go back.
    subroutine test_searches()
      character(len=*), parameter :: name(8) = [character(len=16) :: "monotone", "sudden", "noisy", &
                                                      "two roots", "of D4", "flat", "always above", &

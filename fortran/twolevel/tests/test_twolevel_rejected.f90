@@ -1,6 +1,7 @@
 !> A try of a step that is rejected leaves no trace: a run with further ones is the same to the last
 !! bit. Not so yet where tips are on their way: the coarse mesh keeps the cells of pieces that are
-!! begun, and windows the meshes that have followed the tips. What is known of the tips is as before.
+!! begun, and windows the meshes that have followed the tips. What is known of the tips is as
+!! before.
 program test_twolevel_rejected
    use testing_checks, only: checks_t
    use base_errors, only: error_t
