@@ -19,7 +19,7 @@ for old, new in (
     ("poisson = 0.3", "poisson = 0.3, toughness = 1.0e6"),
     (
         "intensities = .true.",
-        "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.09",
+        "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.1",
     ),
 ):
     assert old in EDGE_CRACK

@@ -32,5 +32,5 @@ def test_wings_of_a_fast_well_gain_alike(
     gain = {"1": 0.0, "2": 0.0}
     for row in rows(tmp_path / "out/tips.csv"):
         gain[row["tip"]] += float(row["advance_m"])
-    assert max(gain.values()) >= stop_gain
+    assert max(gain.values()) == pytest.approx(stop_gain, rel=1e-9)
     assert gain["1"] == pytest.approx(gain["2"], rel=0.02)

@@ -19,9 +19,11 @@ module app_journal
       type(progress_t) :: progress
       logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
       integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
+      type(progress_values_t) :: shown  !< of the last accepted state
    contains
       procedure :: begin => begin_journal
       procedure :: write_state
+      procedure :: show_work
       procedure :: write_chronicle
       procedure :: write_fields
    end type journal_t
@@ -69,17 +71,28 @@ contains
       call write_due_fields(self, simulation, row%time, error)
       if (allocated(error)) return
       call self%files%tick(error)
-      call self%progress%show(progress_values_t( &
-                              share=simulation%share_done(), time=row%time, &
-                              step=simulation%summary%steps, n_stick=row%n_stick, &
-                              n_slip=row%n_slip, n_open=row%n_open, &
-                              fracture_length=row%fracture_length, &
-                              has_well=size(simulation%scene%injections) > 0, &
-                              well_pressure=row%well_pressure, &
-                              keq_over_kic=simulation%keq_over_kic(), &
-                              is_load=.not. simulation%scene%has_fluid()), log_line)
+      self%shown = progress_values_t(share=simulation%share_done(), time=row%time, &
+                                     step=simulation%summary%steps, n_stick=row%n_stick, &
+                                     n_slip=row%n_slip, n_open=row%n_open, &
+                                     fracture_length=row%fracture_length, &
+                                     has_well=size(simulation%scene%injections) > 0, &
+                                     well_pressure=row%well_pressure, &
+                                     keq_over_kic=simulation%keq_over_kic(), &
+                                     is_load=.not. simulation%scene%has_fluid())
+      call self%progress%show(self%shown, log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
+
+   !> The next state is being looked for: so that a long step shows that it goes on.
+   subroutine show_work(self)
+      class(journal_t), intent(inout) :: self
+      character(len=:), allocatable :: log_line
+
+      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! there is no state yet
+      self%shown%solutions = self%shown%solutions + 1
+      call self%progress%show(self%shown, log_line)
+      if (allocated(log_line)) call self%files%log(log_line)
+   end subroutine show_work
 
    !> What has happened since the last time.
    subroutine write_chronicle(self, simulation)

@@ -8,7 +8,7 @@ module app_run
    use base_errors, only: error_t, keep_first
    use base_kinds, only: rk
    use base_texts, only: text_t
-   use base_timers, only: phase_output, timers_t
+   use base_timers, only: listener_t, phase_output, timers_t
    use growth_network, only: total_length
    use output_closing, only: closing_lines
    use output_record, only: run_record_t, status_failed, status_finished, status_stopped
@@ -20,7 +20,23 @@ module app_run
 
    public :: run_scene
 
+   !> Hears of long work: shows it, and ends it as the user wants.
+   type, extends(listener_t) :: follower_t
+      type(journal_t), pointer :: journal => null()
+   contains
+      procedure :: hear
+   end type follower_t
+
 contains
+
+   !> Work goes on, unless a signal has come.
+   subroutine hear(self, ends)
+      class(follower_t), intent(inout) :: self
+      logical, intent(out) :: ends
+
+      ends = interrupted()
+      if (.not. ends) call self%journal%show_work()
+   end subroutine hear
 
    !> Run a scene to its end. `refused`: the directory is a wrong choice, and nothing was written.
   subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, error)
@@ -31,7 +47,8 @@ contains
       class(simulation_t), allocatable, intent(out) :: simulation  !< as it is at its end
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
-      type(journal_t) :: journal
+      type(journal_t), target :: journal
+      type(follower_t), target :: follower
       type(run_record_t) :: record
       type(timers_t) :: timers
       type(error_t), allocatable :: trouble
@@ -53,6 +70,8 @@ contains
       end if
       if (.not. allocated(error)) then
          call journal%begin(quiet, simulation)
+         follower%journal => journal
+         timers%listener => follower
          call march(simulation, journal, timers, error)
          call write_last_state(simulation, journal, timers, trouble)
          call keep_first(trouble, error)
@@ -145,6 +164,10 @@ contains
             call simulation%grow(timers, error)
          end if
          if (allocated(error)) then
+            if (error%is_interruption) then
+               deallocate (error)
+               return
+            end if
             error%message = "after "//simulation%last_state()//": "//error%message
             return
          end if

@@ -9,6 +9,7 @@ module base_errors
    type :: error_t
       character(len=:), allocatable :: message  !< for users
       character(len=:), allocatable :: origin  !< procedure that gave up; may be empty
+      logical :: is_interruption = .false.  !< the user has asked the work to end: no failure
    end type error_t
 
 contains

@@ -1,13 +1,17 @@
 !> Where the CPU time goes, by phase. Phases nest: starting one pauses the one around it, so that
 !! the seconds of all phases add up to no more than those of the process.
+!!
+!! They go wherever much is computed, and so does with them whom that has to ask now and then
+!! whether to go on.
 module base_timers
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: lk, rk
    implicit none(type, external)
    private
 
    public :: phase_assemble, phase_contact, phase_count, phase_discretize, phase_factorize
    public :: phase_mesh, phase_names, phase_output, phase_remesh, phase_solve, phase_tips
-   public :: phase_transfer, timers_t
+   public :: listener_t, phase_transfer, timers_t
 
    integer, parameter :: phase_mesh = 1  !< first mesh
    integer, parameter :: phase_discretize = 2  !< stencils of the finite volumes
@@ -28,6 +32,22 @@ module base_timers
                                                                "solve", "contact", "tips", &
                                                                "remesh", "transfer", "output"]
 
+   !> Whom long work tells that it goes on.
+   type, abstract :: listener_t
+   contains
+      procedure(hear_of_work), deferred :: hear
+   end type listener_t
+
+   abstract interface
+      !> One more piece of work begins. `ends`: it shall not, and nothing else either.
+      subroutine hear_of_work(self, ends)
+         import :: listener_t
+         implicit none(type, external)
+         class(listener_t), intent(inout) :: self
+         logical, intent(out) :: ends
+      end subroutine hear_of_work
+   end interface
+
    !> The stop watch of one run.
    type :: timers_t
       private
@@ -37,7 +57,9 @@ module base_timers
       real(rk) :: since = 0.0_rk  !< CPU time when the innermost phase began or went on [s]
       integer(lk) :: wall_begin = 0_lk  !< clock ticks
       real(rk) :: ticks_per_second = 0.0_rk
+      class(listener_t), pointer, public :: listener => null()  !< not associated: nobody
    contains
+      procedure :: heed
       procedure :: begin
       procedure :: start
       procedure :: stop => stop_phase
@@ -57,6 +79,20 @@ contains
       self%ticks_per_second = real(rate, rk)
       allocate (self%running(8))
    end subroutine begin
+
+   !> A piece of work begins that may take some time, unless it shall not: then an interruption is
+   !! raised, and the caller leaves everything as after an error.
+   subroutine heed(self, error)
+      class(timers_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      logical :: ends
+
+      if (.not. associated(self%listener)) return
+      call self%listener%hear(ends)
+      if (.not. ends) return
+      call raise_error(error, "", "interrupted")
+      error%is_interruption = .true.
+   end subroutine heed
 
    !> Begin a phase; the phase around it pauses.
    subroutine start(self, phase)

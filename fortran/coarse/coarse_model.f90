@@ -292,6 +292,8 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
+      call timers%heed(error)
+      if (allocated(error)) return
       if (self%rock_wells%n > 0) then
          call advance_with_wells(self, mesh, dt, state, timers, report, error)
       else

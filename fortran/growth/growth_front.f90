@@ -10,7 +10,7 @@ module growth_front
    use base_tolerances, only: same_place, same_value
    use growth_increment, only: plan_increment, tips_at_onset
    use growth_law, only: new_tip
-   use growth_network, only: extend, move_end
+   use growth_network, only: end_gain, extend, move_end
    use growth_targets, only: find_ahead, find_target, target_none
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, network_t
@@ -23,6 +23,7 @@ module growth_front
    type :: growth_rules_t
       real(rk) :: toughness = 0.0_rk  !< K_IC [Pa m^1/2]
       real(rk) :: increment = 0.0_rk  !< l_max [m]
+      real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which nothing goes on [m]
       real(rk) :: exponent = 0.0_rk  !< of the energy release rate in the law of advances [-]
       !> share of the toughness that a tip may lack to grow along with one at its onset [-]
       real(rk) :: together = 0.0_rk
@@ -38,6 +39,7 @@ module growth_front
 
    !> Tips, the network whose ends they are, and the level that evaluates them.
    type, abstract :: front_t
+      type(network_t) :: start  !< network of the scene
       type(network_t) :: network  !< as it has grown
       type(tip_t), allocatable :: tip(:)
       type(growth_rules_t) :: rules
@@ -47,6 +49,7 @@ module growth_front
       procedure :: find_tips
       procedure :: grow_tips
       procedure :: grow_by
+      procedure :: has_gained
       procedure :: look_ahead
    end type front_t
 
@@ -104,17 +107,21 @@ contains
       call self%grow_by(advance, any_grew, timers, error)
    end subroutine grow_tips
 
-   !> Given advances of tips that have been evaluated; all are evaluated at the new ones.
-   subroutine grow_by(self, advance, any_grew, timers, error)
+   !> Given advances of tips that have been evaluated; all are evaluated at the new ones. With
+   !! `joins` none goes beyond the gain at which growth is over.
+   subroutine grow_by(self, wanted, any_grew, timers, error)
       class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips); 0: does not grow [m]
+      real(rk), intent(in) :: wanted(:)  !< (tips) advances; 0: does not grow [m]
       logical, intent(out) :: any_grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: corrections = 8
       logical :: any_joined, any_turned
+      real(rk) :: advance(size(wanted))
       integer(ik) :: i, k
 
+      advance = wanted
+      if (self%rules%joins) advance = up_to_stop(wanted, self%rules%stop_gain - gains(self))
       call advance_tips(self, advance, any_grew)
       if (.not. any_grew) return
       call self%evaluate(timers, error)
@@ -131,6 +138,40 @@ contains
       call join_tips(self, advance, any_joined)
       if (any_joined) call self%evaluate(timers, error)
    end subroutine grow_by
+
+   !> How far the tips have come, where that ends growth; else 0 [m].
+   pure function gains(self)
+      class(front_t), intent(in) :: self
+      real(rk) :: gains(size(self%tip))
+      integer(ik) :: i
+
+      gains = 0.0_rk
+      if (.not. self%rules%stop_gain < huge(1.0_rk)) return
+      do i = 1, size(self%tip, kind=ik)
+         gains(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end)
+      end do
+   end function gains
+
+   !> The tips that have come as far as growth is wanted.
+   pure function has_gained(self)
+      class(front_t), intent(in) :: self
+      logical :: has_gained(size(self%tip))
+
+      has_gained = gains(self) >= self%rules%stop_gain - same_place*self%rules%increment
+   end function has_gained
+
+   !> An advance that ends where growth is over, if it would go beyond that, but is never shorter
+   !! than a mesh can hold. The one before it is shorter if it would leave too little.
+   elemental real(rk) function up_to_stop(advance, left)
+      real(rk), intent(in) :: advance  !< [m]
+      real(rk), intent(in) :: left  !< [m]
+      real(rk), parameter :: least = 0.05_rk, sliver = 0.3_rk  ! of an advance
+
+      up_to_stop = advance
+      if (abs(left - advance) <= same_place*advance .or. left > (1.0_rk + sliver)*advance) return
+      up_to_stop = 0.0_rk
+      if (left > 0.0_rk) up_to_stop = max(least*advance, merge(0.5_rk*left, left, left > advance))
+   end function up_to_stop
 
    !> Move the tips to where their increments will probably end.
    subroutine advance_tips(self, advance, any_grew)

@@ -6,6 +6,15 @@ module growth_segment
 
    public :: segment_t
 
+   !> Between which places the excess vanishes, as the tries of a step have shown.
+   type :: bracket_t
+      real(rk) :: near = -1.0_rk  !< the tip exceeds its toughness here; negative: nowhere [m]
+      real(rk) :: far = -1.0_rk  !< and is below it here; negative: nowhere [m]
+      real(rk) :: width = huge(1.0_rk)  !< between them, when it was halved last [m]
+      integer :: slow = 0  !< tries since
+      integer :: tries = 0
+   end type bracket_t
+
    !> A piece of a path. The tip goes from its start to its end; then the next one begins.
    type :: segment_t
       logical :: is_open = .false.  !< the tip is on its way along it
@@ -13,6 +22,7 @@ module growth_segment
       real(rk) :: start(2) = 0.0_rk  !< [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector
       real(rk) :: length = 0.0_rk  !< [m]
+      real(rk), private :: shortest = 0.0_rk  !< that the tip may go along it [m]
       real(rk) :: reached = 0.0_rk  !< how far the tip is [m]
       real(rk) :: accepted = 0.0_rk  !< how far it was in the last accepted state [m]
       real(rk) :: gain = 0.0_rk  !< of the whole path, in that state [m]
@@ -20,17 +30,20 @@ module growth_segment
       real(rk), private :: tried(2) = 0.0_rk  !< [m]
       real(rk), private :: excess(2) = 0.0_rk  !< [-]
       integer, private :: tries = 0
+      type(bracket_t), private :: bracket
       real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
       real(rk), private :: speed = 0.0_rk  !< of the tip in the last step [m/s]
    contains
       procedure :: open_segment
       procedure :: leave_rest
+      procedure :: stop_after
       procedure :: stay_at_start
       procedure :: stays
       procedure :: finish
       procedure :: place
       procedure :: is_complete
       procedure :: restart
+      procedure, private :: forget_tries
       procedure :: set_out
       procedure :: keep_pace
       procedure :: pace
@@ -38,6 +51,8 @@ module growth_segment
       procedure :: learn
       procedure :: steep
       procedure :: go_to
+      procedure, private :: narrow
+      procedure, private :: next_place
       procedure, private :: within
       procedure :: is_at_rest
       procedure :: lowest
@@ -48,6 +63,13 @@ module growth_segment
    !> Share of a segment that a tip moves by at least: next to another fracture its excess has been
    !! seen to fall by 33 K_IC per segment, so that a thousandth is worth 3 % of it.
    real(rk), parameter :: closest = 1.0e-4_rk
+
+   !> Tries without a place on either side after which a tip goes to the ends of its way instead of
+   !! where secants lead, and with both after which the way between them is halved instead.
+   integer, parameter :: secants_max = 8, slow_max = 2
+
+   !> Tries of a step after which a tip only goes on: what it finds changes, because others move.
+   integer, parameter :: tries_max = 60
 
    !> Share of a segment that a tip goes along at least: what the mesh around it can hold.
    real(rk), parameter :: least = 0.05_rk
@@ -66,9 +88,10 @@ contains
       self%start = start
       self%direction = direction
       self%length = length
-      self%reached = least*length
+      self%shortest = least*length
+      self%reached = self%shortest
       self%accepted = 0.0_rk
-      self%tries = 0
+      call self%forget_tries()
    end subroutine open_segment
 
    !> The tip is to go along a share of the piece only.
@@ -77,8 +100,17 @@ contains
       real(rk), intent(in) :: rest  !< share that it does not go along by itself [-]
 
       self%length = (1.0_rk - rest)*self%length
-      self%reached = least*self%length
+      self%shortest = least*self%length
+      self%reached = self%shortest
    end subroutine leave_rest
+
+   !> The tip is to go along no more than a length of the piece, but as far as it has to.
+   elemental subroutine stop_after(self, length)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: length  !< [m]
+
+      self%length = max(self%shortest, min(self%length, length))
+   end subroutine stop_after
 
    !> The tip does not go along the piece at all by itself.
    elemental subroutine stay_at_start(self)
@@ -128,8 +160,16 @@ contains
       class(segment_t), intent(inout) :: self
 
       self%reached = self%lowest()
-      self%tries = 0
+      call self%forget_tries()
    end subroutine restart
+
+   !> What the tries of a step have shown holds for no other one, but for the slope.
+   elemental subroutine forget_tries(self)
+      class(segment_t), intent(inout) :: self
+
+      self%tries = 0
+      self%bracket = bracket_t()
+   end subroutine forget_tries
 
    !> Begin a piece where its excess will probably vanish, by what the piece before has shown.
    elemental subroutine set_out(self, excess)
@@ -161,7 +201,9 @@ contains
    end subroutine pace
 
    !> Go where the excess probably vanishes: back no farther than the last accepted state, and on no
-   !! farther than the end of the piece.
+   !! farther than the end of the piece. Secants find the place, held between a place where the tip
+   !! exceeds its toughness and one beyond where it does not, once there are such. Where the excess
+   !! falls suddenly, the tip comes to rest beyond that: it cannot where it exceeds its toughness.
    pure subroutine improve(self, excess, tolerance, has_moved)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]
@@ -171,8 +213,58 @@ contains
       has_moved = .false.
       call self%learn(excess)
       if (abs(excess) <= tolerance) return
-      call self%go_to(self%reached - excess/self%steep(self%slope), has_moved)
+      call self%narrow(excess)
+      call self%go_to(self%next_place(excess), has_moved)
    end subroutine improve
+
+   !> The place of the tip becomes an end of the bracket.
+   elemental subroutine narrow(self, excess)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]
+
+      associate (bracket => self%bracket)
+         bracket%tries = bracket%tries + 1
+         ! An end that contradicts the present try is out of date: others have moved since.
+         if (excess > 0.0_rk) then
+            bracket%near = self%reached
+            if (bracket%far <= bracket%near) bracket%far = -1.0_rk
+         else
+            bracket%far = self%reached
+            if (bracket%near >= bracket%far) bracket%near = -1.0_rk
+         end if
+         bracket%slow = bracket%slow + 1
+         if (min(bracket%near, bracket%far) < 0.0_rk) then
+            bracket%width = huge(1.0_rk)
+         else if (bracket%far - bracket%near <= 0.5_rk*bracket%width) then
+            bracket%width = bracket%far - bracket%near
+            bracket%slow = 0
+         end if
+      end associate
+   end subroutine narrow
+
+   !> Where the tip is tried to be next, within the bracket and so that this is halved time and
+   !! again [m].
+   elemental real(rk) function next_place(self, excess) result(to)
+      class(segment_t), intent(in) :: self
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 where the tip is [-]
+
+      to = self%reached - excess/self%steep(self%slope)
+      associate (bracket => self%bracket, least => 2.0_rk*closest*self%length)
+         if (excess > 0.0_rk) to = max(to, self%reached + least)
+         if (bracket%tries > tries_max) then
+            to = merge(0.5_rk*(self%reached + self%length), self%reached, excess > 0.0_rk)
+         else if (min(bracket%near, bracket%far) < 0.0_rk) then
+            if (bracket%tries <= secants_max) return
+            to = merge(0.5_rk*(self%reached + self%length), self%lowest(), excess > 0.0_rk)
+         else if (bracket%far - bracket%near <= least) then
+            to = bracket%far
+         else
+            if (to <= bracket%near .or. to >= bracket%far .or. bracket%slow >= slow_max) then
+               to = 0.5_rk*(bracket%near + bracket%far)
+            end if
+         end if
+      end associate
+   end function next_place
 
    !> Keep the excess where the tip is, and how it changes along the piece.
    pure subroutine learn(self, excess)
@@ -242,7 +334,7 @@ contains
    elemental real(rk) function lowest(self)
       class(segment_t), intent(in) :: self
 
-      lowest = max(self%accepted, least*self%length)
+      lowest = max(self%accepted, self%shortest)
    end function lowest
 
    !> Be as far along as another one, but never behind the last accepted state, and know of the
@@ -264,7 +356,7 @@ contains
       class(segment_t), intent(inout) :: self
 
       self%accepted = self%reached
-      self%tries = 0
+      call self%forget_tries()
       if (self%is_open .and. self%is_complete()) self%is_open = .false.
    end subroutine accept
 

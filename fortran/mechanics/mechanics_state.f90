@@ -74,6 +74,7 @@ contains
       outline = outline_of_scene(scene)
       self%rules = growth_rules_t(toughness=scene%material%toughness, &
                                   increment=scene%growth%increment, &
+                                  stop_gain=scene%growth%stop_gain, &
                                   exponent=scene%growth%exponent, together=together, &
                                   joins=.true., heads=.true., &
                                   near=near_way*scene%growth%increment, outline=outline%corners)
@@ -89,6 +90,8 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
+      call timers%heed(error)
+      if (allocated(error)) return
       call self%body%respond(self%scene, factor, timers, error)
       if (allocated(error)) return
       self%factor = factor

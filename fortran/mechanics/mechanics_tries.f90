@@ -210,6 +210,7 @@ contains
    subroutine finish(self, body)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
+      real(rk) :: share
       integer(ik) :: i
 
       do i = 1, size(body%tip, kind=ik)
@@ -219,7 +220,11 @@ contains
             if (tip%advance < same_place*body%rules%increment) tip%advance = 0.0_rk
             if (self%segment_before(i)%is_open) tip%kink = 0.0_rk  ! it went straight on
             segment%accepted = segment%reached
-            if (segment%reached >= whole*segment%length .or. tip%arrested) segment%is_open = .false.
+            ! The rest of the last piece before growth is over is too short for one of its own.
+            share = whole
+            if (end_gain(body%network, body%start, tip%fracture, tip%end) + segment%length &
+                - segment%reached > (1.0_rk - same_place)*body%rules%stop_gain) share = 1.0_rk
+            if (segment%reached >= share*segment%length .or. tip%arrested) segment%is_open = .false.
          end associate
       end do
    end subroutine finish

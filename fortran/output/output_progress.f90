@@ -28,6 +28,7 @@ module output_progress
       real(rk) :: well_pressure = 0.0_rk  !< [Pa]
       real(rk) :: keq_over_kic = 0.0_rk  !< largest of the tips now; 0: left out [-]
       logical :: is_load = .false.  !< mechanics only
+      integer(ik) :: solutions = 0  !< tried for the next state so far
    end type progress_values_t
 
    !> The line and when it was last renewed.
@@ -115,6 +116,7 @@ contains
       integer, intent(in) :: width  !< characters at most
       character(len=:), allocatable :: line
       real(rk) :: share
+      integer(ik), parameter :: many = 50  ! solutions, which a step rarely takes
       real(rk), parameter :: first_guess = 0.01_rk  ! of the run, before which nobody knows
 
       share = min(max(values%share, 0.0_rk), 1.0_rk)
@@ -125,6 +127,7 @@ contains
          call add("t "//brief_text(values%time, 5)//" s")
       end if
       call add("step "//integer_text(values%step))
+      if (values%solutions > many) call add("next: "//integer_text(values%solutions)//" solutions")
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if

@@ -37,7 +37,6 @@ module simulation_types
    !> One scene on its way.
    type, abstract, extends(front_t) :: simulation_t
       type(scene_t) :: scene
-      type(network_t) :: start  !< network of the scene
       type(chronicle_t) :: chronicle  !< since the files were last written
       type(summary_t) :: summary  !< of the run so far
       type(watch_t) :: watch  !< over the limits of the run
@@ -412,14 +411,10 @@ contains
       class(simulation_t), intent(inout) :: self
       integer(ik) :: i
 
-      do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i))
-            if (end_gain(self%network, self%start, tip%fracture, tip%end) &
-                < self%scene%growth%stop_gain) cycle
-            self%ending = "fracture "//trim(self%scene%fractures(tip%fracture)%name)// &
-                          " has gained stop_gain"
-         end associate
-      end do
+      i = findloc(self%has_gained(), .true., dim=1)
+      if (i == 0) return
+      self%ending = "fracture "//trim(self%scene%fractures(self%tip(i)%fracture)%name)// &
+                    " has gained stop_gain"
    end subroutine end_at_gain
 
    !> Limits that were passed for the first time go to the log; one may ask to stop the run.

@@ -11,13 +11,17 @@ module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use coarse_guess, only: guess_t
    use coarse_state, only: step_report_t
+   use growth_company, only: company_t
    use growth_network, only: total_length
+   use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
    use growth_targets, only: target_none
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
    use simulation_doubt, only: doubtful
+   use twolevel_certainty, only: certainty_t
    use twolevel_doubt, only: improve_windows
    use twolevel_excess, only: arrivals, excesses, first_onset, onset, tolerance
    use twolevel_moves, only: judge_tips, keep_together, part_company, several_kinds, tips_in_play
@@ -59,6 +63,10 @@ module twolevel_equilibrium
       type(tip_t), allocatable :: tip(:)
       type(segment_t), allocatable :: segment(:)
       type(network_t) :: network
+      type(guess_t) :: guess
+      type(certainty_t) :: certainty
+      type(company_t) :: company
+      type(rivals_t) :: rivals
       logical :: was_undrained = .false.
       ! Of its tries
       real(rk), allocatable :: unmoved(:)  !< (tips) K_eq of the first one [Pa m^1/2]
@@ -108,7 +116,6 @@ contains
       if (allocated(error) .or. .not. trial%needs_windows) return
       ! Onsets are looked for from what tips had before the step, and errors known from there; on a
       ! mesh that the step has made that state has no tractions.
-      self%undrained = search%was_undrained
       if (.not. allocated(self%state%tractions)) return
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
@@ -128,6 +135,10 @@ contains
       search%segment = self%segment
       search%network = self%network
       search%was_undrained = self%undrained
+      search%guess = self%model%guess
+      search%certainty = self%certainty
+      search%company = self%company
+      search%rivals = self%rivals
       allocate (search%kind(size(self%tip)))
       allocate (search%has_begun(size(self%tip)), source=.false.)
       associate (k => self%tip%intensity, toughness => self%rules%toughness)
@@ -157,7 +168,14 @@ contains
       self%tip = search%tip
       self%segment = search%segment
       self%network = search%network
+      self%model%guess = search%guess
+      self%certainty = search%certainty
+      self%company = search%company
+      self%rivals = search%rivals
+      self%undrained = search%was_undrained
       self%values_are_current = .false.
+      call self%windows%take_back()
+      call self%reference%take_back()
    end subroutine take_back
 
    !> The state and the intensities with the tips where they are tried to be.
@@ -235,6 +253,8 @@ contains
       if (.not. search%may_jump) trial%onset = first_onset(self, search%tip%drive%intensity)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
+      call stop_gained(self, search, wants, trial)
+      if (search%is_over) return
       joins = wants .and. can_join(self)
       wants = wants .and. self%tip%heads_for == target_none
       if (.not. (trial%has_joined .or. trial%jumps)) then
@@ -249,6 +269,26 @@ contains
       end if
    end subroutine go_on
 
+   !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
+   !! step: then they would exceed their toughness by more than others do.
+   subroutine stop_gained(self, search, wants, trial)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      type(trial_t), intent(inout) :: trial
+      logical :: stops(size(wants))
+
+      stops = wants .and. self%has_gained()
+      if (.not. any(stops)) return
+      wants = wants .and. .not. stops
+      if (search%may_jump) return
+      trial%goes_too_far = any(stops .and. search%has_begun)
+      trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=stops)
+      trial%gains_all = trial%arrival < 1.0_rk
+      trial%is_late = trial%gains_all
+      search%is_over = trial%goes_too_far .or. trial%is_late
+   end subroutine stop_gained
+
    !> Tips join what they have come to, unless that is too early in the step. The error in time is
    !! that up to the joint: what follows is a jump.
    subroutine join(self, search, joins, trial)
@@ -260,8 +300,8 @@ contains
       if (.not. search%may_jump) then
          trial%goes_too_far = any(joins .and. search%has_begun)
          trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=joins)
-         trial%is_late = (1.0_rk - trial%arrival)*search%dt > punctual &
-                         *(self%before%time - last_switch(self%scene, self%before%time))
+         trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
+         trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
          if (search%is_over) return
       end if

@@ -16,7 +16,7 @@ module twolevel_pieces
    use base_plane, only: point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use growth_network, only: end_place, extend, move_end, straighten_end
+   use growth_network, only: end_gain, end_place, extend, move_end, straighten_end
    use growth_targets, only: find_beside, target_boundary, target_none
    use growth_tip, only: tip_t
    use twolevel_state, only: two_levels_t
@@ -246,11 +246,15 @@ contains
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
       real(rk), intent(in) :: to(2)  !< where it ends [m]
+      real(rk) :: gain  ! up to its start [m]
 
       associate (tip => self%tip(i), segment => self%segment(i))
          if (tip%heads_for /= target_none) tip%direction = (to - tip%origin)/norm2(to - tip%origin)
          call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
          if (tip%heads_for /= target_none) call segment%leave_rest(rest)
+         gain = end_gain(self%network, self%start, tip%fracture, tip%end) &
+                - norm2(tip%xy - tip%origin)
+         call segment%stop_after(self%rules%stop_gain - gain)
       end associate
    end subroutine open_piece
 

@@ -15,6 +15,7 @@ module twolevel_simulation
    use twolevel_notes, only: note_certainty, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
+   use twolevel_state, only: remesh_coarse
    use twolevel_steps, only: stepping_levels_t
    use twolevel_stimulation, only: stimulation_t
    use twolevel_trust, only: estimate_coarse_errors
@@ -37,7 +38,10 @@ module twolevel_simulation
       type(well_books_t) :: well_books
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
       real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
+      logical :: is_stepping = .false.  !< the next state is being looked for
+      type(snapshot_t), allocatable :: good  !< the last one, if the mesh has changed since
    contains
+      procedure :: remesh_coarse => remesh_and_keep
       procedure :: begin
       procedure :: next_state
       procedure :: grow
@@ -114,9 +118,12 @@ contains
             call self%stimulation%begin(self)
             call self%well_books%begin(self)
          end if
+         self%is_stepping = .true.
          call self%take_step(timers, error)
+         self%is_stepping = .false.
       end if
       if (allocated(error)) return
+      if (allocated(self%good)) deallocate (self%good)
       call book_change(self)
       self%mass_error = self%mass_error + self%report%mass_error
       row = self%history()
@@ -368,12 +375,25 @@ contains
       call probes_of_levels(self, row, error)
    end subroutine probes
 
+   !> A mesh on which the last good state has no tractions: if no other is found, its fields are
+   !! those on the mesh before.
+   subroutine remesh_and_keep(self, centres, timers, error)
+      class(twolevel_simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: centres(:, :)  !< (2, n) where the network changes [m]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%is_stepping .and. .not. allocated(self%good)) call self%snapshot(self%good)
+      call remesh_coarse(self, centres, timers, error)
+   end subroutine remesh_and_keep
+
    !> Fields of the last good state, unless there is none or the coarse mesh is ahead of it.
    subroutine snapshot(self, fields)
       class(twolevel_simulation_t), intent(in) :: self
       type(snapshot_t), allocatable, intent(out) :: fields
 
-      if (.not. allocated(self%state%tractions)) return
+      if (allocated(self%good)) fields = self%good
+      if (.not. allocated(self%state%tractions) .or. allocated(fields)) return
       if (size(self%state%unknowns, 2) /= self%model%regions%n_blocks) return
       fields = snapshot_of_levels(self)
    end subroutine snapshot

@@ -3,6 +3,7 @@
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_place
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use coarse_geometry, only: cell_area
    use coarse_model, only: new_state, rest_fluid
@@ -36,7 +37,7 @@ module twolevel_state
    implicit none(type, external)
    private
 
-   public :: coarse_spec, two_levels_t
+   public :: coarse_spec, remesh_coarse, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -154,7 +155,8 @@ contains
 
       outline = outline_of_scene(scene)
       rules = growth_rules_t(toughness=scene%material%toughness, &
-                             increment=scene%growth%increment, exponent=scene%growth%exponent, &
+                             increment=scene%growth%increment, &
+                             stop_gain=scene%growth%stop_gain, exponent=scene%growth%exponent, &
                              together=together, &
                              joins=scene%growth%law /= "equilibrium", heads=.true., &
                              near=max(near_way*scene%growth%increment, &
@@ -323,6 +325,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: asked(size(self%tip))
 
+      call timers%heed(error)
+      if (allocated(error)) return
       asked = .true.
       if (allocated(self%asked)) asked = self%asked
       call follow_sides(self%scene, self%state%time, self%state%time)
@@ -342,7 +346,8 @@ contains
                       self%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 
-   !> Let the coarse level follow what the tips have grown, if that has reached its threshold.
+   !> Let the coarse level follow what the tips have grown, if that has reached its threshold, or if
+   !! nothing is to grow after it.
    subroutine grow_coarse(self, grew, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(out) :: grew
@@ -350,13 +355,14 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: centres(:, :)
       logical :: is_straightened
+      real(rk) :: threshold
 
-      associate (size_fracture => self%scene%discretization%size_fracture)
-         call hand_over(self%scene%growth%threshold*size_fracture, self%network, self%tip, &
-                        self%coarse_network, centres, is_straightened)
-         grew = size(centres, 2) > 0
-         if (.not. grew) return
-      end associate
+      threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
+      if (any(self%has_gained())) threshold = same_place*self%rules%increment
+      call hand_over(threshold, self%network, self%tip, self%coarse_network, centres, &
+                     is_straightened)
+      grew = size(centres, 2) > 0
+      if (.not. grew) return
       if (is_straightened) then
          call self%windows%network_changed()
          call self%reference%network_changed()
@@ -375,6 +381,8 @@ contains
       type(mesh_t) :: mesh
       type(mesh_map_t) :: map
 
+      call timers%heed(error)
+      if (allocated(error)) return
       associate (size_fracture => self%scene%discretization%size_fracture)
          call timers%start(phase_remesh)
          call remesh(self%mesher, self%coarse_network, centres, &

@@ -11,6 +11,11 @@
 !! each further cut of a step in which tips grow too far squares the share that is left of it: six
 !! cuts instead of thirty to the shortest one.
 !!
+!! Where a tip begins to grow, or comes to a joint, is found by straight lines between the ends of
+!! the step. An intensity that is another one as soon as the step begins, however short that is,
+!! makes them lead to the same share time and again: after three such cuts of a step the share is
+!! squared with each of them, and the sixth leads to where it does not matter any more.
+!!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
 module twolevel_stepping
@@ -41,7 +46,9 @@ module twolevel_stepping
       logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
+      logical :: gains_all = .false.  !< it comes not to a joint, but as far as growth is wanted
       real(rk) :: arrival = 1.0_rk  !< share of the step after which it does [-]
+      real(rk) :: moment = 0.0_rk  !< length of a step in which it does not matter when it does [s]
       real(rk) :: switch = 1.0_rk  !< share of the step after which a well comes to its limit [-]
       real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
       real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
@@ -53,6 +60,10 @@ module twolevel_stepping
    !> Share of a step that it is cut to at least lest a tip come to a joint too early in it.
    real(rk), parameter :: soonest = 0.05_rk
 
+   !> Cuts of a step to where something happens in it: those by the share that straight lines tell,
+   !! and all.
+   integer, parameter :: plain_cuts = 3, location_cuts = 6
+
    !> What decides about the next step.
    type :: stepper_t
       real(rk) :: next = 0.0_rk  !< to try [s]
@@ -61,6 +72,8 @@ module twolevel_stepping
       real(rk) :: after_growth = 0.0_rk  !< after an increment of growth [s]
       real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: not judged [-]
       integer :: in_vain = 0  !< cuts of the present step after which tips still grew too far
+      integer :: onset_cuts = 0  !< of the present step, to where a tip begins to grow
+      integer :: arrival_cuts = 0  !< to where one comes to a joint
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
    contains
@@ -117,11 +130,12 @@ contains
       real(rk) :: share
 
       if (trial%converged .and. trial%onset < 1.0_rk) then
-         dt = max(0.01_rk, trial%onset)*dt
+         call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
       else if (trial%converged .and. trial%switch < 1.0_rk) then
          dt = max(0.01_rk, trial%switch)*dt
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
-         dt = max(soonest, trial%arrival)*dt
+         call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), &
+                     self%arrival_cuts, dt)
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else if (trial%converged) then
@@ -137,6 +151,22 @@ contains
       is_too_short = dt < self%shortest
       self%next = dt
    end subroutine cut
+
+   !> Cut a step to the share of it after which something happens; at the last such cut to where
+   !! that does not matter.
+   pure subroutine cut_to(share, least, cuts, dt)
+      real(rk), intent(in) :: share  !< [-]
+      real(rk), intent(in) :: least  !< [s]
+      integer, intent(inout) :: cuts  !< of the step for the same reason
+      real(rk), intent(inout) :: dt  !< [s]
+
+      cuts = cuts + 1
+      if (cuts < location_cuts) then
+         dt = share**2**max(0, cuts - plain_cuts)*dt
+      else
+         dt = min(share*dt, least)
+      end if
+   end subroutine cut_to
 
    !> Share of a step that is left by a cut, so that after n of them it is 2**(-2**(n-1)) [-].
    pure real(rk) function next_share(n)
@@ -155,6 +185,8 @@ contains
       integer :: power
 
       self%in_vain = 0
+      self%onset_cuts = 0
+      self%arrival_cuts = 0
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
@@ -223,6 +255,8 @@ contains
          words = "a tip begins to grow in it"
       else if (self%switch < 1.0_rk) then
          words = "a well reaches or leaves its limit in it"
+      else if (self%is_late .and. self%gains_all) then
+         words = "a tip gains stop_gain in it"
       else if (self%is_late) then
          words = "a tip comes to a joint in it"
       else

@@ -6,6 +6,7 @@ module twolevel_steps
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
+   use coarse_guess, only: guess_t
    use coarse_state, only: step_report_t
    use results_chronicle, only: event_step_cut, event_unstable
    use simulation_limits, only: limit_time_error
@@ -120,21 +121,29 @@ contains
       type(trial_t), intent(out) :: trial
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      type(guess_t) :: guess
 
       if (self%is_equilibrium()) then
          call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
                                error)
       else
          self%before = self%state
+         guess = self%model%guess
          call self%try_step(self%dt, timers, self%report, error)
-         trial%converged = self%report%converged
          if (allocated(error)) return
+         trial%converged = self%report%converged
          if (trial%converged) then
             trial%time_error = self%step_error(self%dt)
             if (.not. is_last) then
                call share_before_switch(self, self%dt, punctual, trial%switch, timers, error)
-               if (allocated(error)) return
-               if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) self%state = self%before
+               if (allocated(error)) then
+                  self%state = self%before
+                  return
+               end if
+               if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) then
+                  self%state = self%before
+                  self%model%guess = guess
+               end if
             end if
          else
             trial%reason = self%report%reason

@@ -78,12 +78,17 @@ module twolevel_window
       !> Of the last solution; its slip is the history of the next.
       type(contact_t), allocatable :: contact
       type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
+      ! The same of the last accepted state.
+      type(contact_t), allocatable :: accepted
+      type(fine_mesh_t), allocatable :: accepted_mesh
       logical :: undrained = .false.  !< the model's constants are the undrained ones
       type(window_map_t) :: map  !< where it lies in the coarse mesh
       type(face_map_t) :: faces
    contains
       procedure :: build
       procedure :: follow
+      procedure :: accept
+      procedure :: take_back
       procedure :: edge_length
       procedure :: can_be_larger
       procedure :: set_rock
@@ -161,6 +166,9 @@ contains
 
       if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
          self%contact_mesh = self%model%mesh
+         if (allocated(self%accepted) .and. .not. allocated(self%accepted_mesh)) then
+            self%accepted_mesh = self%contact_mesh
+         end if
       end if
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
@@ -207,6 +215,27 @@ contains
               i=1, fine%fracture%n_cells)]
       end associate
    end subroutine load_in_situ
+
+   !> The state that was evaluated last has become history: its slip is what the next one starts
+   !! from.
+   pure subroutine accept(self)
+      class(window_t), intent(inout) :: self
+
+      if (.not. allocated(self%contact)) return
+      call self%contact%accept()
+      self%accepted = self%contact
+      if (allocated(self%accepted_mesh)) deallocate (self%accepted_mesh)
+      if (allocated(self%contact_mesh)) self%accepted_mesh = self%contact_mesh
+   end subroutine accept
+
+   !> Contact is that of the last accepted state again, whatever has been evaluated since.
+   pure subroutine take_back(self)
+      class(window_t), intent(inout) :: self
+
+      if (.not. allocated(self%accepted)) return
+      self%contact = self%accepted
+      if (allocated(self%accepted_mesh)) self%contact_mesh = self%accepted_mesh
+   end subroutine take_back
 
    !> Of the square that the body cuts [m].
    pure real(rk) function edge_length(self, scene)

@@ -46,6 +46,7 @@ module twolevel_windows
       procedure :: begin
       procedure :: evaluate
       procedure :: accept
+      procedure :: take_back
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: intensity_of
@@ -299,9 +300,20 @@ contains
 
       if (.not. allocated(self%window)) return
       do i = 1, size(self%window, kind=ik)
-         if (allocated(self%window(i)%contact)) call self%window(i)%contact%accept()
+         call self%window(i)%accept()
       end do
    end subroutine accept
+
+   !> What has been evaluated since then was a try that is rejected.
+   pure subroutine take_back(self)
+      class(windows_t), intent(inout) :: self
+      integer(ik) :: i
+
+      if (.not. allocated(self%window)) return
+      do i = 1, size(self%window, kind=ik)
+         call self%window(i)%take_back()
+      end do
+   end subroutine take_back
 
    !> Windows that hold the last segment of a tip that has moved, as it was or as it is, must be
    !! meshed again.

@@ -19,7 +19,7 @@ static int n_shares = 0; // so far
 extern void algebra_serve(void);
 
 // mpiexec hands these two on to all ranks, but no SIGINT and no SIGTERM: the launcher sends them instead.
-static void pass_on(int number) { raise(number == SIGUSR1 ? SIGINT : SIGTERM); }
+static void pass_on(int number) { kill(getpid(), number == SIGUSR1 ? SIGINT : SIGTERM); }
 
 static void tell_all(const int message[words]) {
     int n;

@@ -135,7 +135,7 @@ contains
       type(twolevel_simulation_t) :: simulation
 
       call start(simulation)
-      simulation%scene%growth%stop_gain = 0.1_rk
+      simulation%rules%stop_gain = 0.1_rk
       simulation%network%xy(1, 2) = 1.29_rk
       call simulation%end_at_gain()
       call checks%is_true(.not. simulation%is_over(), "0.09 m are not enough")

@@ -22,6 +22,7 @@ program test_twolevel_stepping
    call test_advance()
    call test_onset()
    call test_too_far()
+   call test_sudden()
    call test_increments()
    call test_wells()
    call checks%finish()
@@ -141,6 +142,49 @@ contains
             " steps"
       end do
    end subroutine test_decay
+
+   !> What happens at the same share of a step however short that is, as where an intensity is
+   !! another one just after the state before, costs six cuts, and what happens at a time of its own
+   !! is found there.
+   subroutine test_sudden()
+      real(rk), parameter :: shares(4) = [0.02_rk, 0.594_rk, 0.9_rk, 0.995_rk], begun = 37.0_rk
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      logical :: is_too_short
+      real(rk) :: dt
+      integer :: cuts, k
+
+      do k = 1, size(shares)
+         call stepper%begin(chosen)
+         dt = 100.0_rk
+         do cuts = 1, 50
+            trial = trial_t(converged=.true., onset=shares(k))
+            call stepper%cut(trial, dt, is_too_short)
+            if (is_too_short) exit
+         end do
+         call checks%is_true(cuts <= 6, "an onset at once")
+         call stepper%step_done(trial_t(converged=.true.), dt)
+         dt = 100.0_rk
+         do cuts = 0, 49
+            trial = trial_t(converged=.true., is_late=.true., arrival=shares(k), moment=0.01_rk)
+            if ((1.0_rk - shares(k))*dt <= trial%moment) exit
+            call stepper%cut(trial, dt, is_too_short)
+         end do
+         call checks%is_true(cuts <= 6, "an arrival at once")
+      end do
+      ! K_eq/K_IC is 1/2 before the step, and rises with the square root of time from then on.
+      call stepper%begin(chosen)
+      dt = 100.0_rk
+      do cuts = 0, 49
+         associate (rise => 0.5_rk*sqrt(dt/begun))
+            if (rise <= 0.505_rk) exit
+            trial = trial_t(converged=.true., onset=0.5_rk/rise)
+         end associate
+         call stepper%cut(trial, dt, is_too_short)
+      end do
+      call checks%is_true(cuts <= 6, "an onset in the step")
+      call checks%is_close(dt, begun, 0.021_rk*begun, "where it is")
+   end subroutine test_sudden
 
    !> In equilibrium a tip goes at most three quarters of a segment in a step.
    subroutine test_advance()
