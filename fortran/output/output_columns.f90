@@ -202,14 +202,17 @@ module output_columns
                "out"), &
       column_t("injected_m2", "m2", with_wells, "Fluid into the well at its head so far"), &
       column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
-               "flow_m2_s over the rise of pressure_pa since the start")]
+               "flow_m2_s over the rise of pressure_pa since the start"), &
+      column_t("asked_m2_s", "m2/s", with_wells, &
+               "Rate that its stage asks for; 0 without one")]
 
    type(word_t), parameter :: well_words(*) = [ &
       word_t("rate", "its rate"), &
       word_t("pressure", "its pressure"), &
       word_t("limit", "the pressure that bounds its rate; nothing flows where that beside "// &
              "the well is beyond it"), &
-      word_t("shut", "nothing flows: before its start, or after its end")]
+      word_t("shut", "nothing goes into it: before its start, or after its end; what it "// &
+             "stores flows on then")]
 
    type(column_t), parameter :: slip_event_columns(*) = [ &
     column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of their ends"), &

@@ -288,6 +288,7 @@ contains
          call table%put("head_pressure_pa", row%head_pressure)
          call table%put("injected_m2", row%injected)
          call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("asked_m2_s", row%asked)
          call table%end_row()
       end associate
    end subroutine well_row

@@ -78,6 +78,7 @@ module results_rows
       real(rk) :: head_pressure = 0.0_rk  !< [Pa]
       real(rk) :: injected = 0.0_rk  !< at its head so far [m2]
       real(rk) :: injectivity = 0.0_rk  !< flow over the pressure's rise since the start [m2/s/Pa]
+      real(rk) :: asked = 0.0_rk  !< rate that the stage asks for; 0 without one [m2/s]
    end type well_row_t
 
    !> A state at the probes, a row of probes.csv.

@@ -26,10 +26,10 @@ module twolevel_state
    use simulation_rocks, only: follow_outlines
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
-   use twolevel_schedule, only: follow_sides
+   use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
-   use twolevel_wells, only: share_wells, transfer_shares
+   use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
@@ -264,9 +264,28 @@ contains
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
       if (self%model%wells%n_all > 0 .and. self%trend%is_known()) then
          error = max(error, self%trend%volume_error(self%before%well_flow, self%state%well_flow, &
-                                                    self%given, dt))
+                                                    self%given, dt, least_volume(self, dt)))
       end if
    end function step_error
+
+   !> Fluid given by a well beside which errors of a step of length dt do not matter less: a small
+   !! share of what the well that gives most has given since wells were switched, and more than
+   !! rounding of what is there [m2].
+   pure real(rk) function least_volume(self, dt) result(least)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: share = 0.01_rk, trace = 1.0e-10_rk
+      real(rk) :: fluid, most
+
+      associate (state => self%state, wells => self%scene%injections, since => &
+                 self%before%time + dt - last_switch(self%scene, self%before%time))
+         most = maxval([self%given + dt*abs(state%well_flow), &
+                        since*abs(rate(wells, self%before%time, dt))])
+         fluid = sum(self%model%condensed%length*state%aperture) &
+                 + self%trend%least_pressure*sum(self%model%matrix%storage)
+      end associate
+      least = max(share*most, trace*fluid)
+   end function least_volume
 
    !> The error of a step is larger than the scene tolerates.
    pure logical function errs(self, error)
@@ -283,13 +302,15 @@ contains
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
 
-      self%injected = self%injected + dt*sum(self%model%cells%injection)
-      if (self%model%wells%n_all > 0) self%given = self%given + dt*abs(self%state%well_flow)
-   if (allocated(self%model%source)) self%injected = self%injected + dt*sum(self%model%source(3, :))
+      ! Not what the model has as its sources: that is from its last try.
+      self%injected = self%injected + dt*sum(rate(self%scene%injections, self%before%time, dt))
+      if (self%model%wells%n_all > 0) then
+         self%injected = self%injected + dt*sum(self%state%well_flow)
+         self%given = self%given + dt*abs(self%state%well_flow)
+      end if
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
          if (self%model%joints%n > 0) then
-            self%injected = self%injected + dt*sum(self%model%joints%injection)
             self%outflow = self%outflow + dt*self%model%joints%outflow(self%state%branch_flow)
          end if
       end if

@@ -11,6 +11,10 @@
 !! each further cut of a step in which tips grow too far squares the share that is left of it: six
 !! cuts instead of thirty to the shortest one.
 !!
+!! No step is shorter than half of the shortest one, but up to a switch: there the next one is taken
+!! whatever its error in time. A run whose time makes no headway, as every step is cut to next to
+!! that, ends.
+!!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
 module twolevel_stepping
@@ -53,6 +57,11 @@ module twolevel_stepping
    !> Share of a step that it is cut to at least lest a tip come to a joint too early in it.
    real(rk), parameter :: soonest = 0.05_rk
 
+   !> A run ends after this many steps that were cut, none of them longer than so many shortest ones,
+   !! in which no tip grew.
+   integer, parameter :: most_in_vain = 300
+   real(rk), parameter :: headway = 100.0_rk
+
    !> What decides about the next step.
    type :: stepper_t
       real(rk) :: next = 0.0_rk  !< to try [s]
@@ -61,6 +70,9 @@ module twolevel_stepping
       real(rk) :: after_growth = 0.0_rk  !< after an increment of growth [s]
       real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: not judged [-]
       integer :: in_vain = 0  !< cuts of the present step after which tips still grew too far
+      integer :: at_switches = 0  !< cuts of the present step at limits of wells
+      integer :: without_headway = 0  !< such steps since the last one that was longer
+      logical :: was_cut = .false.  !< the present step
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
    contains
@@ -69,6 +81,7 @@ module twolevel_stepping
       procedure :: takes
       procedure :: cut
       procedure :: step_done
+      procedure :: is_stuck
       procedure :: settle
       procedure :: network_grew
    end type stepper_t
@@ -114,12 +127,18 @@ contains
       type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
-      real(rk) :: share
+      real(rk) :: share, least
 
+      self%was_cut = .true.
+      least = min(dt, 0.5_rk*self%shortest)
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
       else if (trial%converged .and. trial%switch < 1.0_rk) then
-         dt = max(0.01_rk, trial%switch)*dt
+         ! Pressures that have all but settled pass a limit long before a straight line does.
+         share = trial%switch
+         if (self%at_switches >= 3) share = min(share, 0.5_rk)
+         dt = max(0.01_rk, share)*dt
+         self%at_switches = self%at_switches + 1
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
          dt = max(soonest, trial%arrival)*dt
       else if (trial%converged .and. .not. trial%goes_too_far) then
@@ -134,6 +153,7 @@ contains
       else
          dt = 0.5_rk*dt
       end if
+      dt = max(dt, least)
       is_too_short = dt < self%shortest
       self%next = dt
    end subroutine cut
@@ -155,6 +175,7 @@ contains
       integer :: power
 
       self%in_vain = 0
+      self%at_switches = 0
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
@@ -163,7 +184,21 @@ contains
          if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
          self%next = min(2.0_rk**power*self%next, self%longest)
       end if
+      self%next = max(self%next, 0.5_rk*self%shortest)
+      if (dt > headway*self%shortest .or. trial%advance > 0.0_rk) then
+         self%without_headway = 0
+      else if (self%was_cut) then
+         self%without_headway = self%without_headway + 1
+      end if
+      self%was_cut = .false.
    end subroutine step_done
+
+   !> Time makes no headway any more.
+   pure logical function is_stuck(self)
+      class(stepper_t), intent(in) :: self
+
+      is_stuck = self%without_headway >= most_in_vain
+   end function is_stuck
 
    !> By how many powers of two a step should be longer than one that has shown this.
    pure integer function powers(self, trial)

@@ -53,6 +53,9 @@ contains
                   row%stage = wells(w)%stage_at(row%time - 0.5_rk*dt)
                   row%flow = rate(wells(w), row%time - dt, dt)
                end if
+               if (row%stage > 0 .and. allocated(wells(w)%rate)) then
+                  row%asked = wells(w)%rate(row%stage)
+               end if
                row%rate = row%flow
                row%control = "rate"
                call set_controlled(levels, w, row)
@@ -86,7 +89,7 @@ contains
       associate (well => levels%scene%injections(w))
          if (allocated(well%pressure)) row%control = "pressure"
          if (allocated(well%pressure) .and. allocated(well%rate)) row%control = &
-            & merge("limit", "rate ", levels%at_limit(k))
+            & trim(merge("limit", "rate ", levels%at_limit(k)))
       end associate
    end subroutine set_controlled
 
