@@ -167,7 +167,9 @@ contains
       do i = 1, condensed%n
          do end = 1, 2
             at = condensed%layout%at_jump(i, end)
-            state%jump(:, end, i) = eq%q(at:at + 1)
+            ! What elimination leaves of jumps that are none is no opening, and no slip.
+            state%jump(:, end, i) = merge(0.0_rk, eq%q(at:at + 1), abs(eq%q(at:at + 1)) &
+                                          < epsilon(1.0_rk)*eq%stress_scale/eq%stiffness)
          end do
          state%leakoff(i) = -(eq%force(condensed%layout%at_face_pressure(i, 1)) &
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
