@@ -67,7 +67,8 @@ module twolevel_state
       type(company_t) :: company  !< which of them grow as one
       type(certainty_t) :: certainty  !< how well lengths and pressures are known
       logical :: has_new_mesh = .false.  !< since the last accepted state
-      real(rk) :: injected = 0.0_rk  !< so far [m2]
+      real(rk) :: injected = 0.0_rk  !< so far, less what was produced [m2]
+      real(rk) :: produced = 0.0_rk  !< that wells have drawn so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
       real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
@@ -301,13 +302,16 @@ contains
    subroutine book_step(self, dt)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: flow(size(self%scene%injections))
 
       ! Not what the model has as its sources: that is from its last try.
-      self%injected = self%injected + dt*sum(rate(self%scene%injections, self%before%time, dt))
+      flow = rate(self%scene%injections, self%before%time, dt)
       if (self%model%wells%n_all > 0) then
-         self%injected = self%injected + dt*sum(self%state%well_flow)
+         flow(self%model%wells%number) = self%state%well_flow
          self%given = self%given + dt*abs(self%state%well_flow)
       end if
+      self%injected = self%injected + dt*sum(flow)
+      self%produced = self%produced - dt*sum(min(flow, 0.0_rk))
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
          if (self%model%joints%n > 0) then
