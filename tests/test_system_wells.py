@@ -7,6 +7,10 @@ from pathlib import Path
 import pytest
 from system_scene import call, numbers, record, rows, run
 
+from wingcrack_post.facts import gather_facts
+from wingcrack_post.read import read_run
+from wingcrack_post.story import story
+
 pytestmark = pytest.mark.usefixtures("program")
 
 # A closed fracture in a rock at 20 MPa; its fluid flows off through two sides.
@@ -230,3 +234,45 @@ def test_a_run_without_headway_ends_with_the_reason(tmp_path: Path) -> None:
     assert "its error in time is too large" in done.stderr
     assert record(tmp_path / "out")["status"] == "failed"
     assert min(numbers(tmp_path / "out" / "history.csv", "dt_s")[1:]) >= 0.5e-9 * 36000
+
+
+def test_several_wells_are_told_apart(tmp_path: Path) -> None:
+    """No number is a mean over wells; what is produced stands beside what is injected."""
+    wells = """\
+&time end = 36000 /
+&injection name = 'in', fracture = 'c', x = -0.8, y = 0, rate = 1e-6 /
+&injection name = 'out', fracture = 'c', x = 0.8, y = 0, rate = -4e-7 /
+"""
+    out = run(tmp_path, BODY + wells)
+    history = rows(out / "history.csv")
+    assert not {"well_pressure_pa", "injectivity_m2_s_pa"} & set(history[0])
+    for name in ("in", "out"):
+        expected = [float(row["pressure_pa"]) for row in of_well(out, name)]
+        assert numbers(out / "history.csv", f"{name}_well_pressure_pa") == pytest.approx(expected)
+    produced = [-float(row["injected_m2"]) for row in of_well(out, "out")]
+    assert numbers(out / "history.csv", "produced_m2") == pytest.approx(
+        produced, rel=1e-12, abs=1e-30
+    )
+    assert float(history[-1]["injected_m2"]) == pytest.approx(6e-7 * 36000)
+    sums_agree(out)
+    results = gather_facts(read_run(out)).results
+    highest = max(float(row["pressure_pa"]) for row in of_well(out, "in"))
+    assert any(
+        line.startswith(f"highest pressure of in: {1e-6 * highest:.4g} MPa") for line in results
+    )
+    assert "injected: 360 cm², produced: 144 cm²" in results
+    panel = next(
+        axes for axes in story(read_run(out)).axes if "injectivity" in axes.get_title("left")
+    )
+    assert [line.get_label() for line in panel.lines][:1] == ["in"]
+    answer = [float(row["injectivity_m2_s_pa"]) for row in of_well(out, "in")]
+    assert panel.lines[0].get_ydata()[-1] == pytest.approx(answer[-1])
+
+
+def test_the_pressure_of_a_well_in_the_rock(tmp_path: Path) -> None:
+    """history.csv said 0 for it."""
+    out = run(tmp_path, f"{ROCK}&injection x = 0, y = 0, radius = 0.004, rate = 1e-9 /\n")
+    expected = [float(row["pressure_pa"]) for row in of_well(out, "well_1")]
+    assert numbers(out / "history.csv", "well_pressure_pa") == pytest.approx(expected)
+    assert expected[-1] > 1e5
+    assert numbers(out / "history.csv", "injection_rate_m2_s")[-1] == pytest.approx(1e-9)
