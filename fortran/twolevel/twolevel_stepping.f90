@@ -11,9 +11,8 @@
 !! each further cut of a step in which tips grow too far squares the share that is left of it: six
 !! cuts instead of thirty to the shortest one.
 !!
-!! No step is shorter than half of the shortest one, but up to a switch: there the next one is taken
-!! whatever its error in time. A run whose time makes no headway, as every step is cut to next to
-!! that, ends.
+!! No step is cut to less than a 64th of the shortest one; there it is taken whatever its error in
+!! time. A run whose time makes no headway, as step after step is cut to next to that, ends.
 !!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
@@ -56,6 +55,9 @@ module twolevel_stepping
 
    !> Share of a step that it is cut to at least lest a tip come to a joint too early in it.
    real(rk), parameter :: soonest = 0.05_rk
+
+   !> Steps are not cut to less than this share of the shortest one [-].
+   real(rk), parameter :: floor_share = 2.0_rk**(-6)
 
    !> A run ends after this many steps that were cut, none of them longer than so many shortest ones,
    !! in which no tip grew.
@@ -130,7 +132,7 @@ contains
       real(rk) :: share, least
 
       self%was_cut = .true.
-      least = min(dt, 0.5_rk*self%shortest)
+      least = min(dt, floor_share*self%shortest)
       if (trial%converged .and. trial%onset < 1.0_rk) then
          dt = max(0.01_rk, trial%onset)*dt
       else if (trial%converged .and. trial%switch < 1.0_rk) then
@@ -184,7 +186,7 @@ contains
          if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
          self%next = min(2.0_rk**power*self%next, self%longest)
       end if
-      self%next = max(self%next, 0.5_rk*self%shortest)
+      self%next = max(self%next, floor_share*self%shortest)
       if (dt > headway*self%shortest .or. trial%advance > 0.0_rk) then
          self%without_headway = 0
       else if (self%was_cut) then
