@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from system_scene import call, numbers, record, rows, run
 
@@ -233,7 +234,8 @@ def test_a_run_without_headway_ends_with_the_reason(tmp_path: Path) -> None:
     assert "time makes no headway" in done.stderr
     assert "its error in time is too large" in done.stderr
     assert record(tmp_path / "out")["status"] == "failed"
-    assert min(numbers(tmp_path / "out" / "history.csv", "dt_s")[1:]) >= 1e-9 * 36000 / 64 * (1 - 1e-9)
+    shortest = min(numbers(tmp_path / "out" / "history.csv", "dt_s")[1:])
+    assert shortest >= 0.999e-9 * 36000 / 64
 
 
 def test_several_wells_are_told_apart(tmp_path: Path) -> None:
@@ -266,7 +268,7 @@ def test_several_wells_are_told_apart(tmp_path: Path) -> None:
     )
     assert [line.get_label() for line in panel.lines][:1] == ["in"]
     answer = [float(row["injectivity_m2_s_pa"]) for row in of_well(out, "in")]
-    assert panel.lines[0].get_ydata()[-1] == pytest.approx(answer[-1])
+    assert np.asarray(panel.lines[0].get_ydata())[-1] == pytest.approx(answer[-1])
 
 
 def test_the_pressure_of_a_well_in_the_rock(tmp_path: Path) -> None:

@@ -116,8 +116,8 @@ contains
       where (self%way == control_rate) rate = wells%rate(wells%n + 1:)
    end subroutine find_flows
 
-   !> Wells whose way contradicts what it has led to, by more than rounding, take another one: all of
-   !! them at once, or where that does not end the first one (Murty 1974).
+   !> Wells whose way contradicts what it has led to, by more than rounding, take another one: all
+   !! of them at once, or where that does not end the first one (Murty 1974).
    pure subroutine correct_ways(self, wells, head, rate, one_by_one, any_changed)
       class(rock_wells_t), intent(inout) :: self
       type(wells_t), intent(in) :: wells

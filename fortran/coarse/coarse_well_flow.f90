@@ -112,6 +112,8 @@ contains
             residual = head - wells%pressure(w)
          case (control_rate)
             residual = residual - scale*wells%rate(w)
+         case default
+            continue
          end select
       end associate
    end subroutine find_residual

@@ -59,8 +59,8 @@ module twolevel_stepping
    !> Steps are not cut to less than this share of the shortest one [-].
    real(rk), parameter :: floor_share = 2.0_rk**(-6)
 
-   !> A run ends after this many steps that were cut, none of them longer than so many shortest ones,
-   !! in which no tip grew.
+   !> A run ends after this many steps that were cut, none of them longer than so many shortest
+   !! ones, in which no tip grew.
    integer, parameter :: most_in_vain = 300
    real(rk), parameter :: headway = 100.0_rk
 

@@ -16,17 +16,14 @@ import csv
 import math
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from fluid_sweeps import SOLVER, Verdict, call_solver
 
-TOP = Path(__file__).resolve().parents[2]
-SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 SEED = 20261125
 RUN_LIMIT_S = 60.0
 KINDS = ("rate", "pressure", "limit", "stages", "conflict", "rock")
@@ -36,15 +33,6 @@ OWN_REASONS = re.compile(
     "did not converge|singular|not a number|no headway|no way was found|law of contact is not"
     "|initial state was not found|error in time|reaches or leaves its limit|Euler|no finite number"
 )
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What became of a scene."""
-
-    word: str  # right, refused, stopped, WRONG
-    detail: str
-    seconds: float
 
 
 class Draw:
@@ -308,24 +296,23 @@ def by_stages(draw: Draw, site: Site) -> str:
 
 def by_conflict(draw: Draw, site: Site) -> str:
     """Two or three wells in one fracture that want different things."""
-    text = ""
-    for name, share in (("a", -0.35), ("b", 0.35), ("c", 0.0))[: 3 if draw.happens(0.3) else 2]:
-        place = where(draw, site, share)
-        manner = draw.one_of("rate", "pressure", "limit", "limit")
-        rate = some_rate(draw, site)
-        asked = {} if manner == "pressure" else {"rate": rate}
-        if manner != "rate":
-            asked["pressure"] = limit(draw, site, rate)
-        more = {**loss(draw, site), **time_of(draw, site)}
-        text += group("injection", name=name, **place, **asked, **more)
-    return text
+    places = [where(draw, site, share) for share in (-0.35, 0.35, 0.0)]
+    return wells_at(draw, site, places[: 3 if draw.happens(0.3) else 2])
 
 
 def by_rock(draw: Draw, site: Site) -> str:
-    """One to three wells in the rock."""
+    """One or three wells in the rock."""
+    radius = 1e-3 * site.half
+    places: list[dict[str, float | str]] = [
+        {"x": site.half * x, "y": site.half * 0.8, "radius": radius} for x in (-0.5, 0.0, 0.5)
+    ]
+    return wells_at(draw, site, places[: 3 if draw.happens(0.5) else 1])
+
+
+def wells_at(draw: Draw, site: Site, places: list[dict[str, float | str]]) -> str:
+    """A well at each place: at a rate, at a pressure or at a rate up to a pressure."""
     text = ""
-    for name, x in (("a", -0.5), ("b", 0.0), ("c", 0.5))[: 3 if draw.happens(0.5) else 1]:
-        place = {"x": site.half * x, "y": site.half * 0.8, "radius": 1e-3 * site.half}
+    for name, place in zip("abc", places, strict=False):
         manner = draw.one_of("rate", "pressure", "limit", "limit")
         rate = some_rate(draw, site)
         asked = {} if manner == "pressure" else {"rate": rate}
@@ -380,33 +367,16 @@ def faults(out: Path, text: str) -> list[str]:
 
 def run_scene(folder: Path, text: str, solver: Path, limit_s: float) -> Verdict:
     """Run a scene and judge it."""
-    out = folder / "out"
-    shutil.rmtree(out, ignore_errors=True)
     (folder / "scene.nml").write_text(text)
-    began = time.monotonic()
-    try:
-        done = subprocess.run(
-            [solver, "run", "scene.nml", "--out", "out", "--quiet"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            timeout=limit_s,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return Verdict("WRONG", f"still at work after {limit_s:g} s", limit_s)
-    seconds = time.monotonic() - began
-    reason = done.stderr.strip()
-    if done.returncode not in (0, 1, 2) or (done.returncode > 0 and len(reason.splitlines()) != 1):
-        return Verdict("WRONG", f"status {done.returncode}: {reason[-300:]}", seconds)
-    if done.returncode == 2:
-        return Verdict("refused", reason, seconds)
-    wrong = faults(out, text)
+    verdict, reason, seconds = call_solver(folder, solver, limit_s)
+    if verdict is not None:
+        return verdict
+    wrong = faults(folder / "out", text)
     if wrong:
         return Verdict("WRONG", f"{wrong[0]} ({len(wrong)} faults)", seconds)
-    if done.returncode == 1:
+    if reason:
         return Verdict("WRONG" if OWN_REASONS.search(reason) else "stopped", reason, seconds)
-    return Verdict("right", f"{len(read(out / 'history.csv')) - 1} steps", seconds)
+    return Verdict("right", f"{len(read(folder / 'out/history.csv')) - 1} steps", seconds)
 
 
 def sweep(

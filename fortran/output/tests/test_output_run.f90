@@ -108,10 +108,12 @@ contains
       call checks%no_error(error, "close")
 
       call row_has(folder//"/history.csv", 1, "time_s,dt_s,newton_iterations,"// &
-         & "in_well_pressure_pa,out_well_pressure_pa,injected_m2,leakoff_m2,prefilled_m2,fracture_volume_m2,"// &
+         & "in_well_pressure_pa,out_well_pressure_pa,injected_m2,leakoff_m2,prefilled_m2,"// &
+         & "fracture_volume_m2,"// &
          & "mass_error_relative,max_slip_m,max_opening_m,n_stick,n_slip,n_open,"// &
          & "fracture_length_m,n_tips,n_intersections,seismic_moment_nm", &
-         & "0.0,2.0,4,6800000.0,2000000.0,0.0001,2e-05,0.0,0.001,1e-14,0.0001,2e-05,1,1,1,1.25,2,1,1000000.0")
+         & "0.0,2.0,4,6800000.0,2000000.0,0.0001,2e-05,0.0,0.001,1e-14,0.0001,2e-05,1,1,1,"// &
+         & "1.25,2,1,1000000.0")
       call row_has(folder//"/history.csv", 2, "time_s", "2.0")
       call row_has(folder//"/tips.csv", 1, "time_s,tip,fracture,x_m,y_m,k1_pa_sqrtm,"// &
          & "k2_pa_sqrtm,k1_dc_pa_sqrtm,k2_dc_pa_sqrtm,keq_pa_sqrtm,g_j_m2,angle_deg,advance_m,"// &

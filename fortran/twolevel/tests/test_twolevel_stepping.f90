@@ -222,8 +222,8 @@ contains
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
 
-   !> However large errors in time are, no step is shorter than a 64th of the shortest one, but up to
-   !! a switch. Three hundred that are cut to that say that time makes no headway; a longer one, or
+   !> However large errors in time are, no step is shorter than a 64th of the shortest one, but up
+   !! to a switch. Three hundred that are cut to that say that time makes no headway; a longer one, or
    !! growth, that it does.
    subroutine test_headway()
       type(stepper_t) :: stepper
