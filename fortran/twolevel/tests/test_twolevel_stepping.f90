@@ -223,8 +223,8 @@ contains
    end subroutine test_too_far
 
    !> However large errors in time are, no step is shorter than a 64th of the shortest one, but up
-   !! to a switch. Three hundred that are cut to that say that time makes no headway; a longer one, or
-   !! growth, that it does.
+   !! to a switch. Three hundred that are cut to that say that time makes no headway; a longer one,
+   !! or growth, that it does.
    subroutine test_headway()
       type(stepper_t) :: stepper
       type(trial_t) :: trial
