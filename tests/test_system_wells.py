@@ -124,6 +124,29 @@ def test_two_wells_that_conflict(tmp_path: Path) -> None:
     sums_agree(out)
 
 
+@pytest.mark.parametrize(
+    ("one", "other", "controls"),
+    [
+        ("rate = 1e-6, pressure = 25e6", "rate = 2e-6, pressure = 25e6", ["limit", "limit"]),
+        ("rate = 1e-6, pressure = 25e6", "rate = 2e-6, pressure = 30e6", ["limit", "rate"]),
+        ("rate = 1e-6, pressure = 25e6", "rate = -2e-6, pressure = 24e6", ["rate", "limit"]),
+        ("rate = 1e-6, pressure = 25e6", "pressure = 23e6", ["rate", "pressure"]),
+        ("pressure = 25e6", "pressure = 25e6", ["pressure", "pressure"]),
+    ],
+)
+def test_two_wells_that_feed_the_same_place(
+    one: str, other: str, controls: list[str], tmp_path: Path
+) -> None:
+    """Nothing said which of them gives what: a singular matrix, or steps of 1e-6 s."""
+    wells = "".join(f"&injection fracture = 'c', {well} /\n" for well in (one, other))
+    out = run(tmp_path, f"{BODY}&time end = 36000 /\n{wells}")
+    last = rows(out / "wells.csv")[-2:]
+    assert [row["control"] for row in last] == controls
+    assert float(last[0]["pressure_pa"]) == pytest.approx(float(last[1]["pressure_pa"]))
+    assert len(of_well(out, "well_1")) < 250
+    sums_agree(out)
+
+
 def test_a_rate_up_to_a_pressure_in_short_steps(tmp_path: Path) -> None:
     """The iteration went from the rate to no flow and back, never to the limit between."""
     text = """\
