@@ -76,7 +76,8 @@ contains
    end subroutine feed_wells
 
    !> Where several wells keep to pressures in one and the same place and lose nothing on their way
-   !! there, nothing says which of them gives what. Each loses a thousandth of what half a cell takes.
+   !! there, nothing says which of them gives what: each loses a thousandth of what half a cell
+   !! takes.
    pure subroutine part_twins(self)
       class(fed_level_t), intent(inout) :: self
       real(rk), parameter :: share_of_half_cell = 1.0e-3_rk
