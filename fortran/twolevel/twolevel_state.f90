@@ -269,9 +269,9 @@ contains
       end if
    end function step_error
 
-   !> Fluid given by a well beside which errors of a step of length dt do not matter less: a small
-   !! share of what the well that gives most has given since wells were switched, and more than
-   !! rounding of what is there [m2].
+   !> What a well has given is taken for at least this, when its error in a step of length dt is
+   !! judged: a small share of what the well that gives most has given since the last switch, and
+   !! more than the rounding of the fluid that is there [m2].
    pure real(rk) function least_volume(self, dt) result(least)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]

@@ -66,7 +66,7 @@ contains
                self%injected(w) = self%injected(w) + dt*row%rate
                row%injected = self%injected(w)
                associate (rise => row%pressure - self%first_pressure(w))
-                  if (abs(rise) > 0.0_rk) row%injectivity = row%flow/rise
+                  if (abs(rise*row%flow) > 0.0_rk) row%injectivity = row%flow/rise
                end associate
             end associate
          end do
