@@ -18,13 +18,16 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 pytestmark = pytest.mark.usefixtures("program")
 
 PROBES = ("inside", "corner")
-FLUID = {
+TWO_WELLS = ("well_1", "well_2")
+ANY_FLUID = {
     "always",
     "with a fluid",
     "with a fluid and fractures",
     "with a fluid and wells",
     "with tips and a toughness",
 }
+FLUID = ANY_FLUID | {"with a fluid and one well", "with a fluid and at most one well"}
+SEVERAL = ANY_FLUID | {"with a fluid and several wells"}
 JOINTS = FLUID | {"with a fluid and joints"}
 MECHANICS = {
     "always",
@@ -62,6 +65,10 @@ CROSSING = varied(
 )
 
 
+# Two wells in one fracture.
+SEVERAL_WELLS = varied(("&time", "&injection fracture = 'f1', rate = -1.0e-9 /\n&time"))
+
+
 @dataclass(frozen=True)
 class Entry:
     """A column, key or field as the page describes it."""
@@ -91,7 +98,7 @@ def described(sections: dict[str, list[str]]) -> dict[str, list[Entry]]:
     }
 
 
-@pytest.fixture(scope="module", params=["fluid", "joints", "mechanics"])
+@pytest.fixture(scope="module", params=["fluid", "joints", "wells", "mechanics"])
 def out_and_runs(
     program: None, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, set[str]]:
@@ -100,6 +107,7 @@ def out_and_runs(
     scene, words = {
         "fluid": (GROWING, FLUID),
         "joints": (CROSSING, JOINTS),
+        "wells": (SEVERAL_WELLS, SEVERAL),
         "mechanics": (EDGE_CRACK, MECHANICS),
     }[which]
     return run(tmp_path_factory.mktemp(which), scene), words
@@ -128,7 +136,9 @@ def keys(content: object, above: str = "") -> list[str]:
 
 
 def test_every_run_that_the_page_names_is_tested(described: dict[str, list[Entry]]) -> None:
-    assert {entry.runs for entries in described.values() for entry in entries} == JOINTS | MECHANICS
+    assert {entry.runs for entries in described.values() for entry in entries} == (
+        JOINTS | SEVERAL | MECHANICS
+    )
 
 
 def test_tables(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set[str]]) -> None:
@@ -140,6 +150,11 @@ def test_tables(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set
         if file == "probes.csv":
             time, *quantities = expected
             expected = [time, *(q.replace("NAME", p) for p in PROBES for q in quantities)]
+        if file == "history.csv":
+            each = [
+                [c.replace("NAME", w) for w in TWO_WELLS] if "NAME" in c else [c] for c in expected
+            ]
+            expected = [column for columns in each for column in columns]
         header, lines = table(out / file)
         assert header == expected, file
         assert lines, file

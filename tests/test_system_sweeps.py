@@ -11,6 +11,7 @@ from pathlib import Path
 import fluid_sweeps
 import mutated_scenes
 import pytest
+import well_sweeps
 from system_scene import TOP, call
 
 from wingcrack_verify import recompute
@@ -56,6 +57,12 @@ def test_runs_of_mutated_files_end_as_they_must() -> None:
 def test_a_sweep_is_right_or_says_what_is_not(number: int, word: str, tmp_path: Path) -> None:
     tally = fluid_sweeps.sweep(tmp_path, RUNS, [number])
     assert tally == {word: 1}
+
+
+def test_wells_of_every_kind_run(tmp_path: Path) -> None:
+    """Seven that hung or did not converge, and one of each kind."""
+    seeds = [4, 7, 14, 34, 36, 45, 49, 1, 2, 3, 5, 8, 9]
+    assert well_sweeps.sweep(tmp_path, seeds) == {"right": len(seeds)}
 
 
 @pytest.fixture(scope="module")

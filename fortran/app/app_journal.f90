@@ -75,7 +75,6 @@ contains
                                      step=simulation%summary%steps, n_stick=row%n_stick, &
                                      n_slip=row%n_slip, n_open=row%n_open, &
                                      fracture_length=row%fracture_length, &
-                                     has_well=size(simulation%scene%injections) > 0, &
                                      well_pressure=row%well_pressure, &
                                      keq_over_kic=simulation%keq_over_kic(), &
                                      is_load=.not. simulation%scene%has_fluid())

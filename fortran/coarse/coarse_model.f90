@@ -314,7 +314,7 @@ contains
       type(state_t) :: before
       real(rk), allocatable :: fluid(:), injection(:), into_joints(:)
       logical :: any_changed
-      integer(ik) :: first, k, last
+      integer(ik) :: first, k, last, most
 
       before = state
       fluid = self%source(3, :)
@@ -323,7 +323,8 @@ contains
       first = self%wells%n + 1
       last = self%wells%n_all
       call self%rock_wells%choose_ways(self%wells)
-      do k = 1, 3*self%rock_wells%n + 1
+      most = 3*self%rock_wells%n + 1
+      do k = 1, 2*most + 30
          call self%rock_wells%set_terms(self%wells, dt, before%well_head(first:), self%matrix, &
                                         any_changed)
          if (any_changed) self%condensed%dt = -1.0_rk
@@ -343,7 +344,7 @@ contains
          self%source(3, :) = fluid
          call add_at(self%rock_wells%cell, state%well_flow(first:last), self%source(3, :))
          call self%rock_wells%correct_ways(self%wells, state%well_head(first:last), &
-                                           state%well_rate(first:last), any_changed)
+                                           state%well_rate(first:last), k > most, any_changed)
          if (.not. any_changed) exit
          state = before
          self%cells%injection = injection

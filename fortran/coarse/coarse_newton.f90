@@ -9,7 +9,7 @@ module coarse_newton
    use coarse_loops, only: flows_in_loops, unknown_flow
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
    use coarse_sparse_step, only: sparse_step_t
-   use coarse_well_flow, only: well_head
+   use coarse_well_flow, only: find_well
    use coarse_wells, only: wells_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
@@ -125,7 +125,7 @@ contains
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(inout) :: report
       type(cell_fluid_t) :: fluid(condensed%n)
-      real(rk) :: aperture(condensed%n), residual
+      real(rk) :: aperture(condensed%n), head, residual
       integer(ik) :: at, end, i
 
       do i = 1, condensed%n
@@ -168,7 +168,9 @@ contains
       do i = 1, condensed%n
          do end = 1, 2
             at = condensed%layout%at_jump(i, end)
-            state%jump(:, end, i) = eq%q(at:at + 1)
+            ! What elimination leaves of jumps that are none is no opening, and no slip.
+            state%jump(:, end, i) = merge(0.0_rk, eq%q(at:at + 1), abs(eq%q(at:at + 1)) &
+                                          < epsilon(1.0_rk)*eq%stress_scale/eq%stiffness)
          end do
          state%leakoff(i) = -(eq%force(condensed%layout%at_face_pressure(i, 1)) &
                               + eq%force(condensed%layout%at_face_pressure(i, 2))) &
@@ -194,14 +196,10 @@ contains
       associate (layout => eq%layout, to_flow => eq%unit/dt)
          state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
          state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
-         if (layout%n_wells > 0) then
-            associate (n => layout%n_wells, storage => eq%wells%storage(:layout%n_wells))
-               state%well_flow(:n) = x(layout%at_well([(i, i=1, n)]))*to_flow
-               state%well_rate(:n) = state%well_flow(:n) - storage*state%well_head(:n)/dt
-               state%well_head(:n) = [(well_head(i, x, eq), i=1, n)]
-               state%well_rate(:n) = state%well_rate(:n) + storage*state%well_head(:n)/dt
-            end associate
-         end if
+         do i = 1, layout%n_wells
+            call find_well(i, x, eq, state%well_flow(i), head, state%well_rate(i))
+            state%well_head(i) = head
+         end do
          state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
       end associate
    end subroutine accept

@@ -7,6 +7,7 @@
 !! Which one holds under a limit is tried: a step whose outcome contradicts it is repeated.
 module coarse_rock_wells
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
    use coarse_matrix, only: matrix_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
    implicit none(type, external)
@@ -110,35 +111,42 @@ contains
       flow = self%source - self%conductance*pressure(self%cell)
       head = pressure(self%cell) + flow/self%index
       rate = flow + wells%storage(wells%n + 1:)*(head - head_before)/dt
-      where (wells%control(wells%n + 1:) == control_shut) rate = 0.0_rk
+      ! What is asked for is not left to rounding.
+      where (self%way == control_shut) rate = 0.0_rk
+      where (self%way == control_rate) rate = wells%rate(wells%n + 1:)
    end subroutine find_flows
 
-   !> Wells whose way contradicts what it has led to take another one.
-   pure subroutine correct_ways(self, wells, head, rate, any_changed)
+   !> Wells whose way contradicts what it has led to, by more than rounding, take another one: all
+   !! of them at once, or where that does not end the first one (Murty 1974).
+   pure subroutine correct_ways(self, wells, head, rate, one_by_one, any_changed)
       class(rock_wells_t), intent(inout) :: self
       type(wells_t), intent(in) :: wells
       real(rk), intent(in) :: head(:), rate(:)  !< of find_flows [Pa], [m2/s]
+      logical, intent(in) :: one_by_one
       logical, intent(out) :: any_changed
-      integer(ik) :: at, before(self%n), w
+      integer(ik) :: at, before, w
       real(rk) :: beyond, share
 
-      before = self%way
+      any_changed = .false.
       do w = 1, self%n
          at = wells%n + w
          if (wells%control(at) /= control_limited) cycle
-         beyond = sign(1.0_rk, wells%rate(at))*(head(w) - wells%pressure(at))
+         before = self%way(w)
+         beyond = sign(1.0_rk, wells%rate(at))*(head(w) - wells%pressure(at)) &
+                  /max(abs(head(w)), abs(wells%pressure(at)), tiny(1.0_rk))
          share = rate(w)/wells%rate(at)
-         select case (self%way(w))
+         select case (before)
          case (control_rate)
-            if (beyond > 0.0_rk) self%way(w) = control_pressure
+            if (beyond > same_value) self%way(w) = control_pressure
          case (control_pressure)
-            if (share > 1.0_rk) self%way(w) = control_rate
-            if (share < 0.0_rk) self%way(w) = control_shut
+            if (share > 1.0_rk + same_value) self%way(w) = control_rate
+            if (share < -same_value) self%way(w) = control_shut
          case default
-            if (beyond < 0.0_rk) self%way(w) = control_pressure
+            if (beyond < -same_value) self%way(w) = control_pressure
          end select
+         any_changed = any_changed .or. self%way(w) /= before
+         if (any_changed .and. one_by_one) return
       end do
-      any_changed = any(self%way /= before)
    end subroutine correct_ways
 
 end module coarse_rock_wells

@@ -8,16 +8,22 @@
 !! with the storage C and the pressure at the head p_w = p + (R + R2 |q|) q. p is that of the cells
 !! or the joint that the well feeds, by their shares; a well between two cells is half a cell away
 !! from their middles. All terms rise with q, so that Newton's method on the active one ends.
+!!
+!! Under a limit the terms are compared as shares, of the rate and of the pressure, the latter much
+!! reduced: so a well that exceeds its limit at its rate is tried at the limit next, one that would
+!! flow backwards there is tried without flow, and back the same way. Compared as they are, the size
+!! of r depends on the step, and in short steps wells changed from their rate to no flow and back
+!! for ever.
 module coarse_well_flow
    use base_kinds, only: ik, rk
    use coarse_fluid_law, only: flow_thickness
    use coarse_fracture_flow, only: conducting_aperture
    use coarse_fractures, only: fracture_system_t
-   use coarse_wells, only: control_limited, control_pressure, control_shut
+   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    implicit none(type, external)
    private
 
-   public :: fill_well, well_head
+   public :: fill_well, find_well
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends of a cell
 
@@ -35,7 +41,7 @@ contains
       row = eq%layout%at_well(w)
       flow = x(row)*eq%unit/eq%dt
       call find_head(w, x, eq, head, by_flow)
-      call choose(w, eq, flow, head, residual, per_flow, per_head)
+      call find_residual(w, eq, flow, head, residual, per_flow, per_head)
       eq%residual(row) = residual
       ! The places of the derivatives are the same in every state (coarse_slopes).
       call eq%slopes%add(row, row, per_flow*eq%unit/eq%dt + per_head*by_flow)
@@ -61,8 +67,31 @@ contains
       end do
    end subroutine fill_well
 
-   !> Which of the conditions holds: its residual, and its derivatives.
-   pure subroutine choose(w, eq, flow, head, residual, per_flow, per_head)
+   !> Which of the conditions holds: control_rate, control_pressure, or control_shut where nothing
+   !! goes into the well.
+   pure integer(ik) function condition_of(w, eq, flow, head) result(condition)
+      integer(ik), intent(in) :: w
+      class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(in) :: flow  !< [m2/s]
+      real(rk), intent(in) :: head  !< [Pa]
+      real(rk), parameter :: weight = 0.1_rk  ! of the pressure's share, which is 2 at most
+      real(rk) :: beyond, share
+
+      associate (wells => eq%wells)
+         condition = wells%control(w)
+         if (condition /= control_limited) return
+         share = (flow + wells%storage(w)*(head - eq%before%well_head(w))/eq%dt)/wells%rate(w)
+         beyond = weight*sign(1.0_rk, wells%rate(w))*(head - wells%pressure(w)) &
+                  /max(abs(head), abs(wells%pressure(w)), tiny(1.0_rk))
+         condition = control_rate
+         if (share - 1.0_rk < min(beyond, share)) then
+            condition = merge(control_pressure, control_shut, beyond < share)
+         end if
+      end associate
+   end function condition_of
+
+   !> Its residual, and its derivatives.
+   pure subroutine find_residual(w, eq, flow, head, residual, per_flow, per_head)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
       real(rk), intent(in) :: flow  !< [m2/s]
@@ -70,50 +99,54 @@ contains
       real(rk), intent(out) :: residual  !< [Pa]
       real(rk), intent(out) :: per_flow  !< [Pa s/m2]
       real(rk), intent(out) :: per_head  !< [-]
-      real(rk) :: beyond, given, rest, way
-      logical :: has_pressure
 
-      associate (wells => eq%wells, scale => eq%dt/eq%unit)
-         per_flow = scale
+      associate (wells => eq%wells, scale => eq%dt/eq%unit, &
+                 condition => condition_of(w, eq, flow, head))
+         per_flow = merge(0.0_rk, scale, condition == control_pressure)
          per_head = wells%storage(w)/eq%unit
-         given = scale*flow + per_head*(head - eq%before%well_head(w))
-         rest = given - scale*wells%rate(w)
-         beyond = head - wells%pressure(w)
-         residual = rest
-         has_pressure = .false.
-         select case (wells%control(w))
-         case (control_shut)
-            residual = scale*flow
-            per_head = 0.0_rk
+         if (condition == control_pressure) per_head = 1.0_rk
+         if (wells%control(w) == control_shut) per_head = 0.0_rk
+         residual = per_flow*flow + per_head*(head - eq%before%well_head(w))
+         select case (condition)
          case (control_pressure)
-            has_pressure = .true.
-         case (control_limited)
-            way = sign(1.0_rk, wells%rate(w))
-            if (way*rest < min(way*beyond, way*given)) then
-               residual = given
-               has_pressure = way*beyond < way*given
-            end if
-         case default  ! control_rate
+            residual = head - wells%pressure(w)
+         case (control_rate)
+            residual = residual - scale*wells%rate(w)
+         case default
             continue
          end select
-         if (.not. has_pressure) return
-         residual = beyond
-         per_flow = 0.0_rk
-         per_head = 1.0_rk
       end associate
-   end subroutine choose
+   end subroutine find_residual
 
-   !> The pressure at the well's head [Pa].
-   pure real(rk) function well_head(w, x, eq) result(head)
+   !> What a well does in a solution. What its equation gives is not left to rounding: else flows of
+   !! wells that are shut would be followed in time.
+   pure subroutine find_well(w, x, eq, flow, head, rate)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(in) :: eq
+      real(rk), intent(out) :: flow  !< into the fracture [m2/s]
+      real(rk), intent(out) :: head  !< pressure there [Pa]
+      real(rk), intent(out) :: rate  !< into the well at its head, mean of the step [m2/s]
       real(rk) :: by_flow
 
       call find_head(w, x, eq, head, by_flow)
-   end function well_head
+      flow = x(eq%layout%at_well(w))*eq%unit/eq%dt
+      associate (wells => eq%wells, stored => eq%wells%storage(w)*(head - eq%before%well_head(w)) &
+                 /eq%dt)
+         select case (condition_of(w, eq, flow, head))
+         case (control_rate)
+            rate = wells%rate(w)
+            if (.not. wells%storage(w) > 0.0_rk) flow = rate
+         case (control_pressure)
+            rate = flow + stored
+         case default
+            rate = 0.0_rk
+            if (wells%control(w) == control_shut .or. .not. wells%storage(w) > 0.0_rk) flow = 0.0_rk
+         end select
+      end associate
+   end subroutine find_well
 
-   !> The same with its derivative by the unknown of the flow.
+   !> The pressure at the well's head, and its derivative by the unknown of the flow.
    pure subroutine find_head(w, x, eq, head, by_flow)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]

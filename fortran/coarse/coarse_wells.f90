@@ -61,13 +61,16 @@ contains
       real(rk), intent(in) :: rate  !< into the well, at its head [m2/s]
       real(rk), intent(in) :: head  !< pressure there [Pa]
       real(rk), parameter :: rounding(2) = [1.0e-9_rk, 1.0e-6_rk]  ! of the rate, of the pressure
+      real(rk) :: in_situ
 
       is_at_limit = .false.
       if (self%control(well) /= control_limited) return
+      in_situ = 0.0_rk
+      if (allocated(self%pressure_in_situ)) in_situ = self%pressure_in_situ(well)
       associate (limit => self%pressure(well))
          is_at_limit = rate/self%rate(well) < 1.0_rk - rounding(1) .and. &
                        sign(1.0_rk, self%rate(well))*(head - limit) &
-                       > -rounding(2)*max(abs(head), abs(limit))
+                       >= -rounding(2)*max(abs(head + in_situ), abs(limit + in_situ))
       end associate
    end function is_at_limit
 

@@ -12,7 +12,7 @@ module output_columns
    public :: always, with_error, with_fluid, with_fractures, with_growth
    public :: with_joints, with_toughness, with_wells
    public :: without_fluid
-   public :: applies, column_t, word_t
+   public :: applies, column_t, well_count, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns
    public :: slip_event_columns, tip_columns, well_columns
    public :: fracture_fields, intersection_fields, matrix_fields
@@ -29,6 +29,9 @@ module output_columns
    character(len=*), parameter :: with_toughness = "with tips and a toughness"
    character(len=*), parameter :: with_joints = "with a fluid and joints"
    character(len=*), parameter :: with_wells = "with a fluid and wells"
+   character(len=*), parameter :: with_one_well = "with a fluid and one well"
+   character(len=*), parameter :: at_most_one = "with a fluid and at most one well"
+   character(len=*), parameter :: with_several = "with a fluid and several wells"
    character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
 
    !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
@@ -36,7 +39,7 @@ module output_columns
    type :: column_t
       character(len=28) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=32) :: runs = always  !< in which it is written
+      character(len=40) :: runs = always  !< in which it is written
       character(len=160) :: meaning = ""
    end type column_t
 
@@ -53,10 +56,13 @@ module output_columns
       column_t("load_factor", "-", without_fluid, "Factor on the loads of the scene"), &
       column_t("dt_s", "s", with_fluid, "Length of the step: time_s since the row before"), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem in the step"), &
-      column_t("well_pressure_pa", "Pa", with_fluid, &
-               "Fluid pressure, mean over the fracture cells and joints of the wells; 0 "// &
-               "without a well"), &
-      column_t("injected_m2", "m2", with_fluid, "Fluid injected so far"), &
+      column_t("well_pressure_pa", "Pa", at_most_one, &
+               "Fluid pressure where the well meets fracture or rock, in a fracture the mean "// &
+               "over the cells and joints that it feeds; 0 without a well"), &
+      column_t("NAME_well_pressure_pa", "Pa", with_several, &
+               "The same of each well, by its name: as many columns as wells"), &
+      column_t("injected_m2", "m2", with_fluid, &
+               "Fluid injected so far, less what wells have drawn (produced_m2)"), &
       column_t("leakoff_m2", "m2", with_fluid, &
                "Fluid that went from the fractures into the rock so far; negative: the other "// &
                "way"), &
@@ -84,12 +90,15 @@ module output_columns
                "Estimated error of fracture_length_m where tips have grown; -1 with law = "// &
                "'paris', where there is none"), &
       column_t("well_pressure_error_pa", "Pa", with_fluid, &
-               "Estimated error of well_pressure_pa; -1 with law = 'paris'"), &
+               "Estimated error of the well's pressure, with several of the mean of theirs; "// &
+               "-1 with law = 'paris'"), &
       column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body"), &
-      column_t("injection_rate_m2_s", "m2/s", with_wells, "Rate of all wells in the step"), &
-      column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
-               "Rate of the wells over the rise of well_pressure_pa above the rock's pressure "// &
-               "around them at the start; 0 where nothing is injected or nothing has risen"), &
+      column_t("injection_rate_m2_s", "m2/s", with_wells, &
+               "Flow from all wells in the step, less what they draw"), &
+      column_t("injectivity_m2_s_pa", "m2/s/Pa", with_one_well, &
+               "That of a well in a fracture over the rise of well_pressure_pa above the "// &
+               "rock's pressure around it at the start; 0 where nothing has risen"), &
+      column_t("produced_m2", "m2", with_wells, "Fluid that wells have drawn so far"), &
       column_t("fracture_fluid_m2", "m2", with_fractures, &
                "Fluid that the fractures have gained so far, by volume and by compression; "// &
                "joints hold none of their own"), &
@@ -202,14 +211,17 @@ module output_columns
                "out"), &
       column_t("injected_m2", "m2", with_wells, "Fluid into the well at its head so far"), &
       column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
-               "flow_m2_s over the rise of pressure_pa since the start")]
+               "flow_m2_s over the rise of pressure_pa since the start"), &
+      column_t("asked_m2_s", "m2/s", with_wells, &
+               "Rate that its stage asks for; 0 without one")]
 
    type(word_t), parameter :: well_words(*) = [ &
       word_t("rate", "its rate"), &
       word_t("pressure", "its pressure"), &
       word_t("limit", "the pressure that bounds its rate; nothing flows where that beside "// &
              "the well is beyond it"), &
-      word_t("shut", "nothing flows: before its start, or after its end")]
+      word_t("shut", "nothing goes into it: before its start, or after its end; what it "// &
+             "stores flows on then")]
 
    type(column_t), parameter :: slip_event_columns(*) = [ &
     column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of their ends"), &
@@ -430,11 +442,25 @@ contains
          applies = scene%has_fluid() .and. scene%has_fractures()
       case (with_wells)
          applies = scene%has_fluid() .and. scene%has_wells()
+      case (with_one_well)
+         applies = scene%has_fluid() .and. well_count(scene) == 1
+      case (at_most_one)
+         applies = scene%has_fluid() .and. well_count(scene) <= 1
+      case (with_several)
+         applies = scene%has_fluid() .and. well_count(scene) > 1
       case (without_fluid)
          applies = .not. scene%has_fluid()
       case default
          applies = .true.
       end select
    end function applies
+
+   !> How many wells a scene with a fluid has.
+   pure integer function well_count(scene) result(n)
+      type(scene_t), intent(in) :: scene
+
+      n = 0
+      if (scene%has_fluid() .and. scene%has_wells()) n = size(scene%injections)
+   end function well_count
 
 end module output_columns

@@ -24,8 +24,7 @@ module output_progress
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0
       real(rk) :: fracture_length = 0.0_rk  !< [m]
-      logical :: has_well = .false.
-      real(rk) :: well_pressure = 0.0_rk  !< [Pa]
+      real(rk), allocatable :: well_pressure(:)  !< (wells) [Pa]
       real(rk) :: keq_over_kic = 0.0_rk  !< largest of the tips now; 0: left out [-]
       logical :: is_load = .false.  !< mechanics only
       integer(ik) :: solutions = 0  !< tried for the next state so far
@@ -131,13 +130,39 @@ contains
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if
-      if (values%has_well) call add("well "//brief_text(1.0e-6_rk*values%well_pressure, 4)//" MPa")
+      if (allocated(values%well_pressure)) call add_wells(values%well_pressure)
       if (values%keq_over_kic > 0.0_rk) call add("K/K_IC "//brief_text(values%keq_over_kic, 3))
       call add("L "//brief_text(values%fracture_length, 4)//" m")
       call add("stick "//integer_text(values%n_stick)//" slip "//integer_text(values%n_slip)// &
                " open "//integer_text(values%n_open))
 
    contains
+
+      !> The pressures of all wells, or the lowest and the highest.
+      pure subroutine add_wells(pressure)
+         real(rk), intent(in) :: pressure(:)  !< [Pa]
+         integer, parameter :: most = 3
+         character(len=:), allocatable :: piece
+         integer :: w
+
+         if (size(pressure) == 0) return
+         if (size(pressure) > most) then
+            piece = "wells "//megapascals(minval(pressure))//" to "//megapascals(maxval(pressure))
+         else
+            piece = "well "//megapascals(pressure(1))
+            do w = 2, size(pressure)
+               piece = piece//", "//megapascals(pressure(w))
+            end do
+         end if
+         call add(piece//" MPa")
+      end subroutine add_wells
+
+      pure function megapascals(pressure) result(text)
+         real(rk), intent(in) :: pressure  !< [Pa]
+         character(len=:), allocatable :: text
+
+         text = brief_text(1.0e-6_rk*pressure, 4)
+      end function megapascals
 
       !> One more piece, if it fits.
       pure subroutine add(piece)

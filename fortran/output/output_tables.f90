@@ -6,7 +6,7 @@ module output_tables
    use contact_states, only: state_name
    use mesh_types, only: fracture_mesh_t
    use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
-                             probe_columns, slip_event_columns, tip_columns, well_columns
+                            probe_columns, slip_event_columns, tip_columns, well_columns, well_count
    use output_series, only: series_t
    use results_fields, only: fracture_fields_t
    use results_rows, only: history_row_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
@@ -16,7 +16,7 @@ module output_tables
 
    public :: tables_t
 
-   integer, parameter :: column_length = name_length + 8
+   integer, parameter :: column_length = name_length + 17
    real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  !< per radian
 
    !> The tables; those that the scene has nothing for stay closed.
@@ -29,6 +29,7 @@ module output_tables
       type(series_t) :: slip_events
       type(series_t) :: wells
       type(text_t), allocatable, private :: probe_names(:)
+      type(text_t), allocatable, private :: pressure_names(:)  !< columns of the wells' pressures
    contains
       procedure :: open => open_tables
       procedure :: history_row
@@ -49,7 +50,7 @@ contains
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
 
-      call open_table(self%history, directory//"/history.csv", history_columns, scene)
+      call open_history(self, directory//"/history.csv", scene)
       call open_table(self%events, directory//"/events.csv", event_columns, scene)
       if (scene%growth%enabled .or. scene%growth%intensities) then
          call open_table(self%tips, directory//"/tips.csv", tip_columns, scene)
@@ -69,13 +70,20 @@ contains
    subroutine history_row(self, row)
       class(tables_t), intent(inout) :: self
       type(history_row_t), intent(in) :: row
+      real(rk) :: only
+      integer :: w
 
+      only = 0.0_rk
+      if (size(self%pressure_names) == 1) only = row%well_pressure(1)
       associate (table => self%history)
          call table%put("time_s", row%time)
          call table%put("load_factor", row%time)
          call table%put("dt_s", row%dt)
          call table%put("newton_iterations", row%newton_iterations)
-         call table%put("well_pressure_pa", row%well_pressure)
+         call table%put("well_pressure_pa", only)
+         do w = 1, size(self%pressure_names)
+            call table%put(self%pressure_names(w)%text, row%well_pressure(w))
+         end do
          call table%put("injected_m2", row%injected)
          call table%put("leakoff_m2", row%leakoff)
          call table%put("prefilled_m2", row%prefilled)
@@ -96,6 +104,7 @@ contains
          call table%put("strain_energy_j", row%strain_energy)
          call table%put("injection_rate_m2_s", row%injection_rate)
          call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("produced_m2", row%produced)
          call table%put("fracture_fluid_m2", row%fracture_fluid)
          call table%put("rock_fluid_m2", row%rock_fluid)
          call table%put("rock_outflow_m2", row%rock_outflow)
@@ -288,6 +297,7 @@ contains
          call table%put("head_pressure_pa", row%head_pressure)
          call table%put("injected_m2", row%injected)
          call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("asked_m2_s", row%asked)
          call table%end_row()
       end associate
    end subroutine well_row
@@ -326,6 +336,30 @@ contains
 
       call table%open(path, columns%name, applies(columns, scene))
    end subroutine open_table
+
+   !> Open the history: the column of a well's pressure stands there for each of several wells.
+   subroutine open_history(self, path, scene)
+      class(tables_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(scene_t), intent(in) :: scene
+      character(len=*), parameter :: behind = "_well_pressure_pa"
+      character(len=column_length), allocatable :: names(:)
+      logical, allocatable :: is_written(:)
+      integer :: at, w
+
+      allocate (self%pressure_names(well_count(scene)))
+      at = findloc(history_columns%name, "NAME"//behind, dim=1)
+      names = history_columns(:at - 1)%name
+      do w = 1, size(self%pressure_names)
+         self%pressure_names(w)%text = trim(scene%injections(w)%name)//behind
+         names = [character(len=column_length) :: names, self%pressure_names(w)%text]
+      end do
+      is_written = applies(history_columns, scene)
+      is_written = [is_written(:at - 1), spread(is_written(at), 1, size(self%pressure_names)), &
+                    is_written(at + 1:)]
+      call self%history%open(path, [character(len=column_length) :: names, &
+                                    history_columns(at + 1:)%name], is_written)
+   end subroutine open_history
 
    !> Open the table of the probes: the time or load factor, then the same columns for each of them.
    subroutine open_probes(self, path, scene)

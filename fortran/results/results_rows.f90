@@ -11,8 +11,9 @@ module results_rows
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       real(rk) :: dt = 0.0_rk  !< [s]
       integer(ik) :: newton_iterations = 0
-      real(rk) :: well_pressure = 0.0_rk  !< mean over the injected cells [Pa]
-      real(rk) :: injected = 0.0_rk  !< fluid injected so far [m2]
+      real(rk), allocatable :: well_pressure(:)  !< (wells) where they meet fracture or rock [Pa]
+      real(rk) :: injected = 0.0_rk  !< fluid injected so far, less what wells produced [m2]
+      real(rk) :: produced = 0.0_rk  !< fluid that wells have drawn so far [m2]
       real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
       real(rk) :: outflow = 0.0_rk  !< fluid out of fractures that end on the boundary so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
@@ -32,8 +33,8 @@ module results_rows
       real(rk) :: well_pressure_error = 0.0_rk  !< estimated; negative: is not [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
       ! Of a stimulation, with a fluid:
-      real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step [m2/s]
-      real(rk) :: injectivity = 0.0_rk  !< 0: none [m2/s/Pa]
+      real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step, net [m2/s]
+      real(rk) :: injectivity = 0.0_rk  !< of the one well; 0: none [m2/s/Pa]
       real(rk) :: fracture_fluid = 0.0_rk  !< that the fractures have gained so far [m2]
       real(rk) :: rock_fluid = 0.0_rk  !< that the rock has gained so far [m2]
       real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
@@ -78,6 +79,7 @@ module results_rows
       real(rk) :: head_pressure = 0.0_rk  !< [Pa]
       real(rk) :: injected = 0.0_rk  !< at its head so far [m2]
       real(rk) :: injectivity = 0.0_rk  !< flow over the pressure's rise since the start [m2/s/Pa]
+      real(rk) :: asked = 0.0_rk  !< rate that the stage asks for; 0 without one [m2/s]
    end type well_row_t
 
    !> A state at the probes, a row of probes.csv.

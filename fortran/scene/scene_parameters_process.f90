@@ -68,7 +68,7 @@ module scene_parameters_process
                   at_most="growth_factor", &
                   absent="1e-6, or 1e-9 without step", &
                   meaning="Share of step, or of end without it, below which a cut step ends "// &
-                  "the run; 0: the default"), &
+                  "the run; no step is cut to less than a 64th of that; 0: the default"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &

@@ -71,6 +71,12 @@ module simulation_describe
      "  the tolerance of &time; those that a scene gives are warned of where the estimate, which", &
     "  is some times too large where a well has just begun, is half of what has happened so far.", &
       "  The first step after the start, or after a well's switch, has nothing to compare with.", &
+      "* **Shortest step**: with a fluid a step is never cut to less than a 64th of", &
+      "  `smallest_factor` times `step`, or times `end` without it; it is shorter only where a", &
+      "  stage, a course or the scene ends. There it is taken whatever its error in time, if its", &
+      "  equations are solved, else the run ends. It also ends when time makes no headway: after", &
+   "  300 steps that were cut, none of them longer than 100 times `smallest_factor` times `step`", &
+      "  or `end`, and in which no tip grew.", &
       "", &
       "## What is doubted", &
       "", &

@@ -3,6 +3,7 @@
 module twolevel_fed
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
    use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t
    use coarse_rock_wells, only: well_index
@@ -55,6 +56,7 @@ contains
          call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
                           self%joint_share)
          call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         call part_twins(self)
          if (allocated(self%model%in_situ)) then
             self%model%wells%pressure_in_situ = &
                [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
@@ -72,6 +74,37 @@ contains
          if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, error)
       end associate
    end subroutine feed_wells
+
+   !> Where several wells keep to pressures in one and the same place and lose nothing on their way
+   !! there, nothing says which of them gives what: each loses a thousandth of what half a cell
+   !! takes.
+   pure subroutine part_twins(self)
+      class(fed_level_t), intent(inout) :: self
+      real(rk), parameter :: share_of_half_cell = 1.0e-3_rk
+      logical :: is_twin(self%model%wells%n)
+      integer(ik) :: k, w
+
+      associate (wells => self%model%wells, cells => self%model%cells, &
+                 s => self%mesh%fracture%cell_s)
+         is_twin = .false.
+         do w = 1, wells%n
+            if (wells%is_between(w) .or. wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
+            do k = 1, wells%n
+               if (k == w) cycle
+               if (.not. all([allocated(self%scene%injections(wells%number(w))%pressure), &
+                              allocated(self%scene%injections(wells%number(k))%pressure)])) cycle
+               is_twin(w) = is_twin(w) .or. all(abs(wells%share(:, k) - wells%share(:, w)) &
+                                                <= same_value) &
+                            .and. all(abs(wells%joint_share(:, k) - wells%joint_share(:, w)) &
+                                      <= same_value)
+            end do
+         end do
+         if (.not. any(is_twin)) return
+         where (is_twin) wells%friction(:wells%n) = share_of_half_cell*6.0_rk &
+            & *self%model%settings%viscosity*sum((s(2, :) - s(1, :))/cells%residual_aperture**3) &
+            & /size(s, 2)
+      end associate
+   end subroutine part_twins
 
    !> Those in the rock whose rate depends on pressures.
    pure subroutine place_rock_wells(self, error)

@@ -18,6 +18,7 @@ module twolevel_results
    use twolevel_places, only: end_cell
    use twolevel_fed, only: cell_heights
    use twolevel_state, only: two_levels_t
+   use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
@@ -56,13 +57,14 @@ contains
       associate (state => simulation%state)
          row%time = state%time
          row%injected = simulation%injected
+         row%produced = simulation%produced
+         row%well_pressure = well_pressures(simulation)
          row%leakoff = simulation%leaked
          row%prefilled = simulation%prefilled
          row%outflow = simulation%outflow
          row%fracture_length = total_length(simulation%network)
          row%n_tips = count(simulation%tip%is_free)
          if (simulation%mesh%fracture%n_cells > 0) then
-            row%well_pressure = simulation%well_pressure()
             fracture = simulation%mesh%fracture
             call end_at_tips(simulation, fracture)
             row%n_intersections = count(is_intersection(fracture))

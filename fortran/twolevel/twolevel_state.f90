@@ -28,10 +28,10 @@ module twolevel_state
    use simulation_rocks, only: follow_outlines
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
-   use twolevel_schedule, only: follow_sides
+   use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
-   use twolevel_wells, only: share_wells, transfer_shares
+   use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
@@ -69,7 +69,8 @@ module twolevel_state
       type(company_t) :: company  !< which of them grow as one
       type(certainty_t) :: certainty  !< how well lengths and pressures are known
       logical :: has_new_mesh = .false.  !< since the last accepted state
-      real(rk) :: injected = 0.0_rk  !< so far [m2]
+      real(rk) :: injected = 0.0_rk  !< so far, less what was produced [m2]
+      real(rk) :: produced = 0.0_rk  !< that wells have drawn so far [m2]
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
       real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary so far [m2]
       real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
@@ -267,9 +268,28 @@ contains
       error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
       if (self%model%wells%n_all > 0 .and. self%trend%is_known()) then
          error = max(error, self%trend%volume_error(self%before%well_flow, self%state%well_flow, &
-                                                    self%given, dt))
+                                                    self%given, dt, least_volume(self, dt)))
       end if
    end function step_error
+
+   !> What a well has given is taken for at least this, when its error in a step of length dt is
+   !! judged: a small share of what the well that gives most has given since the last switch, and
+   !! more than the rounding of the fluid that is there [m2].
+   pure real(rk) function least_volume(self, dt) result(least)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: share = 0.01_rk, trace = 1.0e-10_rk
+      real(rk) :: fluid, most
+
+      associate (state => self%state, wells => self%scene%injections, since => &
+                 self%before%time + dt - last_switch(self%scene, self%before%time))
+         most = maxval([self%given + dt*abs(state%well_flow), &
+                        since*abs(rate(wells, self%before%time, dt))])
+         fluid = sum(self%model%condensed%length*state%aperture) &
+                 + self%trend%least_pressure*sum(self%model%matrix%storage)
+      end associate
+      least = max(share*most, trace*fluid)
+   end function least_volume
 
    !> The error of a step is larger than the scene tolerates.
    pure logical function errs(self, error)
@@ -285,14 +305,19 @@ contains
    subroutine book_step(self, dt)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: flow(size(self%scene%injections))
 
-      self%injected = self%injected + dt*sum(self%model%cells%injection)
-      if (self%model%wells%n_all > 0) self%given = self%given + dt*abs(self%state%well_flow)
-   if (allocated(self%model%source)) self%injected = self%injected + dt*sum(self%model%source(3, :))
+      ! Not what the model has as its sources: that is from its last try.
+      flow = rate(self%scene%injections, self%before%time, dt)
+      if (self%model%wells%n_all > 0) then
+         flow(self%model%wells%number) = self%state%well_flow
+         self%given = self%given + dt*abs(self%state%well_flow)
+      end if
+      self%injected = self%injected + dt*sum(flow)
+      self%produced = self%produced - dt*sum(min(flow, 0.0_rk))
       if (self%mesh%fracture%n_cells > 0) then
          self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
          if (self%model%joints%n > 0) then
-            self%injected = self%injected + dt*sum(self%model%joints%injection)
             self%outflow = self%outflow + dt*self%model%joints%outflow(self%state%branch_flow)
          end if
       end if

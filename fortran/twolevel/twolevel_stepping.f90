@@ -16,6 +16,9 @@
 !! makes them lead to the same share time and again: after three such cuts of a step the share is
 !! squared with each of them, and the sixth leads to where it does not matter any more.
 !!
+!! No step is cut to less than a 64th of the shortest one; there it is taken whatever its error in
+!! time. A run whose time makes no headway, as step after step is cut to next to that, ends.
+!!
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
 module twolevel_stepping
@@ -64,6 +67,14 @@ module twolevel_stepping
    !! and all.
    integer, parameter :: plain_cuts = 3, location_cuts = 6
 
+   !> Steps are not cut to less than this share of the shortest one [-].
+   real(rk), parameter :: floor_share = 2.0_rk**(-6)
+
+   !> A run ends after this many steps that were cut, none of them longer than so many shortest
+   !! ones, in which no tip grew.
+   integer, parameter :: most_in_vain = 300
+   real(rk), parameter :: headway = 100.0_rk
+
    !> What decides about the next step.
    type :: stepper_t
       real(rk) :: next = 0.0_rk  !< to try [s]
@@ -74,6 +85,9 @@ module twolevel_stepping
       integer :: in_vain = 0  !< cuts of the present step after which tips still grew too far
       integer :: onset_cuts = 0  !< of the present step, to where a tip begins to grow
       integer :: arrival_cuts = 0  !< to where one comes to a joint
+      integer :: at_switches = 0  !< cuts of the present step at limits of wells
+      integer :: without_headway = 0  !< such steps since the last one that was longer
+      logical :: was_cut = .false.  !< the present step
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
    contains
@@ -82,6 +96,7 @@ module twolevel_stepping
       procedure :: takes
       procedure :: cut
       procedure :: step_done
+      procedure :: is_stuck
       procedure :: settle
       procedure :: network_grew
    end type stepper_t
@@ -127,12 +142,18 @@ contains
       type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
-      real(rk) :: share
+      real(rk) :: share, least
 
+      self%was_cut = .true.
+      least = min(dt, floor_share*self%shortest)
       if (trial%converged .and. trial%onset < 1.0_rk) then
          call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
       else if (trial%converged .and. trial%switch < 1.0_rk) then
-         dt = max(0.01_rk, trial%switch)*dt
+         ! Pressures that have all but settled pass a limit long before a straight line does.
+         share = trial%switch
+         if (self%at_switches >= 3) share = min(share, 0.5_rk)
+         dt = max(0.01_rk, share)*dt
+         self%at_switches = self%at_switches + 1
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
          call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), &
                      self%arrival_cuts, dt)
@@ -148,6 +169,7 @@ contains
       else
          dt = 0.5_rk*dt
       end if
+      dt = max(dt, least)
       is_too_short = dt < self%shortest
       self%next = dt
    end subroutine cut
@@ -187,6 +209,7 @@ contains
       self%in_vain = 0
       self%onset_cuts = 0
       self%arrival_cuts = 0
+      self%at_switches = 0
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
@@ -195,7 +218,21 @@ contains
          if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
          self%next = min(2.0_rk**power*self%next, self%longest)
       end if
+      self%next = max(self%next, floor_share*self%shortest)
+      if (dt > headway*self%shortest .or. trial%advance > 0.0_rk) then
+         self%without_headway = 0
+      else if (self%was_cut) then
+         self%without_headway = self%without_headway + 1
+      end if
+      self%was_cut = .false.
    end subroutine step_done
+
+   !> Time makes no headway any more.
+   pure logical function is_stuck(self)
+      class(stepper_t), intent(in) :: self
+
+      is_stuck = self%without_headway >= most_in_vain
+   end function is_stuck
 
    !> By how many powers of two a step should be longer than one that has shown this.
    pure integer function powers(self, trial)

@@ -29,6 +29,7 @@ module twolevel_steps
       real(rk) :: dt = 0.0_rk  !< of the last step [s]
       type(step_report_t) :: report  !< of it
       type(stepper_t) :: stepper
+      character(len=:), allocatable :: why_cut  !< the last step that was
       type(notes_t) :: notes  !< of growth in equilibrium
    contains
       procedure :: take_step
@@ -56,6 +57,11 @@ contains
       logical :: is_last, is_too_short, is_unstable, may_jump
       real(rk) :: wanted
 
+      if (self%stepper%is_stuck()) then
+        call raise_error(error, "", "time makes no headway: hundreds of steps had to be cut to "// &
+                          brief_text(self%dt, 4)//" s or so, the last because "//self%why_cut)
+         return
+      end if
       if (self%scene%growth%intensities) then
          call self%windows%accept()
          call self%reference%accept()
@@ -158,10 +164,11 @@ contains
       logical, intent(out) :: is_too_short
 
       call self%stepper%cut(trial, self%dt, is_too_short)
+      self%why_cut = trial%why_cut()
       self%summary%step_cuts = self%summary%step_cuts + 1
       self%summary%newton_total = self%summary%newton_total + self%report%iterations
       call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
-                                    //brief_text(self%dt, 4)//" s: "//trial%why_cut())
+                                    //brief_text(self%dt, 4)//" s: "//self%why_cut)
    end subroutine cut_step
 
    !> A tried step is taken.

@@ -17,6 +17,7 @@ module twolevel_stimulation
    use simulation_stretches, only: stretches_t
    use twolevel_results, only: end_at_tips, fracture_volume
    use twolevel_state, only: two_levels_t
+   use twolevel_well_rows, only: well_flows
    implicit none(type, external)
    private
 
@@ -112,6 +113,7 @@ contains
 
       row%rock_fluid = sum(levels%state%content) - self%content
       row%rock_outflow = self%rock_outflow
+      row%injection_rate = sum(well_flows(levels))
       fracture = levels%mesh%fracture
       if (fracture%n_cells == 0) return
       row%fracture_fluid = row%fracture_volume - self%fracture_volume + self%compressed
@@ -122,12 +124,10 @@ contains
                               - total_length(levels%start)
 
       if (size(levels%scene%injections) == 0) return
-      row%injection_rate = sum(levels%model%cells%injection)
-      if (levels%model%joints%n > 0) then
-         row%injection_rate = row%injection_rate + sum(levels%model%joints%injection)
+      if (size(levels%scene%injections) == 1 .and. all(levels%scene%injections%fracture > 0)) then
+         rise = row%well_pressure(1) - self%rock_pressure
+         if (rise > 0.0_rk) row%injectivity = row%injection_rate/rise
       end if
-      rise = row%well_pressure - self%rock_pressure
-      if (rise > 0.0_rk) row%injectivity = row%injection_rate/rise
       length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
       is_stimulated = [(counts(self, levels, fracture%cell_fracture(i), &
                                0.5_rk*sum(levels%mesh%fracture%cell_s(:, i))), &

@@ -105,15 +105,16 @@ contains
 
    !> Error of the fluid that wells give in a step, relative to all since they were switched [-]:
    !! in a step of length h after one of length h_b it is h/(h + h_b) h times the flow's change.
-   pure real(rk) function volume_error(self, before, after, given, dt)
+   pure real(rk) function volume_error(self, before, after, given, dt, least)
       class(trend_t), intent(in) :: self
       real(rk), intent(in) :: before(:), after(:)  !< (wells) flow [m2/s]
       real(rk), intent(in) :: given(:)  !< (wells) before the step [m2]
       real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: least  !< that what they have given is taken for [m2]
       real(rk) :: all(size(given)), error(size(given))
 
       error = dt/(dt + self%dt)*dt*abs(after - before)
-      all = given + dt*abs(after)
+      all = max(least, given + dt*abs(after))
       volume_error = 0.0_rk
       if (any(all > 0.0_rk)) volume_error = maxval(error/all, mask=all > 0.0_rk)
    end function volume_error

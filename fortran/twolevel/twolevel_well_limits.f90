@@ -10,6 +10,7 @@ module twolevel_well_limits
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
+   use coarse_guess, only: guess_t
    use coarse_state, only: state_t, step_report_t
    use coarse_wells, only: control_limited, control_pressure, control_rate
    use results_chronicle, only: event_well
@@ -38,6 +39,20 @@ contains
       end associate
    end function are_at_limit
 
+   !> Those that did before a step of length dt: none in a stage that begins with it.
+   pure function were_at_limit(self, dt) result(were)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      logical :: were(self%model%wells%n_all)
+      integer(ik) :: w
+
+      associate (time => self%before%time, wells => self%scene%injections, &
+                 number => self%model%wells%number)
+         were = [(self%at_limit(w) .and. wells(number(w))%stage_at(time + 0.5_rk*dt) &
+                  == wells(number(w))%stage_at(time*(1.0_rk - same_time)), w=1, size(were))]
+      end associate
+   end function were_at_limit
+
    !> The share of a tried step, from the state before to the present one, after which the first
    !! well reaches or leaves its limit; 1: none does, or so near to an end of the step, or the step
    !! is so short beside the time since the wells were switched, that it does not matter.
@@ -48,17 +63,18 @@ contains
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: changes(self%model%wells%n_all)
+      logical, dimension(self%model%wells%n_all) :: changes, were
       real(rk) :: later
       integer(ik) :: w
 
       share = 1.0_rk
       if (size(changes) == 0) return
-      changes = are_at_limit(self) .neqv. self%at_limit
+      were = were_at_limit(self, dt)
+      changes = are_at_limit(self) .neqv. were
       changes = changes .and. self%model%wells%control == control_limited
       do w = 1, size(changes, kind=ik)
          if (.not. changes(w)) cycle
-         call find_share(self, w, dt, later, timers, error)
+         call find_share(self, w, were(w), dt, later, timers, error)
          if (allocated(error)) return
          share = min(share, later)
       end do
@@ -122,33 +138,42 @@ contains
       if (allocated(well%pressure)) words = words//" "//brief_text(well%pressure(stage), 4)//" Pa"
    end function what_begins
 
-   !> Try the step with one well held as it was. What it gives is forgotten again.
-   subroutine find_share(self, w, dt, share, timers, error)
+   !> Try the step with one well held as it was. What it gives is forgotten again, and all that it
+   !! leaves in the model.
+   subroutine find_share(self, w, was_at_limit, dt, share, timers, error)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: w  !< controlled well
+      logical, intent(in) :: was_at_limit
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: state
       type(step_report_t) :: report
-      real(rk), allocatable :: injection(:), into_joints(:)
+      type(guess_t) :: guess
+      real(rk), allocatable :: injection(:), into_joints(:), source(:, :)
+      integer(ik), allocatable :: way(:)
       logical :: is_current, is_undrained
 
+      share = 0.0_rk
+      if (.not. was_at_limit .and. is_beyond(self, w)) return
       state = self%state
       is_current = self%values_are_current
       is_undrained = self%undrained
+      guess = self%model%guess
       injection = self%model%cells%injection
       if (self%model%joints%n > 0) into_joints = self%model%joints%injection
+      if (allocated(self%model%source)) source = self%model%source
+      if (self%model%rock_wells%n > 0) way = self%model%rock_wells%way
       self%held_well = w
-      self%held_control = merge(control_pressure, control_rate, self%at_limit(w))
+      self%held_control = merge(control_pressure, control_rate, was_at_limit)
       self%state = self%before
       call self%try_step(dt, timers, report, error)
       self%held_well = 0
       share = 0.5_rk
       if (.not. allocated(error) .and. report%converged) then
          associate (wells => self%model%wells, held => self%state)
-            if (self%at_limit(w)) then
+            if (was_at_limit) then
                share = part(self%before%well_rate(w), wells%rate(w), held%well_rate(w))
             else
                share = part(head_at_rate(self, w), wells%pressure(w), held%well_head(w))
@@ -162,10 +187,23 @@ contains
       self%state = state
       self%values_are_current = is_current
       self%undrained = is_undrained
+      self%model%guess = guess
       self%model%cells%injection = injection
       if (self%model%joints%n > 0) self%model%joints%injection = into_joints
+      if (allocated(self%model%source)) self%model%source = source
+      if (self%model%rock_wells%n > 0) self%model%rock_wells%way = way
       self%model%wells%control(w) = control_limited
    end subroutine find_share
+
+   !> A well that begins to flow at its rate is at its limit at once, or beyond it.
+   pure logical function is_beyond(self, w)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: w  !< controlled well
+
+      associate (wells => self%model%wells)
+         is_beyond = wells%is_at_limit(w, 0.0_rk, head_at_rate(self, w))
+      end associate
+   end function is_beyond
 
    !> The pressure at the head of a well when it has just begun to flow at its rate [Pa]: what it
    !! loses is there at once, unless the well itself takes the fluid.

@@ -9,7 +9,7 @@ module twolevel_well_rows
    implicit none(type, external)
    private
 
-   public :: well_books_t
+   public :: well_books_t, well_flows, well_pressures
 
    !> Sums and first values, (wells).
    type :: well_books_t
@@ -53,6 +53,9 @@ contains
                   row%stage = wells(w)%stage_at(row%time - 0.5_rk*dt)
                   row%flow = rate(wells(w), row%time - dt, dt)
                end if
+               if (row%stage > 0 .and. allocated(wells(w)%rate)) then
+                  row%asked = wells(w)%rate(row%stage)
+               end if
                row%rate = row%flow
                row%control = "rate"
                call set_controlled(levels, w, row)
@@ -63,12 +66,42 @@ contains
                self%injected(w) = self%injected(w) + dt*row%rate
                row%injected = self%injected(w)
                associate (rise => row%pressure - self%first_pressure(w))
-                  if (abs(rise) > 0.0_rk) row%injectivity = row%flow/rise
+                  if (abs(rise*row%flow) > 0.0_rk) row%injectivity = row%flow/rise
                end associate
             end associate
          end do
       end associate
    end subroutine book
+
+   !> What has flowed out of each well into fracture or rock in the step that led to the present
+   !! state [m2/s]; nothing before the first one.
+   pure function well_flows(levels) result(flow)
+      class(two_levels_t), intent(in) :: levels
+      real(rk) :: flow(size(levels%scene%injections))
+
+      flow = 0.0_rk
+      associate (before => levels%before%time, now => levels%state%time)
+         if (.not. now > before) return
+         flow = rate(levels%scene%injections, before, now - before)
+      end associate
+      if (levels%model%wells%n_all > 0) flow(levels%model%wells%number) = levels%state%well_flow
+   end function well_flows
+
+   !> The pressure where each well meets fracture or rock [Pa]; in a fracture that feeds all of its
+   !! cells, their mean.
+   pure function well_pressures(levels) result(pressure)
+      class(two_levels_t), intent(in) :: levels
+      real(rk) :: pressure(size(levels%scene%injections))
+      real(rk) :: flow(size(pressure))
+      integer(ik) :: w
+
+      if (size(pressure) == 1 .and. all(levels%scene%injections%fracture > 0)) then
+         pressure = levels%well_pressure()
+      else
+         flow = well_flows(levels)
+         pressure = [(pressure_at(levels, w, flow(w)), w=1, size(flow, kind=ik))]
+      end if
+   end function well_pressures
 
    !> What is an unknown of wells whose rate depends on pressures.
    pure subroutine set_controlled(levels, w, row)
@@ -86,7 +119,7 @@ contains
       associate (well => levels%scene%injections(w))
          if (allocated(well%pressure)) row%control = "pressure"
          if (allocated(well%pressure) .and. allocated(well%rate)) row%control = &
-            & merge("limit", "rate ", levels%at_limit(k))
+            & trim(merge("limit", "rate ", levels%at_limit(k)))
       end associate
    end subroutine set_controlled
 

@@ -174,6 +174,8 @@ contains
             stage = well%stage_at(time + 0.5_rk*dt)
             wells%rate(w) = 0.0_rk
             control = control_shut
+            ! What a well holds goes on flowing after its end, as in a stage of rate 0.
+            if (well%storage > 0.0_rk .and. time + 0.5_rk*dt >= well%end) control = control_rate
             if (stage == 0) cycle
             control = control_pressure
             if (allocated(well%pressure)) then

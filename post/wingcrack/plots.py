@@ -27,6 +27,7 @@ from wingcrack_post.frames import (
 from wingcrack_post.history import INTENSITIES, draw_intensity, draw_states
 from wingcrack_post.load import abscissa, draw_load, moment_label
 from wingcrack_post.network import draw_network, grown_network
+from wingcrack_post.pressures import pressure_columns
 from wingcrack_post.profiles import draw_profile, fracture_labels, profile_columns
 from wingcrack_post.read import needed
 from wingcrack_post.scales import run_length_unit
@@ -63,9 +64,9 @@ def plot_history(run: Run, column: str | None, ax: Axes | None, **look: Any) -> 
 
 
 def default_column(run: Run) -> str:
-    """What a run is about: the pressure of its wells, else the length of its fractures."""
-    fluid = run.table("history").has("well_pressure_pa")
-    return "well_pressure_pa" if fluid else "fracture_length_m"
+    """What a run is about: the pressure of its first well, else the length of its fractures."""
+    columns = list(pressure_columns(run.table("history")).values())
+    return columns[0] if columns else "fracture_length_m"
 
 
 def draw_history(axes: Axes, run: Run, column: str, unit: Unit, **look: Any) -> None:

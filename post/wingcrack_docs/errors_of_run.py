@@ -45,8 +45,11 @@ def _of_history(run: wingcrack.Run) -> Iterator[str]:
         yield f"length {1e3 * length:.2g} mm of {last['fracture_length_m']:.3g} m"
     pressure = last.get("well_pressure_error_pa", -1.0)
     if pressure > 0.0:
-        whole = last["well_pressure_pa"]
-        yield f"well pressure {1e-3 * pressure:.2g} kPa of {1e-6 * whole:.3g} MPa"
+        said = f"well pressure {1e-3 * pressure:.2g} kPa"
+        # of several wells it is the error of their mean
+        yield (
+            f"{said} of {1e-6 * whole:.3g} MPa" if (whole := last.get("well_pressure_pa")) else said
+        )
     if "mass_error_relative" in last:
         yield f"fluid {run.record['mass_error_relative']:.0e}"
 

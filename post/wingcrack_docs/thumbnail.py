@@ -11,6 +11,8 @@ from PIL import Image
 
 import wingcrack
 from wingcrack.colours import default_field
+from wingcrack.units import column_words
+from wingcrack_post.style import line_look
 
 _INCHES = (4.8, 3.6)
 _DOTS_PER_INCH = 130
@@ -37,7 +39,13 @@ def draw_story(run: wingcrack.Run, path: Path) -> None:
     left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0), squeeze=False)[0]
     _draw_end(run, left.add_subplot())
     above, below = right.subplots(2, 1, sharex=True)
-    run.plot_history("well_pressure_pa", ax=above)
+    pressures = [column for column in run.history if column.endswith("well_pressure_pa")]
+    for index, column in enumerate(pressures):
+        label = column_words(column)
+        run.plot_history(column, ax=above, label=label, **line_look(index))
+    if len(pressures) > 1:
+        above.set_ylabel("well pressure [MPa]")
+        above.legend()
     run.plot_history("fracture_length_m", ax=below)
     above.set_xlabel("")
     save_small(figure, path)

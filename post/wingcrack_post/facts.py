@@ -8,9 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from wingcrack_post.load import abscissa, has_load
+from wingcrack_post.pressures import highest_pressures, injected_and_produced
 from wingcrack_post.read import Run
 from wingcrack_post.scales import run_length_unit
 from wingcrack_post.units import MEGAPASCAL, area_unit, displacement_unit, stress_unit
+
+_MOST_WELLS = 4  # with a line of their own, those with the highest pressures
 
 
 @dataclass(frozen=True)
@@ -86,19 +89,20 @@ def _results(run: Run) -> list[str]:
         if "fracture_cells" in record:
             cells += f", {record['fracture_cells']} of fractures"
         lines.append(cells)
-    if history.has("well_pressure_pa"):
-        pressure = history.number("well_pressure_pa")
-        peak = int(np.nanargmax(pressure))
-        shown = float(MEGAPASCAL.of(pressure[peak]))
-        lines.append(f"highest well pressure: {shown:.4g} MPa at {moments[peak]:.3g} {unit}")
+    for name, row, highest_pa in highest_pressures(history)[:_MOST_WELLS]:
+        of_well = f"highest pressure of {name}" if name else "highest well pressure"
+        shown = float(MEGAPASCAL.of(highest_pa))
+        lines.append(f"{of_well}: {shown:.4g} MPa at {moments[row]:.3g} {unit}")
     if has_load(run):
         highest = int(np.argmax(moments))
         lines.append(f"highest load factor: {moments[highest]:.4g} in state {highest + 1}")
     if history.has("injected_m2"):
-        injected = history.number("injected_m2")[-1]
-        area = area_unit(injected)
+        injected, produced = (float(volume[-1]) for volume in injected_and_produced(history))
+        area = area_unit(injected, produced)
         line = f"injected: {float(area.of(injected)):.3g} {area.name}"
-        if injected > 0.0 and history.has("leakoff_m2"):
+        if produced > 0.0:
+            line += f", produced: {float(area.of(produced)):.3g} {area.name}"
+        elif injected > 0.0 and history.has("leakoff_m2"):
             line += f", leaked off {100.0 * history.number('leakoff_m2')[-1] / injected:.0f} %"
         lines.append(line)
     return [*lines, *_of_fractures(run), *_of_events(run)]

@@ -17,6 +17,7 @@ from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import STEP_LABEL, abscissa, has_load, tip_steps
 from wingcrack_post.marks import mark_moments
+from wingcrack_post.pressures import injected_and_produced, well_pressures
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import jump_scale, run_length_unit, without_round_off
 from wingcrack_post.states import growth_start, settled_rows
@@ -154,7 +155,7 @@ def development(run: Run) -> Figure:
     table = run.history
     if table.rows == 1:
         return state_table(run)
-    fluid = table.has("well_pressure_pa")
+    fluid = table.has("injected_m2")
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6 if fluid else 2.5)
     panels = list((figure.subplots(2, 2) if fluid else figure.subplots(1, 3)).flat)
     draw_length(panels[0], run)
@@ -178,10 +179,13 @@ def draw_length(axes: Axes, run: Run) -> None:
 
 
 def draw_pressure(axes: Axes, run: Run) -> None:
-    """Draw the mean pressure of the cells with wells into axes."""
+    """Draw the pressure of each well into axes."""
     time, label = abscissa(run, run.history.moments())
-    values = MEGAPASCAL.of(run.history.number("well_pressure_pa"))
-    axes.plot(time, values, color=style.CYCLE[0])
+    pressures = well_pressures(run.history)
+    for index, (name, pressure) in enumerate(pressures.items()):
+        axes.plot(time, MEGAPASCAL.of(pressure), label=name, **style.line_look(index))
+    if len(pressures) > 1:
+        axes.legend()
     _finish(axes, "well pressure", "pressure [MPa]", label)
 
 
@@ -239,11 +243,14 @@ def balance(run: Run) -> Figure:
         raise AbsentError("the run has one state, so nothing has flowed yet")
     time, below = abscissa(run, table.moments())
     volume = table.number("fracture_volume_m2")
+    injected, produced = injected_and_produced(table)
     series: list[tuple[str, FloatArray]] = [
-        ("injected", table.number("injected_m2")),
+        ("injected", injected),
         ("leaked off into the rock", table.number("leakoff_m2")),
         ("fracture volume, change", volume - volume[0]),
     ]
+    if np.any(produced > 0.0):
+        series.insert(1, ("produced", produced))
     for name, label in (
         ("prefilled_m2", "prefilled new cells"),
         ("outflow_m2", "out through ends of fractures"),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.pressures import well_pressures
 from wingcrack_post.read import Run
 from wingcrack_post.table import FloatArray
 from wingcrack_post.vtu import IntArray
@@ -140,7 +141,7 @@ def _spacing(run: Run, rows: IntArray, begun: int | None) -> FloatArray:
     if np.any(np.diff(moments) < 0.0):  # a load that falls
         return np.arange(rows.size, dtype=float)
     wells = run.scene.wells if run.scene else ()
-    if not run.history.has("well_pressure_pa") or not wells:
+    if not run.history.has("injected_m2") or not wells:
         return moments
     # nothing happens before the well starts: its time counts as none
     start = min(well.start_s for well in wells)
@@ -163,9 +164,10 @@ def _spread(values: FloatArray, begun: int, count: int) -> list[int]:
 
 def _with_peak(run: Run, rows: IntArray, chosen: list[int], begun: int | None) -> list[int]:
     """Replace the state nearest to the highest well pressure by that with the highest."""
-    if not run.history.has("well_pressure_pa"):
+    pressures = well_pressures(run.history)
+    if not pressures:
         return chosen
-    peak = int(np.argmax(run.history.number("well_pressure_pa")[rows]))
+    peak = int(np.argmax(np.max(list(pressures.values()), axis=0)[rows]))
     free = [index for index in chosen if index not in (0, begun, rows.size - 1)]
     if peak in chosen or not free:
         return sorted({*chosen, peak}) if peak in chosen or len(chosen) < 3 else chosen

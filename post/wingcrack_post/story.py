@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from wingcrack_post import style
 from wingcrack_post.errors import AbsentError
 from wingcrack_post.load import abscissa
 from wingcrack_post.names import HALO
+from wingcrack_post.pressures import highest_pressures, injected_and_produced, well_pressures
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import run_length_unit
 from wingcrack_post.states import growth_start
@@ -26,7 +27,7 @@ from wingcrack_post.wells import MOST_WELLS, well_rows
 
 _SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
 COLUMNS = (
-    "injectivity_m2_s_pa",
+    "injection_rate_m2_s",
     "fracture_fluid_m2",
     "rock_fluid_m2",
     "stimulated_length_m",
@@ -34,6 +35,7 @@ COLUMNS = (
 )
 _MOST_MARKS = 9  # joints with a line of their own
 _MOST_FACTS = 17  # lines for which there is room
+_MOST_PEAKS = 2  # of wells, the highest
 _NEAR = 0.03  # share of the axis between marks that are both named
 _EARLY = 0.02  # share of the run in which the injectivity may leave its panel
 _GREY = "#555555"
@@ -74,7 +76,7 @@ def story(run: Run) -> Figure:
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
     if not table.has(*COLUMNS):
-        raise AbsentError("history.csv tells no injectivity (no well, or of an earlier version)")
+        raise AbsentError("history.csv tells no rate (no well, or of an earlier version)")
     if table.rows == 1:
         raise AbsentError("the run has one state, so nothing has flowed yet")
     cells = needed(run.fractures, "fractures.csv", "the states of the fractures")
@@ -165,8 +167,8 @@ def draw_pressure(axes: Axes, run: Run) -> None:
         _draw_pressures(axes, run, run.wells)
         return
     time = abscissa(run, run.history.moments())[0]
-    pressure = MEGAPASCAL.of(run.history.number("well_pressure_pa"))
-    axes.plot(time, pressure, color=style.CYCLE[0], label="pressure")
+    (pressure,) = well_pressures(run.history).values()
+    axes.plot(time, MEGAPASCAL.of(pressure), color=style.CYCLE[0], label="pressure")
     axes.set_ylabel("well pressure [MPa]")
     axes.set_title("well pressure and rate")
     rate = run.history.number("injection_rate_m2_s")
@@ -193,20 +195,35 @@ def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
 
 
 def _draw_injectivity(axes: Axes, run: Run) -> None:
-    time = abscissa(run, run.history.moments())[0]
-    values = run.history.number("injectivity_m2_s_pa")
-    shown = np.where(values > 0.0, values, np.nan)
     axes.set_title("injectivity: rate over rise of pressure")
     axes.set_ylabel("injectivity [m²/(s Pa)]")
-    if not np.any(np.isfinite(shown)):
+    lows, highs = [], []
+    for index, name, time, values in _injectivities(run):
+        shown = np.where(values > 0.0, values, np.nan)
+        if not np.any(np.isfinite(shown)):
+            continue
+        axes.semilogy(time, shown, color=style.CYCLE[index % MOST_WELLS], label=name)
+        # at first the pressure has hardly risen: that would squeeze all that follows
+        later = shown[time >= _EARLY * time[-1]]
+        if np.any(np.isfinite(later)):
+            lows.append(float(np.nanmin(shown)))
+            highs.append(float(np.nanmax(later)))
+    if not axes.lines:
         axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", color=_GREY)
+    if lows:
+        axes.set_ylim(0.8 * min(lows), max(1.25 * max(highs), 3.0 * min(lows)))
+
+
+def _injectivities(run: Run) -> Iterator[tuple[int, str, FloatArray, FloatArray]]:
+    """Number, name, times and injectivity of each well."""
+    if run.history.has("injectivity_m2_s_pa"):
+        time = abscissa(run, run.history.moments())[0]
+        yield 0, "", time, run.history.number("injectivity_m2_s_pa")
         return
-    axes.semilogy(time, shown, color=style.CYCLE[0])
-    # at first the pressure has hardly risen: that would squeeze all that follows
-    later = shown[time >= _EARLY * time[-1]]
-    if np.any(np.isfinite(later)):
-        low, high = float(np.nanmin(shown)), float(np.nanmax(later))
-        axes.set_ylim(0.8 * low, max(1.25 * high, 3.0 * low))
+    wells = needed(run.wells, "wells.csv", "what each well did")
+    for index, name, rows in well_rows(wells):
+        time = abscissa(run, wells.moments()[rows])[0]
+        yield index, name, time, wells.number("injectivity_m2_s_pa")[rows]
 
 
 def _draw_fluid(axes: Axes, run: Run) -> None:
@@ -235,7 +252,10 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
             label=f"in {name}" if name in ("fractures", "rock") else name,
         )
         below = above
-    axes.plot(time, unit.of(given), color="#000000", lw=1.0, label="injected")
+    label = (
+        "injected, less produced" if np.any(injected_and_produced(table)[1] > 0.0) else "injected"
+    )
+    axes.plot(time, unit.of(given), color="#000000", lw=1.0, label=label)
     axes.set_title("where the fluid is")
     axes.set_ylabel(f"volume per thickness [{unit.name}]")
     axes.set_ylim(bottom=min(0.0, float(unit.of(below).min())))
@@ -339,9 +359,7 @@ def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], f
 def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
     table = run.history
     clock = time_unit(float(table.moments()[-1]))
-    pressure = MEGAPASCAL.of(table.number("well_pressure_pa"))
-    peak = int(np.argmax(pressure))
-    injected = table.number("injected_m2")[-1]
+    injected, produced = (float(volume[-1]) for volume in injected_and_produced(table))
     unit = run_length_unit(run)
 
     def at(moment: float) -> str:
@@ -351,12 +369,17 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
         return f"{float(unit.of(table.number(column)[-1])):.3g} {unit.name}"
 
     lines = [f"after {at(float(table.moments()[-1]))}:"]
-    area = area_unit(injected)
+    area = area_unit(injected, produced)
     lines.append(f"injected {float(area.of(injected)):.3g} {area.name}")
-    if injected > 0.0:
+    if produced > 0.0:
+        lines.append(f"produced {float(area.of(produced)):.3g} {area.name}")
+    elif injected > 0.0:
         share = table.number("leakoff_m2")[-1] / injected
         lines.append(f"leaked off {100.0 * share:.0f} %")
-    lines.append(f"peak pressure {pressure[peak]:.2f} MPa at {at(float(table.moments()[peak]))}")
+    for name, row, highest in highest_pressures(table)[:_MOST_PEAKS]:
+        when = at(float(table.moments()[row]))
+        of_well = f"{name}: " if name else ""
+        lines.append(f"{of_well}peak pressure {float(MEGAPASCAL.of(highest)):.2f} MPa at {when}")
     lines.append(f"stimulated {length('stimulated_length_m')},")
     lines.append(f"  of it connected {length('connected_stimulated_m')}")
     clusters = int(table.number("n_clusters")[-1])

@@ -111,7 +111,7 @@ def _draw_drive(axes: Axes, run: Run) -> None:
     elif history.has(*COLUMNS) and history.rows > 1:
         draw_pressure_and_rate(axes, run)
         axes.set_xlabel(abscissa(run, history.moments())[1])
-    elif history.has("well_pressure_pa"):
+    elif history.has("injected_m2"):
         draw_pressure(axes, run)
     else:
         draw_jumps(axes, run)

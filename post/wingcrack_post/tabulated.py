@@ -10,6 +10,7 @@ from matplotlib.transforms import Bbox
 
 from wingcrack_post import style
 from wingcrack_post.load import has_load
+from wingcrack_post.pressures import well_pressures
 from wingcrack_post.read import Run, needed
 from wingcrack_post.scales import jump_scale, run_length_unit, without_round_off
 from wingcrack_post.table import FloatArray
@@ -95,8 +96,8 @@ def state_table(run: Run) -> Figure:
         ("largest slip", slip, unit),
         ("largest opening", opening, unit),
     ]
-    if history.has("well_pressure_pa"):
-        entries.append(("well pressure", history.number("well_pressure_pa"), MEGAPASCAL))
+    for name, pressure in well_pressures(history).items():
+        entries.append((f"well pressure {name}".rstrip(), pressure, MEGAPASCAL))
     rows = [[name, f"{float(u.of(value)[0]):.5g}", u.name] for name, value, u in entries]
     for state in style.STATES:
         rows.append([f"cells that {_VERBS[state]}", f"{history.number(f'n_{state}')[0]:.0f}", "-"])

@@ -145,33 +145,43 @@ def scene_text(place: npt.NDArray[np.float64]) -> str:
     return text
 
 
-def run_scene(folder: Path) -> Verdict:
-    """Run scene.nml of a folder and judge its files."""
+def call_solver(folder: Path, solver: Path, limit_s: float) -> tuple[Verdict | None, str, float]:
+    """Run scene.nml of a folder: the verdict if its files need not be judged, reason, seconds."""
     out = folder / "out"
     shutil.rmtree(out, ignore_errors=True)
     began = time.monotonic()
     try:
         done = subprocess.run(
-            [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
+            [solver, "run", "scene.nml", "--out", "out", "--quiet"],
             cwd=folder,
             capture_output=True,
             text=True,
-            timeout=RUN_LIMIT_S,
+            timeout=limit_s,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return Verdict("WRONG", f"still at work after {RUN_LIMIT_S:g} s", RUN_LIMIT_S)
+        return Verdict("WRONG", f"still at work after {limit_s:g} s", limit_s), "", limit_s
     seconds = time.monotonic() - began
-    reason = done.stderr.strip()
+    reason = done.stderr.strip() if done.returncode else ""
     if done.returncode not in (0, 1, 2) or (done.returncode > 0 and len(reason.splitlines()) != 1):
-        return Verdict("WRONG", f"status {done.returncode}: {reason[-300:]}", seconds)
+        detail = f"status {done.returncode}: {done.stderr.strip()[-300:]}"
+        return Verdict("WRONG", detail, seconds), reason, seconds
     if done.returncode == 2:
-        return Verdict("WRONG" if out.exists() else "refused", reason, seconds)
+        return Verdict("WRONG" if out.exists() else "refused", reason, seconds), reason, seconds
+    return None, reason, seconds
+
+
+def run_scene(folder: Path) -> Verdict:
+    """Run scene.nml of a folder and judge its files."""
+    verdict, reason, seconds = call_solver(folder, SOLVER, RUN_LIMIT_S)
+    if verdict is not None:
+        return verdict
+    out = folder / "out"
     findings = judge(out)
     if findings.wrong:
         wrong = "; ".join(list(dict.fromkeys(findings.wrong))[:4])
         return Verdict("WRONG", f"{wrong} ({len(findings.wrong)}) {reason}", seconds)
-    if done.returncode == 1:
+    if reason:
         return Verdict("stopped", reason, seconds)
     warnings = [text for text in warnings_of(out) if not text.startswith(EXPECTED_DOUBT)]
     if warnings:

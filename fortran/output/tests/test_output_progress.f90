@@ -10,14 +10,23 @@ program test_output_progress
    type(progress_values_t) :: values
    character(len=:), allocatable :: line, log_line
 
-   values = progress_values_t(0.24691_rk, 1234.5678_rk, 12, 60, 30, 10, 1.23456_rk, .true., &
-                              12.3456e6_rk, 0.98765_rk)
+   values = progress_values_t(0.24691_rk, 1234.5678_rk, 12, 60, 30, 10, 1.23456_rk, &
+                              [12.3456e6_rk], 0.98765_rk)
    line = progress_line(values, 10.0_rk, 1000)
    call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  well 12.35 MPa  "// &
                        "K/K_IC 0.988  L 1.235 m  stick 60 slip 30 open 10", line)
    line = progress_line(values, 10.0_rk, 79)
    call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  well 12.35 MPa  "// &
                        "K/K_IC 0.988  L 1.235 m", "what fits a terminal: "//line)
+   values%well_pressure = [40.0e6_rk, 22.0e6_rk]
+   line = progress_line(values, 10.0_rk, 65)
+   call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  well 40, 22 MPa  "// &
+                       "L 1.235 m", line)
+   values%well_pressure = 1.0e6_rk*[40.0_rk, 22.0_rk, 31.0_rk, 5.0_rk]
+   line = progress_line(values, 10.0_rk, 65)
+   call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  wells 5 to 40 MPa  "// &
+                       "L 1.235 m", line)
+   values%well_pressure = [12.3456e6_rk]
    values%share = 0.99999_rk
    call checks%is_true(index(progress_line(values, 1.0_rk, 79), "99%  t") == 1, &
                        "100% only at the end")

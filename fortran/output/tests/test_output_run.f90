@@ -14,7 +14,7 @@ program test_output_run
    use output_record, only: run_record_t, status_finished
    use output_run, only: run_output_t
    use results_chronicle, only: event_slip_onset, event_step_cut
-   use scene_types, only: scene_t
+   use scene_types, only: injection_t, scene_t
    implicit none(type, external)
 
    character(len=*), parameter :: nl = achar(10)
@@ -59,6 +59,8 @@ contains
       call write_text_file(folder//"/run.json", "old", error)
       call write_text_file(folder//"/history.csv.part", "ol", error)
 
+      scene%injections = [injection_t(name="in", fracture=1_ik, rate=[1.0e-6_rk]), &
+                          injection_t(name="out", fracture=1_ik, rate=[-1.0e-6_rk])]
       call output%open(folder, "", refused, error)
       if (.not. allocated(error)) call output%begin(scene, error)
       call checks%no_error(error, "open")
@@ -70,7 +72,7 @@ contains
       call timers%start(phase_output)
       do i = 0, 1
          call output%history_row(history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
-            & well_pressure=6.8e6_rk, injected=1.0e-4_rk, leakoff=2.0e-5_rk, prefilled=0.0_rk, &
+    & well_pressure=[6.8e6_rk, 2.0e6_rk], injected=1.0e-4_rk, leakoff=2.0e-5_rk, prefilled=0.0_rk, &
             & fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, max_slip=1.0e-4_rk, &
             & max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, n_open=1_ik, &
             & fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
@@ -106,10 +108,12 @@ contains
       call checks%no_error(error, "close")
 
       call row_has(folder//"/history.csv", 1, "time_s,dt_s,newton_iterations,"// &
-         & "well_pressure_pa,injected_m2,leakoff_m2,prefilled_m2,fracture_volume_m2,"// &
+         & "in_well_pressure_pa,out_well_pressure_pa,injected_m2,leakoff_m2,prefilled_m2,"// &
+         & "fracture_volume_m2,"// &
          & "mass_error_relative,max_slip_m,max_opening_m,n_stick,n_slip,n_open,"// &
          & "fracture_length_m,n_tips,n_intersections,seismic_moment_nm", &
-         & "0.0,2.0,4,6800000.0,0.0001,2e-05,0.0,0.001,1e-14,0.0001,2e-05,1,1,1,1.25,2,1,1000000.0")
+         & "0.0,2.0,4,6800000.0,2000000.0,0.0001,2e-05,0.0,0.001,1e-14,0.0001,2e-05,1,1,1,"// &
+         & "1.25,2,1,1000000.0")
       call row_has(folder//"/history.csv", 2, "time_s", "2.0")
       call row_has(folder//"/tips.csv", 1, "time_s,tip,fracture,x_m,y_m,k1_pa_sqrtm,"// &
          & "k2_pa_sqrtm,k1_dc_pa_sqrtm,k2_dc_pa_sqrtm,keq_pa_sqrtm,g_j_m2,angle_deg,advance_m,"// &

@@ -73,7 +73,7 @@ contains
          end if
          one = history_of_levels(loaded, 0.0_rk)
          other = history_of_levels(in_situ, 0.0_rk)
-         call same(one%well_pressure, other%well_pressure, 1.0e-9_rk, "pressure at the well")
+         call same(one%well_pressure(1), other%well_pressure(1), 1.0e-9_rk, "pressure at the well")
          call same(one%max_slip, other%max_slip, 1.0e-9_rk, "slip")
          call same(one%fracture_volume, other%fracture_volume, 1.0e-9_rk, "volume")
          call checks%is_true(one%n_slip == other%n_slip .and. one%n_stick == other%n_stick, &

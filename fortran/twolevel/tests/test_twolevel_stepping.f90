@@ -23,6 +23,8 @@ program test_twolevel_stepping
    call test_onset()
    call test_too_far()
    call test_sudden()
+   call test_headway()
+   call test_limits_of_wells()
    call test_increments()
    call test_wells()
    call checks%finish()
@@ -263,6 +265,62 @@ contains
       call checks%is_true(is_too_short, "at once where no time is needed to go too far")
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
+
+   !> However large errors in time are, no step is shorter than a 64th of the shortest one, but up
+   !! to a switch. Three hundred that are cut to that say that time makes no headway; a longer one,
+   !! or growth, that it does.
+   subroutine test_headway()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+      integer :: k
+
+      trial = trial_t(converged=.true., time_error=1.0e9_rk)
+      call stepper%begin(chosen)
+      do k = 1, 299
+         dt = stepper%step_to(1.0e6_rk)
+         do
+            call stepper%cut(trial, dt, is_too_short)
+            if (is_too_short) exit
+         end do
+         call stepper%step_done(trial, dt)
+      end do
+      call checks%is_close(dt, stepper%shortest/64.0_rk, 1.0e-12_rk, "they do not shrink for ever")
+      call checks%is_true(.not. stepper%is_stuck(), "not stuck yet")
+      call stepper%step_done(trial, dt)
+      call checks%is_true(.not. stepper%is_stuck(), "a step that was not cut does not count")
+      call stepper%cut(trial, dt, is_too_short)
+      call stepper%step_done(trial, dt)
+      call checks%is_true(stepper%is_stuck(), "no headway")
+      call stepper%step_done(trial, 1.0_rk)
+      call checks%is_true(.not. stepper%is_stuck(), "a longer step is headway")
+      dt = 1.0e-3_rk*stepper%shortest
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 1.0e-3_rk*stepper%shortest, 0.0_rk, "what is left to a switch stays")
+      call stepper%step_done(trial, dt)
+      call checks%is_close(stepper%next, stepper%shortest/64.0_rk, 1.0e-12_rk, "not beyond it")
+   end subroutine test_headway
+
+   !> A step ends where a well comes to its limit; where that is found at its end again and again,
+   !! it is halved.
+   subroutine test_limits_of_wells()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+      integer :: k
+
+      trial = trial_t(converged=.true., switch=0.9_rk)
+      call stepper%begin(chosen)
+      dt = 1000.0_rk
+      do k = 1, 3
+         call stepper%cut(trial, dt, is_too_short)
+      end do
+      call checks%is_close(dt, 729.0_rk, 1.0e-12_rk, "to where the limit is passed")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 364.5_rk, 1.0e-12_rk, "half, the fourth time")
+   end subroutine test_limits_of_wells
 
    !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
    subroutine test_increments()
