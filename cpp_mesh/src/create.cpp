@@ -83,7 +83,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     const std::size_t n_given = graph.points.size();
     GuideEdges guides;
     if (!specification.guides.empty()) {
-        guides = guide_edges(specification.guides, domain, graph, mesh.size);
+        guides = guide_edges(specification.guides, domain, graph, plans, mesh.size);
         for (std::size_t p = 0; p < guides.places.size(); ++p)
             if (guides.on_boundary[p])
                 graph.points.push_back({guides.places[p], true});

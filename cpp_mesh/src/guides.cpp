@@ -100,8 +100,9 @@ Line divided(const Line& line, const SizeField& size) {
 
 class EdgeChoice {
 public:
-    EdgeChoice(const Domain& domain, const Graph& graph, const SizeField& size)
-        : domain_(domain), graph_(graph), size_(size) {
+    EdgeChoice(const Domain& domain, const Graph& graph, const std::vector<RosettePlan>& rosettes,
+               const SizeField& size)
+        : domain_(domain), graph_(graph), rosettes_(rosettes), size_(size) {
         for (const Vec2& corner : domain.corners())
             on_boundary_.push_back(corner);
         for (const GraphPoint& point : graph.points)
@@ -120,8 +121,11 @@ public:
     GuideEdges made() { return std::move(made_); }
 
 private:
-    // Neither fractures nor other edges are near.
+    // Neither fractures nor rosettes, whose inside gmsh does not mesh, nor other edges are near.
     bool is_clear(Vec2 a, Vec2 b, double gap) const {
+        for (const RosettePlan& rosette : rosettes_)
+            if (distance_to_segment(graph_.points[rosette.point].xy, a, b) < rosette.radius + gap)
+                return false;
         for (const GraphEdge& edge : graph_.edges)
             if (segment_distance(a, b, graph_.points[edge.point[0]].xy,
                                  graph_.points[edge.point[1]].xy) < gap)
@@ -163,6 +167,7 @@ private:
 
     const Domain& domain_;
     const Graph& graph_;
+    const std::vector<RosettePlan>& rosettes_;
     const SizeField& size_;
     Line on_boundary_; // what is a node of the boundary in any case
     std::map<std::pair<double, double>, int> number_;
@@ -172,8 +177,9 @@ private:
 } // namespace
 
 GuideEdges guide_edges(const std::vector<std::vector<Vec2>>& lines, const Domain& domain,
-                       const Graph& graph, const SizeField& size) {
-    EdgeChoice choice(domain, graph, size);
+                       const Graph& graph, const std::vector<RosettePlan>& rosettes,
+                       const SizeField& size) {
+    EdgeChoice choice(domain, graph, rosettes, size);
     for (const Line& line : lines) {
         for (const Line& part : parts_inside(domain.box(), line)) {
             const Line nodes = divided(part, size);

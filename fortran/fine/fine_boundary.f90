@@ -56,7 +56,7 @@ contains
       call mark_side(fine, side, boundary%prescribed(component, :))
    end subroutine hold_side
 
-   !> Count the springs of a side, which are part of the elements' stiffness, as what holds the body.
+   !> Count the springs of a side, part of the elements' stiffness, as what holds the body.
    pure subroutine stand_on_springs(fine, side, component, boundary)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them

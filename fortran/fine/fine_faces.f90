@@ -9,8 +9,8 @@
 !!
 !! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
 !! whatever the conditions of the cells around, unless these are in contact (fine_joints). A pair of
-!! which a displacement is given stays free, too; in contact it has the traction of the middle of its
-!! cell.
+!! which a displacement is given stays free, too; in contact it has the traction of the middle of
+!! its cell.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -9,7 +9,7 @@
 !!
 !! So has every other end of a cell whose nodes cannot be tied, as those are of which a displacement
 !! is given: on a roller the support bears a part of the force there, and what is left for the law
-!! cannot be told from it. The nodes keep their own unknowns, which the traction of the middle loads.
+!! cannot be told from it. The nodes keep their own unknowns, which that of the middle loads.
 module fine_joints
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left

@@ -37,7 +37,7 @@ module scene_plausible
                          of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
                          of_weightless = 23, of_uniform = 24, of_tension = 25, &
                          of_dry = 26, of_overpressure = 27, of_viscous = 28, &
-                          of_surplus = 29
+                         of_surplus = 29
 
    ! The table keeps its own layout.
    !&<

@@ -8,6 +8,7 @@ program test_coarse_fields
    use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_nodes, only: nodal_values, node_values
+   use coarse_own_pressure, only: own_pressure
    use coarse_regions, only: regions_t
    use coarse_rock, only: new_rock, rock_t
    use mesh_builder, only: mesher_t
@@ -27,6 +28,7 @@ program test_coarse_fields
                     0.25_rk, 0.4_rk, its_mesher, body)
    call shake(body)
    call test_linear_displacement(body)
+   call test_own_pressure(body)
    body = boxes(4_ik)
    call shake(body)
    call test_linear_displacement(body)
@@ -107,6 +109,25 @@ contains
 
    !> Pressure that falls from left to right: exact at all nodes, and no flow through bottom and
    !! top.
+   !> The rock's own pressure is exact where it is linear, on both sides of fractures. A pressure of
+   !! the fluid that the cells know nothing of does not come into it; one that they tell does.
+   subroutine test_own_pressure(mesh)
+      type(mesh_t), intent(in) :: mesh
+      real(rk), parameter :: rock = 3.0e6_rk, fluid = 10.0e6_rk, slope(2) = [2.0e6_rk, -1.0e6_rk]
+      real(rk) :: exact(mesh%n_nodes), means(mesh%n_cells)
+      integer(ik) :: c, v
+
+      means = [(rock + dot_product(slope, cell_centre(mesh, c)), c=1, mesh%n_cells)]
+      exact = [(rock + dot_product(slope, mesh%xy(:, v)), v=1, mesh%n_nodes)]
+      call checks%is_close(maxval(abs(own_pressure(mesh, means, exact) - exact)), 0.0_rk, &
+                           1.0e-11_rk*rock, "linear pressure")
+      means = rock
+      exact = rock
+      exact(pack(mesh%face_nodes(1, :), mesh%face_fracture_cell > 0)) = fluid
+      call checks%is_close(maxval(abs(own_pressure(mesh, means, exact) - rock)), 0.0_rk, &
+                           1.0e-12_rk*rock, "no layer in the cells")
+   end subroutine test_own_pressure
+
    subroutine test_linear_pressure()
       type(mesh_t) :: mesh
       type(mesher_t) :: mesher

@@ -45,7 +45,7 @@ contains
          call follow(lengths(i), is_tried, row, k, rejected)
          call checks%is_true(rejected == 2*count(is_tried), "tries are rejected")
          call same(alone%time, row%time, "times")
-         call same(alone%well_pressure, row%well_pressure, "pressures")
+         call same(pressures(alone), pressures(row), "pressures")
          call same(alone%fracture_length, row%fracture_length, "lengths")
          call same(alone%max_slip, row%max_slip, "slip")
          call same(alone%length_error, row%length_error, "errors of the length")
@@ -53,6 +53,15 @@ contains
          call same(reshape(k_alone, [size(k)]), reshape(k, [size(k)]), "intensities")
       end do
    end subroutine test_rejected
+
+   !> Those of all wells, row after row.
+   pure function pressures(rows)
+      type(history_row_t), intent(in) :: rows(:)
+      real(rk), allocatable :: pressures(:)
+      integer :: i
+
+      pressures = [(rows(i)%well_pressure, i=1, size(rows))]
+   end function pressures
 
    !> Tries in which tips go on: what decides about the next one is as it was.
    subroutine test_on_the_way()

@@ -1,0 +1,45 @@
+!> Errors of intensities by layers thinner than a cell, against numbers of an independent model.
+program test_twolevel_thin_layers
+   use testing_checks, only: checks_t
+   use base_kinds, only: rk
+   use twolevel_thin_layers, only: layer_t, thin_layer_errors
+   implicit none(type, external)
+
+   type(checks_t) :: checks
+   !> Rock of E = 40 GPa, nu = 0.2, alpha = 0.8 at k = 1e-19 m2 beside fluid 7.24 MPa above it.
+   type(layer_t), parameter :: layer = layer_t(cell=1.0e3_rk, diffusivity=6.172839506e-6_rk, &
+                                               drained_tip=0.86_rk, eta=0.3_rk, jump=7.24e6_rk)
+   real(rk), parameter :: k(2) = [3.0e6_rk, 1.0e6_rk], age = 800.0_rk
+   !> The weight function of a half-plane crack times the pressure that diffuses from its faces,
+   !! integrated in Python [Pa m^1/2].
+   real(rk), parameter :: of_layer = 0.8983566782682296e6_rk
+
+   call test_thin_layer()
+   call test_wide_layer()
+   call checks%finish()
+
+contains
+
+   !> A layer far thinner than a cell counts in full; K_I of closed tips is none.
+   subroutine test_thin_layer()
+      real(rk) :: errors(2)
+
+      errors = thin_layer_errors(layer, k, .false., age)
+      call checks%is_close(errors(1), 0.14_rk*k(1) + of_layer, 1.0e-6_rk*k(1), "K_I")
+      call checks%is_close(errors(2), 0.14_rk*k(2), 1.0e-6_rk*k(2), "K_II")
+      errors = thin_layer_errors(layer, k, .true., age)
+      call checks%is_close(errors(1), 0.0_rk, 0.0_rk, "K_I of a closed tip")
+   end subroutine test_thin_layer
+
+   !> A layer of ten cells is seen by them.
+   subroutine test_wide_layer()
+      type(layer_t) :: resolved
+      real(rk) :: errors(2)
+
+      resolved = layer
+      resolved%cell = 0.1_rk*sqrt(layer%diffusivity*age)
+      errors = thin_layer_errors(resolved, k, .false., age)
+      call checks%is_true(all(errors < 0.0025_rk*(0.14_rk*k + of_layer)), "a wide layer")
+   end subroutine test_wide_layer
+
+end program test_twolevel_thin_layers
