@@ -3,6 +3,7 @@
 program test_twolevel_trust
    use testing_checks, only: checks_t
    use base_errors, only: error_t
+   use coarse_layout, only: end_block
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
@@ -215,7 +216,7 @@ contains
    !> What the rock's pressure may hide in the cells: nothing where it is uniform; else K answers it
    !! linearly while all of the fracture slips, and changes twice as much for twice as much of it.
    subroutine test_pressure_in_cells()
-      real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e6_rk  ! [Pa], [Pa/m]
+      real(rk), parameter :: uniform = 3.0e6_rk, gradient = 4.0e6_rk  ! [Pa], [Pa/m]
       type(twolevel_simulation_t) :: simulation
       real(rk) :: once(2, 2), twice(2, 2), none(2, 2), k(2)
 
@@ -238,13 +239,20 @@ contains
       real(rk) :: passing(2, 2)  !< of K_I and K_II, (2, tips) [Pa m^1/2]
       type(error_t), allocatable :: error
       real(rk) :: x
-      integer :: c, i
+      integer(ik) :: c
+      integer :: i
 
       associate (mesh => simulation%mesh, pressure => simulation%state%unknowns(3, :))
          pressure = uniform
          do c = 1, mesh%n_cells
             x = sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk
             pressure(c) = uniform + gradient*(x - 1.0_rk)
+         end do
+         do c = 1, mesh%fracture%n_cells
+            do i = 1, 2
+               x = mesh%xy(1, mesh%face_nodes(i, mesh%fracture%cell_faces(1, c)))
+               pressure(end_block(mesh, c, int(i, ik))) = uniform + gradient*(x - 1.0_rk)
+            end do
          end do
       end associate
       simulation%undrained = .false.
