@@ -99,7 +99,8 @@ contains
       unexplained = own + max(0.0_rk, self%uncertain - maxval(self%layered))
       intensity%k1_error = all(1) + self%passing(1)
       intensity%k2_error = all(2) + self%passing(2)
-      intensity%passing_error = maxval(self%passing) + (maxval(all) - maxval(unexplained))
+      intensity%layer_error = maxval(all) - maxval(unexplained)
+      intensity%passing_error = maxval(self%passing) + intensity%layer_error
       call complete_errors(crack_modulus, intensity)
    end function with_coarse_error
 
