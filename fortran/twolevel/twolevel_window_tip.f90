@@ -84,7 +84,8 @@ contains
 
    !> The intensities found last, with the coarse level's part of their errors as it was known last.
    !! A window and the body differ by layers too, as both lie between a drained tip and an undrained
-   !! one: the larger of the two parts counts, and the difference does not as far as layers explain it.
+   !! one: the larger of the two parts counts, and the difference is no reason not to grow as far as
+   !! layers explain it.
    pure function with_coarse_error(self, crack_modulus) result(intensity)
       class(window_tip_t), intent(in) :: self
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]

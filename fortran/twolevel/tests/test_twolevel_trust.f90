@@ -257,7 +257,7 @@ contains
       end associate
       simulation%undrained = .false.
       simulation%values_are_current = .false.
-      simulation%state%time = 1.0e15_rk  ! layers at faces are wider than cells then, and count nothing
+      simulation%state%time = 1.0e15_rk  ! layers at faces are wider than cells
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "tips")
       call estimate_coarse_errors(simulation, timers, error)
