@@ -8,8 +8,8 @@
 !! At a joint one link follows from the others (fine_joints). Its jump is C w, and its traction f_c
 !! that of the middle of its cell, at the node m: S w - g = -L f - C' L_c f_c with f_c = -(S w -
 !! g)_m/L_m. Rows of S and g combined accordingly leave the form above. Where such an end loads
-!! unknowns that are no jumps of pairs, these stand behind w; combined, their rows have no f left, and
-!! they are eliminated.
+!! unknowns that are no jumps of pairs, these stand behind w; combined, their rows have no f left,
+!! and they are eliminated.
 module fine_contact
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
