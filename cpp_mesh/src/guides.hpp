@@ -22,7 +22,8 @@ struct GuideEdges {
 // The parts of polylines in a rectangle, divided as the sizes ask. Bends of short pieces become
 // chords. Edges are left out where they would force cells of poor shape or small size: near
 // fractures, rosettes, corners and the boundary along them, near each other, at sharp angles and
-// where they are short. So fractures may cross such lines at any angle, and end anywhere beside them.
+// where they are short. So fractures may cross such lines at any angle, and end anywhere beside
+// them.
 GuideEdges guide_edges(const std::vector<std::vector<Vec2>>& lines, const Domain& domain,
                        const Graph& graph, const std::vector<RosettePlan>& rosettes,
                        const SizeField& size);
