@@ -3,16 +3,18 @@
 module app_geometry
    use app_simulations, only: first_mesh
    use base_errors, only: error_t
-   use base_kinds, only: ik
+   use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use growth_network, only: network_of_scene
-   use scene_outline, only: scene_corner, scene_edge
+   use base_plane, only: point_distance
+   use growth_network, only: end_pieces, network_of_scene
+   use scene_outline, only: outline_of_scene, outline_t, scene_corner, scene_edge
    use mesh_check, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
                           culprit_t, fault_t, with_name
    use mesh_types, only: network_t
    use scene_sheet, only: line_text, refuse, sheet_t
    use scene_types, only: scene_t
+   use simulation_rocks, only: keep_off
    implicit none(type, external)
    private
 
@@ -32,7 +34,64 @@ contains
       network = network_of_scene(scene)
       call check_mesh_input(first_mesh(scene, network), network, joints, fault)
       if (allocated(fault)) call blame(sheet, scene, fault, error)
+      if (allocated(error) .or. .not. allocated(scene%regions)) return
+      if (scene%growth%intensities) call check_interfaces(sheet, scene, network, joints, error)
    end subroutine check_geometry
+
+   !> Refuse tips next to rock of another stiffness, whose intensities the run could not find.
+   subroutine check_interfaces(sheet, scene, network, joints, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(joint_t), intent(in) :: joints(:)
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: too_near
+      type(outline_t) :: outline
+      real(rk) :: pieces(2, size(network%first) - 1), radius
+      integer(ik) :: at, end, f
+
+      outline = outline_of_scene(scene)
+      pieces = end_pieces(network)
+      do f = 1, size(network%first, kind=ik) - 1
+         do end = 1, 2
+            at = merge(network%first(f), network%first(f + 1) - 1, end == 1)
+            if (.not. is_tip(network%xy(:, at))) cycle
+            associate (choice => scene%discretization)
+               radius = choice%rosette_radius
+               if (scene%has_fluid()) radius = min(choice%fine_ratio*choice%size_fracture, &
+                                                   0.5_rk*pieces(end, f))
+            end associate
+            call keep_off(network%xy(:, at), scene, radius, too_near)
+            if (.not. allocated(too_near)) cycle
+            call refuse(error, sheet, sheet%find("fracture", int(f)), "", &
+                        "fracture '"//network%names(f)%text//"': "//too_near%message// &
+                        "; move it, or leave intensities and growth out")
+            return
+         end do
+      end do
+
+   contains
+
+      !> An end is a tip unless it lies on the boundary or where fractures meet.
+      pure logical function is_tip(xy)
+         real(rk), intent(in) :: xy(2)  !< [m]
+         real(rk), parameter :: same = 1.0e-6_rk  ! of the size of cells; the mesh library has judged
+         integer(ik) :: k, next
+
+         is_tip = .false.
+         associate (reach => same*scene%discretization%size_fracture, corners => outline%corners)
+            do k = 1, size(joints, kind=ik)
+               if (norm2(joints(k)%xy - xy) <= reach) return
+            end do
+            do k = 1, size(corners, 2, kind=ik)
+               next = mod(k, size(corners, 2, kind=ik)) + 1
+               if (point_distance(xy, corners(:, [k, next])) <= reach) return
+            end do
+         end associate
+         is_tip = .true.
+      end function is_tip
+
+   end subroutine check_interfaces
 
    !> Put a fault into words, at the line of the first culprit.
    subroutine blame(sheet, scene, fault, error)
