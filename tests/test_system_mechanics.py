@@ -392,6 +392,42 @@ def test_nearly_incompressible_rock_is_warned_of(tmp_path: Path) -> None:
     assert error < 0.02 * exact
 
 
+# A closed crack that slides under a shear of 10 MPa and a pressure of 5 MPa, in a body 15 times its
+# length.
+SLIDING = """\
+&domain x_min = -1.5, x_max = 1.5, y_min = -1.5, y_max = 1.5 /
+&material young = 20e9, poisson = NU /
+&fracture name = 'f', x = -0.1, 0.1, y = 0, 0, friction = 0.6 /
+&side name = 'left', y_traction = -10e6 /
+&side name = 'right', y_traction = 10e6 /
+&side name = 'top', x_traction = 10e6, y_traction = -5e6 /
+&side name = 'bottom', x_traction = -10e6, y_traction = 5e6 /
+&restraint x = -1.5, y = -1.5, x_displacement = 0, y_displacement = 0 /
+&restraint x = 1.5, y = -1.5, y_displacement = 0 /
+&fe size_fracture = SIZE, size_boundary = 0.3 /
+&growth intensities = .true. /
+&output vtu = .false. /
+"""
+
+
+@pytest.mark.parametrize("size", [0.01, 0.005])
+@pytest.mark.parametrize("mesh", ["", "&adaptive enabled = .true., tolerance = 0.003 /\n"])
+def test_nearly_incompressible_rock_with_friction(tmp_path: Path, size: float, mesh: str) -> None:
+    """Friction follows wrong normal tractions: warned of, and the stated errors cover it."""
+    scene = SLIDING.replace("SIZE", str(size)) + mesh
+    exact = (10e6 - 0.6 * 5e6) * math.sqrt(math.pi * 0.1)
+    usual = rows(run_text(tmp_path, scene.replace("NU", "0.3")) / "tips.csv")[-1]
+    in_body = abs(float(usual["k2_pa_sqrtm"]))  # plane strain: the same for all ratios of Poisson
+    assert in_body == pytest.approx(exact, rel=5e-3)
+    assert float(usual["k2_error_pa_sqrtm"]) < 1e-3 * exact
+    out = run_text(tmp_path, scene.replace("NU", "0.4999"))
+    assert "several per cent" in str(record(out)["warnings"])
+    for tip in rows(out / "tips.csv"):
+        error = abs(abs(float(tip["k2_pa_sqrtm"])) - in_body)
+        assert error < float(tip["k2_error_pa_sqrtm"]) + 1e-3 * exact
+        assert error < 0.1 * exact
+
+
 def test_a_crack_crosses_a_polygon(tmp_path: Path) -> None:
     """From the re-entrant corner of an L-shaped panel to the side across, which breaks it."""
     out = run_input(

@@ -2,6 +2,7 @@
 module tips_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: turned_left
    use base_tolerances, only: round_off, same_value
    use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t
@@ -9,6 +10,7 @@ module tips_intensity
    use tips_displacement, only: displacement_correlation
    use tips_domain, only: largest_radius, rosette_size
    use tips_energy, only: release_rate
+   use tips_faces, only: face_traction
    use tips_interaction, only: interaction_integrals, interactions_t
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
@@ -23,6 +25,10 @@ module tips_intensity
    real(rk), parameter :: share_of_room = 0.15_rk  !< least radius over the largest possible
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
+
+   !> Above this ratio of Poisson elements around tips show a wrong normal traction, and friction
+   !! follows it; by the mean beyond the domain, up to so many radii, it is judged.
+   real(rk), parameter :: nearly_incompressible = 0.49_rk, judged_reach = 3.0_rk
 
    !> What the intensities of a tip are found by on one mesh, whatever its loads and solution.
    type :: tip_probe_t
@@ -98,6 +104,7 @@ contains
          size_of_all = sum(abs([result%k1, result%k2, result%k1_inner, result%k2_inner, &
                                 result%k1_dc, result%k2_dc, result%g_domain]))
          call respect_contact(model, displacement, frame, intensity)
+         if (is_complete) call doubt_friction(model, loads, displacement, probe, intensity)
          call complete_errors(frame%rock%crack_modulus(), intensity)
       end associate
       if (.not. size_of_all <= huge(1.0_rk)) then
@@ -179,6 +186,52 @@ contains
          end if
       end associate
    end subroutine respect_contact
+
+   !> What K_II of faces that slide with friction may be off because the normal traction there is:
+   !! the sum over the cells of mu |f_n - mean f_n|, with the weight sqrt(2/(pi r)) that a shear
+   !! traction at the distance r from the tip has in K_II.
+   pure subroutine doubt_friction(model, loads, displacement, probe, intensity)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(tip_probe_t), intent(in) :: probe
+      type(intensity_t), intent(inout) :: intensity
+      real(rk), parameter :: pi = acos(-1.0_rk)
+      real(rk), allocatable :: normal(:), r(:, :)
+      logical, allocatable :: is_far(:)
+      real(rk) :: doubt, traction(2)
+      integer(ik) :: cell, end, n
+
+      associate (fine => model%mesh, frame => probe%frame, rock => probe%frame%rock)
+         if (rock%poisson <= nearly_incompressible .or. rock%plane_stress) return
+         if (model%conditions%condition(frame%face) /= face_contact) return
+         if (.not. abs(intensity%k2) > 0.0_rk) return  ! no slip, so no K_II
+         associate (law => model%conditions%law(frame%face))
+            if (law%slip_given .or. .not. law%contact%friction > 0.0_rk) return
+            doubt = law%contact%friction*sqrt(2.0_rk/pi)
+         end associate
+         n = fine%fracture%n_cells
+         allocate (normal(n), source=0.0_rk)
+         allocate (r(2, n), source=huge(1.0_rk))
+         do cell = 1, n
+            if (fine%fracture%cell_fracture(cell) /= frame%fracture) cycle
+            do end = 1, 2
+               r(end, cell) = norm2(fine%xy(:, fine%face_nodes(end, 1, cell)) - frame%origin)
+            end do
+            if (minval(r(:, cell)) > judged_reach*probe%radius) cycle
+            traction = face_traction(model, loads, displacement, cell)
+            normal(cell) = dot_product(traction, turned_left(fine%face_tangent(:, cell)))
+         end do
+      end associate
+      is_far = minval(r, dim=1) < judged_reach*probe%radius .and. maxval(r, dim=1) > probe%radius
+      if (.not. any(is_far)) return
+      normal = abs(normal - sum(normal, mask=is_far)/count(is_far))
+      doubt = doubt*sum(normal*abs(2.0_rk*(sqrt(r(2, :)) - sqrt(r(1, :)))), &
+                        mask=minval(r, dim=1) < judged_reach*probe%radius)
+      intensity%k2_error = intensity%k2_error + doubt
+      intensity%k1_error = intensity%k1_error &
+                           + model%conditions%law(probe%frame%face)%contact%dilation*doubt
+   end subroutine doubt_friction
 
    !> K_II where the slip up to the tip is given: what it says by itself, from displacement
    !! correlation. The integrals need the shear traction that this slip takes, whose error next to

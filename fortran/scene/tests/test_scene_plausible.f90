@@ -181,9 +181,13 @@ contains
       call expect(s, "&material: anisotropy is 12.5: ", "a better conductor one way")
       s = solid
       s%material%poisson = 0.4999_rk
-      call expect(s, "&material: poisson is 0.4999: ", "poisson")
+      call expect(s, "&material: poisson is 0.4999: friction follows", "poisson and friction")
       s%adaptive%enabled = .true.
+      call expect(s, "&material: poisson is 0.4999: friction follows", "with any mesh", .true.)
+      s%fractures%law = "frictionless"
       call expect(s, "", "poisson with a mesh that follows the error")
+      s%adaptive%enabled = .false.
+      call expect(s, "&material: poisson is 0.4999: the elements", "poisson")
       s = solid
       s%material%density = 2.65_rk
       call expect(s, "&material: density is 2.65 kg/m3: ", "density")
