@@ -120,8 +120,8 @@ module scene_plausible
               "give sides displacements or springs instead"), &
       doubt_t("material", "poisson", "-", &
               "above 0.49, likewise, with friction, with &adaptive too", &
-              "friction follows wrong normal tractions around tips then: K_II of tips that slide "// &
-              "closed is off by several per cent; their stated errors cover it")]
+              "friction follows wrong normal tractions around tips then: K_II of tips that "// &
+              "slide closed is off by several per cent; their stated errors cover it")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
