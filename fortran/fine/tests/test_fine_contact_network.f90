@@ -87,6 +87,11 @@ contains
       conditions%law = face_law_t(contact_law_t(friction))
       clamped = clamped_boundary(model%mesh)
       call model%prepare(conditions, error, clamped)
+      associate (tied => model%constraints)
+         call checks%is_true(size(tied%closing, 2) == 2 .and. &
+                             size(tied%kept_dofs) == size(tied%contact_dofs), &
+                             "one end at the T and one at the X have no law, and load jumps alone")
+      end associate
       loads = no_loads(model%mesh)
       do node = 1, model%mesh%n_nodes
          exact(:, node) = uniform_field(model%elasticity, [-pressure, -pressure, shear], &
