@@ -75,7 +75,7 @@ contains
       !> An end is a tip unless it lies on the boundary or where fractures meet.
       pure logical function is_tip(xy)
          real(rk), intent(in) :: xy(2)  !< [m]
-         real(rk), parameter :: same = 1.0e-6_rk  ! of the size of cells; the mesh library has judged
+         real(rk), parameter :: same = 1.0e-6_rk  ! of the size of cells: the mesh library judges
          integer(ik) :: k, next
 
          is_tip = .false.
