@@ -19,8 +19,6 @@ module tips_types
       real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimates for k1 and k2
       !> What of these follows from layers of the rock's pressure, and passes as they spread
       real(rk) :: passing_error = 0.0_rk
-      !> And the part that thin layers of pressure explain, which act on all tips alike [Pa m^1/2]
-      real(rk) :: layer_error = 0.0_rk
       !> k1 and k2 with what they lack (tips_dual), where that is known
       real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk
       real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< estimates for k1_dc and k2_dc

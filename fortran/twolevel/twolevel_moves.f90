@@ -180,8 +180,7 @@ contains
 
          associate (k => tip%intensity, toughness => self%rules%toughness)
             lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk - first, &
-                                (max(k%k1_error, k%k2_error) - k%layer_error) &
-                                /(toughness*tip%drive%resistance))
+                                max(k%k1_error, k%k2_error)/(toughness*tip%drive%resistance))
          end associate
       end function lacks
 

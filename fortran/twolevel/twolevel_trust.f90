@@ -222,7 +222,6 @@ contains
       if (self%undrained) then
          do i = 1, size(self%tip, kind=ik)
             self%windows%tip(i)%passing = 0.0_rk
-            self%windows%tip(i)%layered = 0.0_rk
          end do
          return
       end if
@@ -239,8 +238,8 @@ contains
          if (.not. self%tip(i)%is_free) cycle
          associate (tip => self%windows%tip(i))
             tip%passing = safety*share_of_pressure &
-                          *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed)
-            tip%layered = errors_of_layer(self, i)
+                          *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed) &
+                          + errors_of_layer(self, i)
          end associate
       end do
    end subroutine compare_pressures

@@ -28,7 +28,6 @@ module twolevel_window_tip
       real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
       real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
-      real(rk) :: layered(2) = 0.0_rk  !< and do not show at all, in layers (twolevel_thin_layers)
    contains
       procedure :: element_size
       procedure :: rosette_radius
@@ -79,29 +78,20 @@ contains
       self%uncertain = 0.0_rk
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk
-      self%layered = 0.0_rk
    end subroutine forget_coarse_error
 
    !> The intensities found last, with the coarse level's part of their errors as it was known last.
-   !! A window and the body differ by layers too, as both lie between a drained tip and an undrained
-   !! one: the larger of the two parts counts, and the difference is no reason not to grow as far as
-   !! layers explain it.
    pure function with_coarse_error(self, crack_modulus) result(intensity)
       class(window_tip_t), intent(in) :: self
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]
       type(intensity_t) :: intensity
-      real(rk) :: all(2), own(2), unexplained(2)
 
       intensity = self%found
       intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
       intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
-      own = [intensity%k1_error, intensity%k2_error]
-      all = own + max(self%uncertain, self%layered)
-      unexplained = own + max(0.0_rk, self%uncertain - maxval(self%layered))
-      intensity%k1_error = all(1) + self%passing(1)
-      intensity%k2_error = all(2) + self%passing(2)
-      intensity%layer_error = maxval(all) - maxval(unexplained)
-      intensity%passing_error = maxval(self%passing) + intensity%layer_error
+      intensity%k1_error = intensity%k1_error + self%uncertain(1) + self%passing(1)
+      intensity%k2_error = intensity%k2_error + self%uncertain(2) + self%passing(2)
+      intensity%passing_error = maxval(self%passing)
       call complete_errors(crack_modulus, intensity)
    end function with_coarse_error
 
