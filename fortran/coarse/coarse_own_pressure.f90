@@ -50,7 +50,7 @@ contains
       real(rk), intent(in) :: means(:)  !< (n_cells) [Pa]
       real(rk) :: gradients(2, mesh%n_cells)  !< [Pa/m]
       !> (n_nodes) sums over the cells around: their number, offsets of their centres from the node,
-      !! products of these, pressures beside a reference, and products of those with the offsets
+      !! products of these, pressures relative to a reference, and products of those with the offsets
       real(rk), allocatable :: moments(:, :)
       real(rk) :: around(9), offset(2), p
       integer(ik) :: c, k, v

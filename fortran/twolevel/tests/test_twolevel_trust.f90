@@ -10,6 +10,7 @@ program test_twolevel_trust
    use scene_types, only: scene_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_thin_layers, only: layer_at_tip, layer_t
    use twolevel_trust, only: estimate_coarse_errors
    implicit none(type, external)
 
@@ -23,6 +24,7 @@ program test_twolevel_trust
    call test_root_jump()
    call test_curved_edge()
    call test_pressure_in_cells()
+   call test_layer_at_tip()
    call checks%finish()
 
 contains
@@ -230,6 +232,40 @@ contains
       call checks%is_close(maxval(abs(twice - 2.0_rk*once)), 0.0_rk, 0.02_rk*maxval(twice), &
                            "twice the gradient")
    end subroutine test_pressure_in_cells
+
+   !> Constants of the layer at a tip, from Poisson's ratios in place of Lame's constants, and the
+   !! jump of pressure there.
+   subroutine test_layer_at_tip()
+      real(rk), parameter :: rock = 3.0e6_rk, beyond = 7.0e6_rk  ! [Pa]
+      type(twolevel_simulation_t) :: simulation
+      type(layer_t) :: layer
+      real(rk) :: bulk, bulk_undrained, shear, storage, undrained
+      real(rk), allocatable :: own(:)
+      integer(ik) :: end
+
+      call start(0.1_rk, simulation)
+      associate (m => simulation%scene%material, fluid => simulation%scene%fluid)
+         bulk = m%young/(3.0_rk*(1.0_rk - 2.0_rk*m%poisson))
+         shear = m%young/(2.0_rk*(1.0_rk + m%poisson))
+         storage = m%porosity*fluid%compressibility + (m%biot - m%porosity)/bulk
+         bulk_undrained = bulk + m%biot**2/storage
+         undrained = (3.0_rk*bulk_undrained - 2.0_rk*shear)/(6.0_rk*bulk_undrained + 2.0_rk*shear)
+         allocate (own(simulation%mesh%n_nodes), source=rock)
+         simulation%state%pressure = rock + beyond
+         do end = 1, 2
+            layer = layer_at_tip(simulation%mesh, simulation%model%rock, simulation%state, own, &
+                                 1_ik, end)
+            call checks%is_close(layer%drained_tip, (1.0_rk - undrained)/(1.0_rk - m%poisson), &
+                                 1.0e-12_rk, "drained tip")
+            call checks%is_close(layer%eta, m%biot*(1.0_rk - 2.0_rk*m%poisson) &
+                                 /(2.0_rk*(1.0_rk - m%poisson)), 1.0e-12_rk, "eta")
+            call checks%is_close(layer%jump, beyond, 1.0e-9_rk*beyond, "jump of pressure")
+            call checks%is_close(layer%diffusivity*fluid%viscosity/m%permeability_xx &
+                                 *(storage + m%biot**2/(bulk + 4.0_rk/3.0_rk*shear)), 1.0_rk, &
+                                 1.0e-12_rk, "diffusivity")
+         end do
+      end associate
+   end subroutine test_layer_at_tip
 
    !> That part of the stated errors with a pressure in the rock that grows linearly along x.
    function passing_of(simulation, uniform, gradient) result(passing)
