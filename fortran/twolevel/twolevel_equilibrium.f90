@@ -23,7 +23,7 @@ module twolevel_equilibrium
    use simulation_doubt, only: doubtful
    use twolevel_certainty, only: certainty_t
    use twolevel_doubt, only: improve_windows
-   use twolevel_excess, only: arrivals, excesses, first_onset, onset, tolerance
+   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, tolerance
    use twolevel_moves, only: judge_tips, keep_together, part_company, several_kinds, tips_in_play
    use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
@@ -270,7 +270,8 @@ contains
    end subroutine go_on
 
    !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
-   !! step: then they would exceed their toughness by more than others do.
+   !! step: then they would exceed their toughness by more than the tolerance, and the step is cut to
+   !! where their excess vanishes.
    subroutine stop_gained(self, search, wants, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -283,8 +284,11 @@ contains
       wants = wants .and. .not. stops
       if (search%may_jump) return
       trial%goes_too_far = any(stops .and. search%has_begun)
-      trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=stops)
-      trial%gains_all = trial%arrival < 1.0_rk
+      stops = stops .and. excesses(self) > tolerance
+      trial%gains_all = any(stops)
+      if (trial%gains_all) then
+         trial%arrival = minval(arrivals(self, search%tip%drive%intensity, 0.0_rk), mask=stops)
+      end if
       trial%is_late = trial%gains_all
       search%is_over = trial%goes_too_far .or. trial%is_late
    end subroutine stop_gained
@@ -299,7 +303,7 @@ contains
 
       if (.not. search%may_jump) then
          trial%goes_too_far = any(joins .and. search%has_begun)
-         trial%arrival = minval(arrivals(self, search%tip%drive%intensity), mask=joins)
+         trial%arrival = minval(arrivals(self, search%tip%drive%intensity, at_joints), mask=joins)
          trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)

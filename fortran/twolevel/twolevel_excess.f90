@@ -7,9 +7,12 @@ module twolevel_excess
    implicit none(type, external)
    private
 
-   public :: arrivals, excesses, first_onset, onset, shared_excesses, tolerance
+   public :: arrivals, at_joints, excesses, first_onset, onset, shared_excesses, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
+
+   !> What a tip may exceed its toughness by as it comes to a joint [-].
+   real(rk), parameter :: at_joints = 2.0_rk*tolerance
 
    !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
@@ -68,21 +71,23 @@ contains
    end function onset
 
    !> Shares of the step after which tips at the ends of their pieces have probably come there, and
-   !! exceed their toughness noticeably: they would have gone on until their excess vanishes [-].
-   !! Tips that have nothing left to go along exceed it when their intensity has risen so far.
-   pure function arrivals(self, before) result(share)
+   !! exceed their toughness by more than is allowed: they would have gone on until their excess
+   !! vanishes [-]. Tips that have nothing left to go along exceed it when their intensity has risen
+   !! so far.
+   pure function arrivals(self, before, allowed) result(share)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
+      real(rk), intent(in) :: allowed  !< excess of K_eq over K_IC [-]
       real(rk) :: share(size(self%tip))
       real(rk), dimension(size(self%tip)) :: beyond, room, rise
 
       room = self%segment%length - self%segment%accepted
       beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
       share = room/max(room + beyond, tiny(1.0_rk))
-      share = share + (1.0_rk - share)*min(1.0_rk, 2.0_rk*tolerance/max(excesses(self), tolerance))
+      share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excesses(self), tolerance))
       rise = (self%tip%drive%intensity - before)/self%rules%toughness
       where (self%segment%stays() .and. rise > 0.0_rk)
-         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - 2.0_rk*tolerance)/rise))
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - allowed)/rise))
       end where
    end function arrivals
 
