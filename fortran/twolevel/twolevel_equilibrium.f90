@@ -270,8 +270,8 @@ contains
    end subroutine go_on
 
    !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
-   !! step: then they would exceed their toughness by more than the tolerance, and the step is cut to
-   !! where their excess vanishes.
+   !! step: then they would exceed their toughness by more than the tolerance, and the step is cut
+   !! to where their excess vanishes.
    subroutine stop_gained(self, search, wants, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search

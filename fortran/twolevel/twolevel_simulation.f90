@@ -161,10 +161,12 @@ contains
       end if
       fracture = self%mesh%fracture
       if (fracture%n_cells == 0) return
+      call end_at_tips(self, fracture)
       potency = slip_potency(self)
+      ! Cells wholly ahead of a tip are rock still.
+      where (.not. fracture%cell_s(2, :) > fracture%cell_s(1, :)) potency = 0.0_rk
       shear = shear_beside(self%model%rock, self%mesh)
       self%seismic_moment = self%seismic_moment + sum(shear*potency)
-      call end_at_tips(self, fracture)
       associate (traction => 0.5_rk*sum(self%state%traction(2, :, :), dim=1), &
                  largest => maxval(abs(self%state%jump(2, :, :))))
          ! Faces at the bound of friction that do not move are moved by rounding.

@@ -336,7 +336,7 @@ contains
          call nodal_fields(self%mesh, model%rock, model%regions, state%unknowns, state%tractions, &
                            values%nodal, values%displacement, values%gradient)
          values%nodal(3, :) = own_pressure(self%mesh, state%unknowns(3, :self%mesh%n_cells), &
-                                           values%nodal(3, :))
+                                           values%nodal(3, :), state%pressure)
          values%law = model%cells%law
          values%is_grown = model%cells%roughness > 0.0_rk
       end associate

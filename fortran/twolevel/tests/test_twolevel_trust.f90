@@ -218,7 +218,7 @@ contains
    !> What the rock's pressure may hide in the cells: nothing where it is uniform; else K answers it
    !! linearly while all of the fracture slips, and changes twice as much for twice as much of it.
    subroutine test_pressure_in_cells()
-      real(rk), parameter :: uniform = 3.0e6_rk, gradient = 4.0e6_rk  ! [Pa], [Pa/m]
+      real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e7_rk  ! [Pa], [Pa/m]
       type(twolevel_simulation_t) :: simulation
       real(rk) :: once(2, 2), twice(2, 2), none(2, 2), k(2)
 
@@ -285,6 +285,8 @@ contains
             pressure(c) = uniform + gradient*(x - 1.0_rk)
          end do
          do c = 1, mesh%fracture%n_cells
+            x = 0.5_rk*sum(mesh%xy(1, mesh%face_nodes(:, mesh%fracture%cell_faces(1, c))))
+            simulation%state%pressure(c) = uniform + gradient*(x - 1.0_rk)
             do i = 1, 2
                x = mesh%xy(1, mesh%face_nodes(i, mesh%fracture%cell_faces(1, c)))
                pressure(end_block(mesh, c, int(i, ik))) = uniform + gradient*(x - 1.0_rk)
