@@ -23,6 +23,7 @@ ONE_KIND = {
 }
 
 _LOADER = re.compile(r"_dl_|do_lookup_x|check_match|strcmp|__cxa_finalize")
+_ALLOCATOR = re.compile(r"_int_malloc|_int_free|_int_realloc|malloc_consolidate|unlink_chunk")
 _MODULE = re.compile(r"__([a-z]\w*)_MOD_(?!_)")
 
 
@@ -49,6 +50,10 @@ class Profile:
     def loading(self) -> int:
         """Instructions that find libraries and their names, before and after the program."""
         return sum(count for name, count in self.functions.items() if _LOADER.match(name))
+
+    def searching(self) -> int:
+        """Instructions that look for free memory: they depend on how libraries have left the heap."""
+        return sum(count for name, count in self.functions.items() if _ALLOCATOR.match(name))
 
     def rooms(self) -> Counter[str]:
         """Instructions by room: the first word of a module's name."""
