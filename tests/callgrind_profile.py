@@ -52,7 +52,7 @@ class Profile:
         return sum(count for name, count in self.functions.items() if _LOADER.match(name))
 
     def searching(self) -> int:
-        """Instructions that look for free memory: they depend on how libraries have left the heap."""
+        """Instructions that look for free memory: they depend on what libraries have left."""
         return sum(count for name, count in self.functions.items() if _ALLOCATOR.match(name))
 
     def rooms(self) -> Counter[str]:
