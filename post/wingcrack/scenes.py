@@ -16,6 +16,7 @@ import numpy as np
 
 from wingcrack.errors import RunFailedError, SceneError
 from wingcrack.parameter_table import Parameter, parameter, solver
+from wingcrack_post.text_files import read_text
 
 if TYPE_CHECKING:
     from wingcrack.run import Run
@@ -60,8 +61,8 @@ class Scene:
         """
         scene = cls(path)
         try:
-            text = scene.path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as reason:
+            text = read_text(scene.path)
+        except (OSError, ValueError) as reason:
             raise SceneError(f"{path}: the scene file cannot be read ({reason})") from None
         try:
             groups = f90nml.reads(text)
@@ -292,10 +293,10 @@ def _single(given: Any, known: Parameter, where: str) -> Any:
         right = (*right, str)
     if not isinstance(value, right) or (isinstance(value, bool) and not logical):
         raise SceneError(f"{where} takes a {known.kind} [{known.unit}], not {value!r}")
-    if "whole" in known.kind and int(given) != given:
-        raise SceneError(f"{where} takes a {known.kind}, not {value!r}")
     if isinstance(value, float) and not np.isfinite(value):
         raise SceneError(f"{where} takes a finite number, not {value!r}")
+    if "whole" in known.kind and int(given) != given:
+        raise SceneError(f"{where} takes a {known.kind}, not {value!r}")
     return int(given) if "whole" in known.kind else value
 
 

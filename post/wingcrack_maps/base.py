@@ -9,6 +9,7 @@ from typing import Any
 import f90nml
 from shapely.geometry import Polygon, box
 
+from wingcrack_post.text_files import read_text
 from wingcrack_scenes.errors import SceneError
 
 
@@ -59,7 +60,7 @@ def read_base(path: Path | None) -> Base | None:
     if path is None:
         return None
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
         scene = f90nml.reads(text)
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None

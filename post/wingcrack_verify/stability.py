@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.case import Run, read_toml, refuse_doubles
 from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
@@ -349,7 +349,7 @@ def _beyond_limits(found: Stability, numbers: Mapping[str, float | None]) -> str
 
 def _numbers(output: Path) -> dict[str, float | None]:
     """Numbers of a finished run; only the two estimates may be absent."""
-    record = json.loads((output / "run.json").read_text(encoding="utf-8"))
+    record = read_json(output / "run.json")
     numbers: dict[str, float | None] = {
         name: _finite(record.get(name), name)
         for name in ("mass_error_relative", "contact_residual", "step_cuts")
