@@ -87,8 +87,9 @@ def test_fields_are_those_of_the_nearest_state(wet_run: Path) -> None:
         found.of_rock("temperature")
     with pytest.raises(wingcrack.AbsentError, match=r"needs one of stress\.xx, stress\.yy"):
         found.of_rock("stress")
-    with pytest.raises(wingcrack.RunError, match="nan is no time"):
-        run.fields(float("nan"))
+    for wanted in (float("nan"), float("inf"), "24h", [1.0], 1j):
+        with pytest.raises(wingcrack.RunError, match="is no time: a number is needed"):
+            run.fields(wanted)  # type: ignore[arg-type]
 
 
 def test_what_is_no_run(tmp_path: Path) -> None:

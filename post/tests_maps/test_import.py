@@ -139,7 +139,7 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
         ("m.geojson", "{", "not a JSON file"),
         ("m.geojson", "[]", "no GeoJSON"),
         ("m.geojson", '{"type": "FeatureCollection"}', 'has no list "features"'),
-        ("m.geojson", '{"type": "LineString", "coordinates": [[0, NaN], [1, 1]]}', "NaN is no"),
+        ("m.geojson", '{"type": "LineString", "coordinates": [[0, NaN], [1, 1]]}', "[0, NaN] must"),
         ("m.geojson", '{"type": "LineString", "coordinates": "x"}', "has no geometry that can"),
         ("m.geojson", '{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}', "give --unit m"),
         ("m.geo", "Point(1)={0,0,0};", "it has no physical curves or surfaces"),

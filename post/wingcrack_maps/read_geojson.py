@@ -105,6 +105,8 @@ def _judge_places(given: Any, depth: int, kind: str) -> None:
     """Judge places [x, y] or [x, y, height] that stand so many lists deep."""
     if not isinstance(given, list):
         raise ValueError(f"{json.dumps(given)[:40]} in the {kind} must be a list")
+    if depth == 1 and len({len(item) for item in given if isinstance(item, list)}) > 1:
+        raise ValueError(f"some places of the {kind} have a height and others have none")
     for item in given:
         if depth:
             _judge_places(item, depth - 1, kind)
