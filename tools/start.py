@@ -6,6 +6,7 @@ builds anything. To be called with `python -I`: modules come from post/ and from
 that Python, never from the folder where the user happens to be.
 """
 
+import errno
 import importlib
 import io
 import os
@@ -77,6 +78,11 @@ def start() -> int:
         else:
             sys.argv[1:] = arguments
             runpy.run_module(package, run_name="__main__", alter_sys=True)
+    except OSError as reason:
+        if reason.errno != errno.ENAMETOOLONG:
+            raise
+        print(f"wingcrack: {reason.filename}: {reason.strerror}", file=sys.stderr)
+        return 2
     except ImportError as reason:
         if reason.name is None or reason.name.startswith("wingcrack"):
             raise

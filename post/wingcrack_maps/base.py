@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import f90nml
-from shapely.geometry import Polygon, box
+from shapely.geometry import Polygon
 
-from wingcrack_post.text_files import read_text
+from wingcrack_post.text_files import judged, read_text
 from wingcrack_scenes.errors import SceneError
 
 
@@ -47,9 +48,15 @@ class Base:
                 low_x, low_y, high_x, high_y = (
                     float(domain[name]) for name in ("x_min", "y_min", "x_max", "y_max")
                 )
-                return box(low_x, low_y, high_x, high_y)
-            if domain.get("shape") == "polygon":
-                return Polygon(list(zip(domain["x"], domain["y"], strict=True)))
+                corners = [(low_x, low_y), (high_x, low_y), (high_x, high_y), (low_x, high_y)]
+            elif domain.get("shape") == "polygon":
+                corners = [
+                    (float(x), float(y)) for x, y in zip(domain["x"], domain["y"], strict=True)
+                ]
+            else:
+                return None
+            if all(math.isfinite(number) for corner in corners for number in corner):
+                return Polygon(corners)
         except (KeyError, TypeError, ValueError):
             return None  # the solver says what is wrong with it
         return None
@@ -61,7 +68,7 @@ def read_base(path: Path | None) -> Base | None:
         return None
     try:
         text = read_text(path)
-        scene = f90nml.reads(text)
+        scene = judged(f90nml.reads(text))
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
     except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too

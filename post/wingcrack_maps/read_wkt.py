@@ -39,5 +39,6 @@ def geometry_of(text: str, path: str, source: str) -> shapely.Geometry:
             return shapely.from_wkt(text)
     except (ValueError, shapely.errors.ShapelyError) as reason:
         raise SceneError(
-            f"{path}: {source} is no well-known text such as LINESTRING (0 0, 1 2): {reason}"
+            f"{path}: {source} is no well-known text such as LINESTRING (0 0, 1 2):"
+            f" {' '.join(str(reason).split())}"
         ) from None

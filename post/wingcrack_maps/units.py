@@ -45,7 +45,7 @@ def in_degrees(system: str) -> bool:
     if re.search(r"CRS:?8[34]|CRS:?27|WGS ?84$|^GEOG", system, re.IGNORECASE):
         return True
     code = re.search(r"EPSG.*?(\d+)$|^(?:SRID=)?(\d+)$", system, re.IGNORECASE)
-    if code is None:
+    if code is None or len(code[0]) > 100:
         return False
     number = int(code[1] or code[2])
     return 4000 <= number < 5000 and not any(number in numbers for numbers in _PROJECTED)

@@ -23,6 +23,14 @@ _HALF = re.compile(r"\\u[dD][89a-fA-F]")  # perhaps half a character
 csv.field_size_limit(2**31 - 1)  # a geometry in a cell may be longer than csv's own 131,072 bytes
 
 
+def is_file(path: Path) -> bool:
+    """Whether a name of any length is that of a file."""
+    try:
+        return path.is_file()
+    except OSError:  # it is too long
+        return False
+
+
 def read_text(path: Path) -> str:
     """Text of a file in UTF-8, with or without a byte-order mark."""
     try:
@@ -48,14 +56,14 @@ def json_value(text: str) -> Any:
             json.dumps(found, ensure_ascii=False).encode()
         except UnicodeEncodeError:
             raise ValueError("a text in it has half a character (\\ud800 to \\udfff)") from None
-    return _judged(found)
+    return judged(found)
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Table of a TOML file, all of whose whole numbers a float can hold."""
     text = read_text(path)
     try:
-        return _judged(tomllib.loads(text))
+        return judged(tomllib.loads(text))
     except RecursionError:
         _refuse_depth()
     except tomllib.TOMLDecodeError:
@@ -80,7 +88,7 @@ def _refuse_depth() -> NoReturn:
     raise ValueError(f"lists or tables in it stand more than {_DEEPEST} deep within one another")
 
 
-def _judged(found: Any) -> Any:
+def judged(found: Any) -> Any:
     """Give back what is neither too deep nor too large for what comes after."""
     level = [found]
     for _ in range(_DEEPEST):

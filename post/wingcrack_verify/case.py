@@ -198,7 +198,7 @@ def read_run(data: Any, place: str, folder: Path) -> Run:
     if scene is not None:
         changes, unset, args = fields.mapping("set"), fields.texts("unset", ()), ()
         path = folder / scene
-        if not path.is_file():
+        if not text_files.is_file(path):
             raise CaseError(f"{fields.place}: there is no scene file {scene}")
     else:
         changes, unset, args, path = {}, (), fields.texts("args", ()), None

@@ -65,7 +65,10 @@ def _set(groups: _Groups, address: str, value: Any) -> None:
     if not items or item == [str(len(items) + 1)]:  # the first of its kind, or one more
         items.append(f90nml.Namelist())
     group = _pick(items, item, address)
-    group[name] = list(value) if isinstance(value, list | tuple) else value
+    values = list(value) if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(one, str | int | float) for one in values):
+        raise CaseError(f"'{address}' must be numbers, texts or truth values, not {value}")
+    group[name] = values if isinstance(value, list | tuple) else value
 
 
 def _remove(groups: _Groups, address: str) -> None:

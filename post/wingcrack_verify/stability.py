@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post.text_files import read_json
+from wingcrack_post.text_files import is_file, read_json
 from wingcrack_verify.case import Run, read_toml, refuse_doubles
 from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
@@ -151,7 +151,7 @@ def read_stability(folder: Path) -> Stability:
     title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
     group = fields.choice("group", tuple(GROUPS))
     base = folder / fields.text("scene")
-    if not base.is_file():
+    if not is_file(base):
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
     mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
     limit_s, from_files = fields.positive("time_limit_s", TIME_LIMIT_S), fields.flag("from_files")
