@@ -69,7 +69,7 @@ def test_a_full_disk_is_told(tmp_path: Path) -> None:
 def test_an_argument_that_is_no_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / os.fsdecode(b"\xff.csv")).write_text("x1,y1,x2,y2\n0,0,1,1\n")
     before = sorted(tmp_path.iterdir())
-    arguments = ["wingcrack_maps", "import", b"\xff.csv"]
+    arguments = ("wingcrack_maps", "import", b"\xff.csv")
     status, said = start(tmp_path, *arguments, out=subprocess.DEVNULL, error=subprocess.PIPE)
     assert (status, said) == (2, "wingcrack: the argument '\\udcff.csv' is not UTF-8 text\n")
     assert sorted(tmp_path.iterdir()) == before

@@ -16,7 +16,7 @@ import numpy as np
 
 from wingcrack.errors import RunFailedError, SceneError
 from wingcrack.parameter_table import Parameter, parameter, solver
-from wingcrack_post.text_files import read_text
+from wingcrack_post.text_files import namelist_groups, read_text
 
 if TYPE_CHECKING:
     from wingcrack.run import Run
@@ -61,15 +61,11 @@ class Scene:
         """
         scene = cls(path)
         try:
-            text = read_text(scene.path)
+            groups = namelist_groups(read_text(scene.path))
         except (OSError, ValueError) as reason:
             raise SceneError(f"{path}: the scene file cannot be read ({reason})") from None
-        try:
-            groups = f90nml.reads(text)
-            for name, group in groups.items():
-                scene._groups.setdefault(str(name), []).append(group)
-        except Exception as reason:  # the library raises many kinds
-            raise SceneError(f"{path}: this is no namelist file ({reason})") from None
+        for name, group in groups.items():
+            scene._groups.setdefault(str(name), []).append(group)
         if not scene._groups:
             raise SceneError(f"{path}: the scene file has no groups")
         return scene

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import f90nml
 from shapely.geometry import Polygon
 
-from wingcrack_post.text_files import judged, read_text
+from wingcrack_post.text_files import namelist_groups, read_text
 from wingcrack_scenes.errors import SceneError
 
 
@@ -68,11 +67,11 @@ def read_base(path: Path | None) -> Base | None:
         return None
     try:
         text = read_text(path)
-        scene = judged(f90nml.reads(text))
+        scene = namelist_groups(text)
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
-    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
-        raise SceneError(f"{path}: no scene file of namelist groups ({reason})") from None
+    except ValueError as reason:
+        raise SceneError(f"{path}: {reason}") from None
     found: dict[str, list[dict[str, Any]]] = {}
     for name, group in scene.items():
         for item in group if isinstance(group, list) else [group]:

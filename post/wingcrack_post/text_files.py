@@ -1,4 +1,4 @@
-"""JSON, TOML and CSV as values: the one place where a user's text becomes such.
+"""JSON, TOML, CSV and namelists as values: the one place where a user's text becomes such.
 
 What the libraries refuse in ways of their own (another encoding, too deep, too large) is a
 `ValueError` here, whose text is one sentence; a file that cannot be read is an `OSError`.
@@ -7,11 +7,13 @@ What the libraries refuse in ways of their own (another encoding, too deep, too 
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 import sys
 import tomllib
 from collections.abc import Iterable
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -19,6 +21,8 @@ _DEEPEST = 100  # lists and tables within one another
 _LARGEST = int(sys.float_info.max)
 _DIGITS = len(str(_LARGEST))
 _HALF = re.compile(r"\\u[dD][89a-fA-F]")  # perhaps half a character
+
+_MANY = re.compile(r"(?<![\w.])[0-9]{7,}\*")
 
 csv.field_size_limit(2**31 - 1)  # a geometry in a cell may be longer than csv's own 131,072 bytes
 
@@ -63,13 +67,28 @@ def read_toml(path: Path) -> dict[str, Any]:
     """Table of a TOML file, all of whose whole numbers a float can hold."""
     text = read_text(path)
     try:
-        return judged(tomllib.loads(text))
+        found = tomllib.loads(text)
     except RecursionError:
         _refuse_depth()
     except tomllib.TOMLDecodeError:
         raise
     except ValueError:  # of `int`
         raise ValueError(f"a number in it has more than {_DIGITS} digits") from None
+    judged(found)
+    return found
+
+
+def namelist_groups(text: str) -> Any:
+    """Groups of a scene file by name, as f90nml gives them; those of one name are a list."""
+    import f90nml
+
+    if many := _MANY.search(text):  # each would be written out
+        raise ValueError(f"{many[0]} in it repeats a value more often than 999,999 times")
+    try:
+        with redirect_stdout(io.StringIO()):  # it prints its tables where it does not understand
+            return judged(f90nml.reads(text))
+    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
+        raise ValueError(f"no file of namelist groups ({reason})") from None
 
 
 def csv_rows(lines: Iterable[str], separator: str = ",") -> list[list[str]]:

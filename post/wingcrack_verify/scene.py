@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import f90nml
 
-from wingcrack_post.text_files import read_text
+from wingcrack_post.text_files import namelist_groups, read_text
 from wingcrack_verify.errors import CaseError
 
 _Groups: TypeAlias = dict[str, list[Any]]
@@ -37,9 +37,9 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
         If the file cannot be read or an address leads nowhere.
     """
     try:
-        groups = _groups(f90nml.reads(read_text(path)))
-    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
-        raise CaseError(f"{path.name}: not a namelist file ({reason})") from None
+        groups = _groups(namelist_groups(read_text(path)))
+    except (OSError, ValueError) as reason:
+        raise CaseError(f"{path.name}: {reason}") from None
     for address in unset:
         _remove(groups, address)
     for address, value in (DEFAULTS | dict(changes)).items():
