@@ -243,7 +243,7 @@ class Scene:
         named = [one for one in items if str(one.get("name", "")) == item]
         if len(named) == 1:
             return named[0]
-        if item.isdecimal() and 1 <= int(item) <= len(items):
+        if item.isdecimal() and len(item) < 10 and 1 <= int(item) <= len(items):
             return items[int(item) - 1]
         names = [str(one.get("name", number)) for number, one in enumerate(items, start=1)]
         known = f"there are {', '.join(names)}" if names else "there are none"

@@ -295,9 +295,10 @@ def _length(text: str) -> float:
 
 
 def _places(text: str, count: int, what: str) -> tuple[float, ...]:
-    """Coordinates [m], so many."""
-    numbers = tuple(_number(word) for word in text.split(","))
-    if len(numbers) != count or max(map(abs, numbers)) > FARTHEST:
+    """So many coordinates [m]."""
+    words = text.split(",")
+    numbers = tuple(map(_number, words)) if len(words) == count else (math.inf,)
+    if max(map(abs, numbers)) > FARTHEST:
         raise argparse.ArgumentTypeError(f"'{text}' must be {what}, none beyond {FARTHEST:.0e} m")
     return numbers
 

@@ -100,7 +100,7 @@ class Scene:
         for fracture in self.fractures:
             if fracture.name == label:
                 return fracture
-        if label.isdecimal() and 1 <= int(label) <= len(self.fractures):
+        if label.isdecimal() and len(label) < 10 and 1 <= int(label) <= len(self.fractures):
             return self.fractures[int(label) - 1]
         return None
 

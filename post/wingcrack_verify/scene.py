@@ -96,7 +96,7 @@ def _pick(items: Sequence[Any], item: Sequence[str], address: str) -> Any:
             raise CaseError(f"'{address}': there are {len(items)} such groups; say which")
         return items[0]
     (wanted,) = item
-    if wanted.isdigit():
+    if wanted.isdecimal() and len(wanted) < 10:
         if not 1 <= int(wanted) <= len(items):
             raise CaseError(f"'{address}': there is no item {wanted} (there are {len(items)})")
         return items[int(wanted) - 1]
