@@ -6,6 +6,9 @@ import os
 import shutil
 import subprocess
 import time
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -292,13 +295,33 @@ def test_two_first_calls_share_one_set_up(bare_tree: Tree) -> None:
     assert bare_tree.log.count("cmake --build") == 1
 
 
-def test_what_is_in_use_is_not_changed(own_tree: Tree) -> None:
-    variables = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": ""}
-    with own_tree.start("plot", ".", POST_WAITS_FOR="go on", POST_IMPORTS="pip") as drawing:
+def add_package(tree: Tree, version: str) -> None:
+    """Let no-such-thing be installed in .venv."""
+    (packages,) = tree.root.glob(".venv/lib/python3*/site-packages")
+    folder = packages / f"no_such_thing-{version}.dist-info"
+    folder.mkdir()
+    (folder / "METADATA").write_text(f"Name: no-such-thing\nVersion: {version}\n")
+
+
+@contextmanager
+def drawing(tree: Tree) -> Iterator[subprocess.Popen[str]]:
+    """Use .venv until the file `go on` is there."""
+    with tree.start("plot", ".", POST_WAITS_FOR="go on", POST_IMPORTS="pip") as process:
         deadline = time.monotonic() + 60
-        while not (own_tree.place / "post started").exists():
+        while not (tree.place / "post started").exists():
             assert time.monotonic() < deadline
             time.sleep(0.01)
+        try:
+            yield process
+        finally:
+            (tree.place / "go on").touch()
+            assert process.wait(60) == 0
+
+
+def test_what_is_in_use_is_not_changed(own_tree: Tree) -> None:
+    variables = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": ""}
+    add_package(own_tree, "1.0")
+    with drawing(own_tree) as first:
         with (own_tree.root / "requirements.txt").open("a") as file:
             file.write("no-such-thing==2.0\n")
         before = own_tree.log
@@ -306,11 +329,45 @@ def test_what_is_in_use_is_not_changed(own_tree: Tree) -> None:
             assert other.stderr is not None
             said = other.stderr.readline()
             assert "waiting for other calls that use .venv to finish" in said
+            assert f"60 s at most: wingcrack plot . (process {first.pid})" in said
             assert own_tree.log == before
             (own_tree.place / "go on").touch()
-            assert drawing.wait(60) == 0
             other.communicate(timeout=300)
     assert "pip install" in own_tree.log.removeprefix(before)
+
+
+def test_a_call_waits_only_so_long_for_what_is_in_use(own_tree: Tree) -> None:
+    add_package(own_tree, "1.0")
+    with drawing(own_tree) as first:
+        (own_tree.root / "requirements.txt").write_text("no-such-thing==2.0\n")
+        before = own_tree.log
+        done = own_tree.call("check", own_tree.scene(), WINGCRACK_WAIT="1")
+        assert (done.returncode, done.stdout) == (3, "")
+        said = done.stderr.splitlines()[-1]
+        assert said.startswith("wingcrack: waited 1 s for other calls that use .venv to finish")
+        assert said.endswith(f"call again: wingcrack plot . (process {first.pid})")
+        assert own_tree.log == before
+    # Nothing of the old environment was touched.
+    (own_tree.root / "requirements.txt").write_text("")
+    done = own_tree.call("check", own_tree.scene(), WINGCRACK_NO_INSTALL="1")
+    assert done.returncode == 0, done.stderr
+
+
+def test_packages_are_added_while_others_are_in_use(own_tree: Tree, tmp_path: Path) -> None:
+    name = "no_such_thing-2.0"
+    with zipfile.ZipFile(tmp_path / f"{name}-py3-none-any.whl", "w") as wheel:
+        wheel.writestr("no_such_thing.py", "")
+        wheel.writestr(f"{name}.dist-info/METADATA", "Name: no-such-thing\nVersion: 2.0\n")
+        about = "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+        wheel.writestr(f"{name}.dist-info/WHEEL", about)
+        wheel.writestr(f"{name}.dist-info/RECORD", "")
+    (own_tree.root / "requirements_study.txt").write_text("no-such-thing==2.0\n")
+    (own_tree.place / "s.toml").write_text("")
+    with drawing(own_tree):
+        variables = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(tmp_path)}
+        done = own_tree.call("study", "s.toml", **variables)
+        assert (done.returncode, done.stdout) == (0, "post s.toml\n"), done.stderr
+        assert "waiting" not in done.stderr
 
 
 def test_the_tools_of_a_developer_are_not_for_everyone(own_tree: Tree) -> None:

@@ -7,6 +7,9 @@ readonly venv=$root/.venv
 readonly venv_python=$venv/bin/python
 readonly venv_record=$venv/wingcrack-requirements
 readonly setup_log=$root/build/setup.log
+readonly setup_lock=$root/build/setup.lock
+# How long a call waits: for calls that use .venv, which may go on for good, and for a set-up [s].
+readonly patience=${WINGCRACK_WAIT:-60} long_patience=1800
 # The file that lets Python in .venv find the packages of post/.
 readonly path_file=wingcrack.pth
 
@@ -61,16 +64,48 @@ prepare_docs() {
 # with_lock COMMAND...: one call at a time does such work; the others wait, and find it done.
 with_lock() {
     local lock
-    { mkdir -p "$root/build" && exec {lock}>"$root/build/setup.lock"; } ||
+    { mkdir -p "$root/build" && exec {lock}>"$setup_lock"; } ||
         fail "$exit_environment" "the set-up needs to write to $root/build"
-    if ! flock --nonblock "$lock"; then
-        say 'waiting for another call to finish the set-up'
-        flock "$lock"
-    fi
+    take_lock "$lock" "$setup_lock" "$long_patience" 'another call to finish the set-up'
     trap - TERM # long work is left at once
     "$@"
     end_on_signals
     exec {lock}>&-
+}
+
+# take_lock HANDLE FILE SECONDS WHAT [--shared]: wait for a lock, not for good; say for what, and
+# who has it. Where a file system knows no locks there is nothing to wait for.
+take_lock() {
+    if flock ${5:+"$5"} --nonblock "$1" 2>/dev/null; then return; fi
+    say "waiting for $4, $3 s at most: $(users_of "$2")"
+    local left
+    for ((left = $3; left > 0; left--)); do # a second each, so that signals are heeded
+        flock ${5:+"$5"} --conflict-exit-code 75 --timeout 1 "$1" 2>/dev/null
+        if (($? != 75)); then return; fi
+    done
+    fail "$exit_environment" "waited $3 s for $4: let this come to its end, or end it, and call" \
+        "again: $(users_of "$2")"
+}
+
+# users_of FILE: the calls that have it open, as "wingcrack view out/onset (process 123)"; where none
+# is a call, the other processes.
+users_of() {
+    local process file words calls='' others=''
+    for process in /proc/[0-9]*; do
+        if [[ ${process##*/} == "$$" || ${process##*/} == "$BASHPID" ]]; then continue; fi
+        for file in "$process"/fd/*; do
+            if [[ ! $file -ef $1 ]]; then continue; fi
+            mapfile -d '' -t words <"$process/cmdline"
+            if [[ ${words[1]:-} == */wingcrack ]]; then
+                calls+="; wingcrack ${words[*]:2} (process ${process##*/})"
+            else
+                others+="; ${words[*]} (process ${process##*/})"
+            fi
+            break
+        done
+    done 2>/dev/null
+    if [[ -n $calls ]]; then others=$calls; fi
+    printf '%s' "${others#; }"
 }
 
 set_up() {
@@ -223,7 +258,8 @@ add_packages() {
     printf '%s/post\n' "$root" >"$folder/$path_file"
 }
 
-# The requirements that .venv does not hold, one per line; all of them if it cannot say.
+# The requirements that .venv does not hold, one per line, with the version that it holds instead;
+# all of them if it cannot say.
 missing_requirements() {
     "$venv_python" -I - "${requirement_lists[@]}" 2>/dev/null <<'PYTHON' ||
 import fileinput
@@ -238,8 +274,10 @@ for line in fileinput.input(sys.argv[1:], encoding="utf-8"):
         found = importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
         found = None
-    if found != version:
+    if found is None:
         print(line.strip())
+    elif found != version:
+        print(f"{line.strip()} (here is {found})")
 PYTHON
         grep --no-filename '==' "${requirement_lists[@]}"
 }
@@ -271,22 +309,24 @@ is_new_enough() { "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/
 install_python() {
     if [[ -z $system_python ]] && is_new_enough python3; then system_python=python3; fi
     if [[ -z $system_python ]]; then fail "$exit_environment" "$(python_too_old)"; fi
-    claim_python
+    local list wanted=() has_pip=1
+    "$venv_python" -I -c 'import pip' 2>/dev/null || has_pip=0
+    # Packages that are added disturb nobody; any other change waits until nobody uses .venv.
+    if ((!has_pip)) || [[ $(missing_requirements) == *'(here is '* ]]; then claim_python; fi
     say "installing Python packages into .venv (log: $setup_log)"
-    local list wanted=()
     for list in "${requirement_lists[@]}"; do
         find_record "$list"
-        rm -f "$record_file"
+        if [[ -n ${claim:-} ]]; then rm -f "$record_file"; fi
         wanted+=(--requirement "$list")
     done
-    if ! "$venv_python" -I -c 'import pip' 2>/dev/null; then
+    if ((!has_pip)); then
         logged "$system_python" -m venv --clear "$venv" ||
             fail_with_log 'making the Python environment .venv failed'
     fi
     logged "$venv_python" -m pip install --no-input --disable-pip-version-check "${wanted[@]}" ||
         fail_with_log 'installing the Python packages failed'
     record_python || fail "$exit_environment" "$venv cannot be written"
-    exec {claim}>&-
+    if [[ -n ${claim:-} ]]; then exec {claim}>&- && unset claim; fi
 }
 
 # Whoever uses .venv shares a lock of its folder, which is there in a tree that cannot be written,
@@ -295,17 +335,14 @@ install_python() {
 # From here to the end of this call no other one changes .venv.
 hold_python() {
     exec {hold}<"$venv"
-    flock --shared "$hold" 2>/dev/null
+    take_lock "$hold" "$venv" "$long_patience" 'another call to finish its change of .venv' --shared
     python_is_ready || fail "$exit_environment" '.venv was changed by another call: try again'
 }
 
 # Wait until no other call uses .venv.
 claim_python() {
     mkdir -p "$venv" && exec {claim}<"$venv" || fail "$exit_environment" "$venv cannot be written"
-    if ! flock --nonblock "$claim" 2>/dev/null; then
-        say 'waiting for other calls that use .venv to finish: it must change'
-        flock "$claim" 2>/dev/null
-    fi
+    take_lock "$claim" "$venv" "$patience" 'other calls that use .venv to finish, as it must change'
 }
 
 python_too_old() { printf 'Python 3.11 or newer is needed, and here is %s' "$(python3 --version)"; }

@@ -14,6 +14,7 @@ import pytest
 import wingcrack
 from synthetic_run import GROWTH_STEP, HOUR, STEPS, times, well_pressure
 from wingcrack.units import column_unit, column_words, field_unit
+from wingcrack_view.content import Content
 
 TOP = Path(__file__).resolve().parents[2]
 _ROW = re.compile(r"\| `(\w+)` \| ([^|]+) \| [^|]* \| ([^|]*)")
@@ -87,8 +88,9 @@ def test_fields_are_those_of_the_nearest_state(wet_run: Path) -> None:
         found.of_rock("temperature")
     with pytest.raises(wingcrack.AbsentError, match=r"needs one of stress\.xx, stress\.yy"):
         found.of_rock("stress")
-    with pytest.raises(wingcrack.RunError, match="nan is no time"):
-        run.fields(float("nan"))
+    for wanted in (float("nan"), float("inf"), "24h", [1.0], 1j):
+        with pytest.raises(wingcrack.RunError, match="is no time: a number is needed"):
+            run.fields(wanted)  # type: ignore[arg-type]
 
 
 def test_what_is_no_run(tmp_path: Path) -> None:
@@ -155,6 +157,22 @@ def test_words_where_numbers_belong(own_run: Path) -> None:
     path.write_text(path.read_text(encoding="utf-8").replace("7000000.0", "much"), encoding="utf-8")
     with pytest.raises(wingcrack.RunError, match="'much' in column 'well_pressure_pa' is no numb"):
         _ = wingcrack.open(own_run).history
+
+
+def test_a_whole_number_of_any_length_is_a_number(own_run: Path) -> None:
+    history = own_run / "history.csv"
+    head, *rows = history.read_text().splitlines()
+    history.write_text("\n".join([f"{head},many", *(f"{row},{'9' * 30}" for row in rows), ""]))
+    assert wingcrack.open(own_run).history["many"].max() == 1e30
+
+
+def test_a_network_that_lacks_what_wells_need(own_run: Path) -> None:
+    network = own_run / "network.json"
+    content = json.loads(network.read_text())
+    content["fractures"] = [{"fracture": 1}]
+    network.write_text(json.dumps(content))
+    with pytest.raises(wingcrack.RunError, match="the network is damaged"):
+        Content(own_run).overview()
 
 
 def test_a_table_without_rows(own_run: Path) -> None:

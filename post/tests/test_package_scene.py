@@ -81,6 +81,7 @@ def test_shipped_scenes_are_the_same_when_written_and_read(path: Path, tmp_path:
         ("young", 1e9, "'young' must be group.name or group.item.name"),
         ("fracture.f9.friction", 0.4, "there is no item 'f9' of &fracture; there are a, b"),
         ("fracture.3.friction", 0.4, "there is no item '3'"),
+        (f"fracture.{'9' * 5000}.friction", 0.4, "there is no item '999"),
         ("fracture.friction", 0.4, "there are 2 such groups; say which"),
         ("fracture.a.friction", "high", "fracture.friction takes a number"),
         ("fracture.a.friction", True, "not True"),

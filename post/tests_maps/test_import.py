@@ -11,10 +11,13 @@ import pytest
 
 from map_calls import OUTCROP, area, feature, fractures, geojson, imported, needs_solver, rows
 from wingcrack_maps.cli import main
+from wingcrack_maps.read import read_map
 from wingcrack_maps.units import in_degrees
 
 pytestmark = needs_solver
 
+LINE = '{"type": "LineString", "coordinates": [[9, 9], %s]}'
+IN_A = '{"type": "GeometryCollection", "geometries": ['
 LINES = (feature((0, 0), (10, 0), name="a"), feature((5, -4), (5, 6), name="b", friction=0.7))
 
 
@@ -108,6 +111,30 @@ def test_names_are_made_good_and_different(tmp_path: Path) -> None:
     assert len([row for row in rows(scene, "noted") if row[0] == "renamed"]) == 4
 
 
+def test_a_name_begins_with_a_letter_or_a_digit(tmp_path: Path) -> None:
+    lines = [feature((0, 4 * k), (9, 4 * k), name=n) for k, n in enumerate((".a", "..", "-b_"))]
+    status, scene = imported(geojson(tmp_path / "m.geojson", *lines), "--unit", "m")
+    assert status == 0
+    assert list(fractures(scene)) == ["a", "f2", "b"]
+
+
+def test_a_hidden_map_gives_a_scene_that_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".my map.csv").write_text("x1,y1,x2,y2\n0,0,9,9\n")
+    assert main(["import", ".my map.csv"]) == 0
+    assert (tmp_path / "my_map.nml").is_file()
+    with pytest.raises(SystemExit, match="2"):
+        main(["import", ".my map.csv", "--out", ".mine.nml"])
+
+
+def test_a_long_geometry_in_a_cell_is_read(tmp_path: Path) -> None:
+    places = ", ".join(f"{k} {k % 2}.0" for k in range(20_000))
+    (tmp_path / "m.csv").write_text(f'name,wkt\nlong,"LINESTRING ({places})"\n')
+    assert len(read_map(tmp_path / "m.csv", None).lines[0].points) == 20_000
+
+
 def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
     path = geojson(tmp_path / "m.geojson", feature((0, 0), (9, 1), strike=30, Aperture="2e-4"))
     status, scene = imported(path, "--unit", "m")
@@ -139,9 +166,23 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
         ("m.geojson", "{", "not a JSON file"),
         ("m.geojson", "[]", "no GeoJSON"),
         ("m.geojson", '{"type": "FeatureCollection"}', 'has no list "features"'),
-        ("m.geojson", '{"type": "LineString", "coordinates": [[0, NaN], [1, 1]]}', "NaN is no"),
+        ("m.geojson", '{"type": "LineString", "coordinates": [[0, NaN], [1, 1]]}', "[0, NaN] must"),
         ("m.geojson", '{"type": "LineString", "coordinates": "x"}', "has no geometry that can"),
         ("m.geojson", '{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}', "give --unit m"),
+        ("m.geojson", LINE.replace("9, 9", "9, 9, 1") % "[0, 0, null]", "[0, 0, null] must"),
+        ("m.geojson", LINE % "[0, 0, 5]", "some places of the LineString have a height"),
+        ("m.geojson", LINE % "[1e999, 0]", "the place [Infinity, 0] must hold finite numbers"),
+        ("m.geojson", LINE % f"[{'9' * 400}, 0]", "has 400 digits, which is too large"),
+        ("m.geojson", LINE % "{}", "must be a list"),
+        ("m.geojson", LINE % ("[" * 900 + "]" * 900), "more than 100 deep within one another"),
+        ("m.geojson", IN_A * 900 + LINE % "[0, 0]" + "]}" * 900, "more than 100 deep within"),
+        ("m.geojson", "[" * 100_000, "more than 100 deep within one another"),
+        ("m.geojson", '{"type": "\\ud800", "a": 1}', "a text in it has half a character"),
+        ("m.geojson", '{"type": "Circle"}', 'its type "Circle" is none of Point, MultiPoint'),
+        ("m.wkt", "GEOMETRYCOLLECTION (" * 100_000, "more than 100 brackets in one another"),
+        ("m.wkt", "LINESTRING (0 0, 1 1)\0)", "it has a zero byte"),
+        ("m.wkt", "LINESTRING (0 0, 1e999 1)", "line 1 has a coordinate that is no finite number"),
+        ("m.csv", "wkt\nGEOMETRYCOLLECTION" + "(" * 150_000, "row 2 is no well-known text"),
         ("m.geo", "Point(1)={0,0,0};", "it has no physical curves or surfaces"),
         ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n", "all its lines lie at one place"),
         ("m.csv", "x1,y1,x2,y2\n1,1,1,1\n2,2,2,2\n", "no fracture has a length"),

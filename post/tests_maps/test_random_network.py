@@ -167,3 +167,38 @@ def test_two_sets_become_a_scene_that_the_solver_takes(tmp_path: Path) -> None:
     assert any(name.startswith("set1_") for name in names)
     assert any(name.startswith("set2_") for name in names)
     assert {row[0] for row in rows(out, "noted")} == {"density", "rejected", "assumed"}
+
+
+@pytest.mark.parametrize(
+    ("option", "reason"),
+    [
+        ("--box=0,0,1e308,1e308", "must be X0,Y0,X1,Y1, none beyond 1e+08 m"),
+        ("--box=0,0,1e-300,1", "with X0 < X1"),
+        ("--margin=1e308", "must be at most 1e+08 m"),
+        ("--length=constant:1e300", "lengths must be at most 1e+08 m"),
+        ("--length=lognormal:1,1e3", "SIGMA must be at most 20"),
+        ("--out=.mine.nml", "begins with a letter or a digit"),
+    ],
+)
+def test_numbers_and_names_of_a_call_are_bounded(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    option: str,
+    reason: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    given = {
+        "--box": "0,0,9,9",
+        "--density": "p20=1",
+        "--length": "constant:1",
+        "--orientation": "uniform",
+        "--out": "n.nml",
+    }
+    name, _, value = option.partition("=")
+    given[name] = value
+    with pytest.raises(SystemExit) as ended:
+        main(["network", *(f"{key}={text}" for key, text in given.items())])
+    assert ended.value.code == 2
+    assert reason in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -75,7 +75,22 @@ def test_quick_replaces_what_it_gives(tmp_path: Path) -> None:
     assert "'short'" in study.runs[0].text
 
 
+def test_a_byte_order_mark_is_no_matter(tmp_path: Path) -> None:
+    sound = small_study(tmp_path, SOUND).file
+    sound.write_bytes(b"\xef\xbb\xbf" + sound.read_bytes())
+    assert len(read_study(sound).runs) > 0
+
+
 BAD = {
+    "lists in lists": (SOUND + f"x = {'[' * 900}{']' * 900}\n", "more than 100 deep within"),
+    "tables in tables": (SOUND + f"[{'.'.join('a' * 900)}]\n", "more than 100 deep within"),
+    "a number of 400 digits": (SOUND + f"[constants]\na = {'9' * 400}\n", "larger than 1.8e+308"),
+    "a number of 5000 digits": (SOUND + f"a = {'9' * 5000}\n", "has more than 309 digits"),
+    "a name that is too long": (
+        SOUND.replace('scene = "', f'scene = "{"a" * 300}'),
+        "there is no scene file",
+    ),
+    "a date": (SOUND + '[set]\n"time.end" = 1979-05-27\n', "must be numbers, texts or truth"),
     "a key that is unknown": (SOUND + "[colour]\n", "'colour' is unknown"),
     "a path without quotes": (
         HEAD + "[over]\ninjection.rate = [1e-9]\n",

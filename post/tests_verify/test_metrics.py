@@ -114,6 +114,12 @@ def test_expressions_compute_and_nothing_else() -> None:
         "a if b else 1",
         "sqrt(1, 2, 3)",
         "1 +",
+        "sqrt(1, 2)",
+        "1\0",
+        "9" * 400,
+        "9" * 5000,
+        "(" * 5000 + "1" + ")" * 5000,
+        "1" + "+1" * 5000,
     ):
         with pytest.raises(CaseError):
             evaluate(text, values)

@@ -141,6 +141,7 @@ def test_a_place_that_no_row_has_is_an_error(tmp_path: Path) -> None:
         ('name = "{run}"', 'name = "{}"', "a brace in '{}' has no partner"),
         ('name = "{run}"', 'name = "one"', "the run 'one' stands twice"),
         ('name = "{run}"', 'name = "{run:.2f}"', "'.2f' is no format for 'run'"),
+        ('name = "{run}"', 'name = "{run:2000000000}"', "is no format for 'run'"),
         ('name = "{run}"', 'name = "{1/(size - 0.2)}"', "is inf"),
         ('name = "{run}"', 'name = "{2*run}"', "'run' in '{2*run}' is no number"),
         ('name = "{run}"', 'name = "{size +}"', "is no arithmetic expression"),

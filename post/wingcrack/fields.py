@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack.errors import AbsentError, RunError
+from wingcrack.errors import AbsentError
 from wingcrack.units import field_unit
 from wingcrack_post.fields import Snapshot, nearest, read_fractures, read_matrix
 from wingcrack_post.table import FloatArray
@@ -95,8 +95,6 @@ def read_fields(
     """
     if not matrix:
         raise AbsentError(f"{directory} has no fields (VTU output off, or no step written yet)")
-    if moment is not None and not np.isfinite(moment):
-        raise RunError(f"fields of a run: {moment} is no time")
     snapshot = matrix[-1] if moment is None else nearest(matrix, moment)
     rock = read_matrix(snapshot.path)
     segments, cells = np.empty((0, 2, 2)), dict[str, FloatArray]()

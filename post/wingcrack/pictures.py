@@ -15,6 +15,7 @@ from matplotlib.colors import to_rgb
 from wingcrack.colours import colouring, default_field, rock_of, values_of
 from wingcrack.errors import EnvironmentLacksError
 from wingcrack_post import style
+from wingcrack_post.durations import moment_of
 from wingcrack_post.fields import FractureField
 from wingcrack_post.frames import Window, extent, zoom_window
 from wingcrack_post.load import abscissa
@@ -179,7 +180,7 @@ def build_scene(run: Run, field: str | None, time: float | None) -> pyvista.Plot
     off_screen = not _has_display()
     picture = Picture(run, field, off_screen=off_screen, size=(960, 720))
     moments = np.array(run.field_moments)
-    place = moments.size - 1 if time is None else int(np.argmin(np.abs(moments - time)))
+    place = moments.size - 1 if time is None else int(np.argmin(np.abs(moments - moment_of(time))))
     picture.put(place)
     if moments.size > 1 and not off_screen:
         picture.add_slider(place)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -440,16 +439,9 @@ class Run:
         return read_table(path)
 
     def _json(self, name: str) -> dict[str, Any] | None:
-        path = self.directory / name
-        if not path.exists():
-            return None
-        try:
-            found = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as reason:
-            raise RunError(f"{path}: the file is no valid JSON ({reason})") from None
-        if not isinstance(found, dict):
-            raise RunError(f"{path}: a JSON object was expected")
-        return found
+        from wingcrack_post.read import optional_json
+
+        return optional_json(self.directory / name)
 
     def _named(self) -> str:
         try:

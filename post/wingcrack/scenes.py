@@ -16,6 +16,7 @@ import numpy as np
 
 from wingcrack.errors import RunFailedError, SceneError
 from wingcrack.parameter_table import Parameter, parameter, solver
+from wingcrack_post.text_files import namelist_groups, read_text
 
 if TYPE_CHECKING:
     from wingcrack.run import Run
@@ -60,15 +61,11 @@ class Scene:
         """
         scene = cls(path)
         try:
-            text = scene.path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as reason:
+            groups = namelist_groups(read_text(scene.path))
+        except (OSError, ValueError) as reason:
             raise SceneError(f"{path}: the scene file cannot be read ({reason})") from None
-        try:
-            groups = f90nml.reads(text)
-            for name, group in groups.items():
-                scene._groups.setdefault(str(name), []).append(group)
-        except Exception as reason:  # the library raises many kinds
-            raise SceneError(f"{path}: this is no namelist file ({reason})") from None
+        for name, group in groups.items():
+            scene._groups.setdefault(str(name), []).append(group)
         if not scene._groups:
             raise SceneError(f"{path}: the scene file has no groups")
         return scene
@@ -246,7 +243,7 @@ class Scene:
         named = [one for one in items if str(one.get("name", "")) == item]
         if len(named) == 1:
             return named[0]
-        if item.isdecimal() and 1 <= int(item) <= len(items):
+        if item.isdecimal() and len(item) < 10 and 1 <= int(item) <= len(items):
             return items[int(item) - 1]
         names = [str(one.get("name", number)) for number, one in enumerate(items, start=1)]
         known = f"there are {', '.join(names)}" if names else "there are none"
@@ -292,10 +289,10 @@ def _single(given: Any, known: Parameter, where: str) -> Any:
         right = (*right, str)
     if not isinstance(value, right) or (isinstance(value, bool) and not logical):
         raise SceneError(f"{where} takes a {known.kind} [{known.unit}], not {value!r}")
-    if "whole" in known.kind and int(given) != given:
-        raise SceneError(f"{where} takes a {known.kind}, not {value!r}")
     if isinstance(value, float) and not np.isfinite(value):
         raise SceneError(f"{where} takes a finite number, not {value!r}")
+    if "whole" in known.kind and int(given) != given:
+        raise SceneError(f"{where} takes a {known.kind}, not {value!r}")
     return int(given) if "whole" in known.kind else value
 
 

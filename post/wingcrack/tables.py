@@ -34,7 +34,7 @@ def column(table: Table, name: str) -> npt.NDArray[Any]:
     text = table.text(name)
     if name in TEXTS:
         return text.copy()
-    if text.size and np.all(np.char.isdecimal(text)):
+    if text.size and np.all(np.char.isdecimal(text)) and np.char.str_len(text).max() < 19:
         return text.astype(np.int64)
     if name in LABELS and text.size:
         return text.copy()

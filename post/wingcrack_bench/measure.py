@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import os
 import re
 import resource
@@ -17,6 +16,7 @@ from pathlib import Path
 
 from wingcrack_bench.catalogue import Benchmark
 from wingcrack_bench.scenes import write_scene
+from wingcrack_post.text_files import read_json
 from wingcrack_runner.task import ONE_THREAD
 
 # One set of kernels of OpenBLAS whatever the processor, too: counts mean something then.
@@ -220,7 +220,7 @@ def _call(
 
 def _read(out: Path, cpu_s: float) -> Run:
     """Read what a run wrote about itself."""
-    record = json.loads((out / "run.json").read_text(encoding="utf-8"))
+    record = read_json(out / "run.json")
     phases = {name: float(seconds) for name, seconds in record["timers_s"].items()}
     phases["rest"] = max(0.0, cpu_s - sum(phases.values()))
     with (out / "events.csv").open(newline="", encoding="utf-8") as file:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from wingcrack_scenes.arguments import judge_name
+
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
+FARTHEST = 1.0e8  # of places and lengths [m]: farther than the earth is wide
+_WIDEST = 20.0  # SIGMA
 UNITS = ("m", "km", "ft", "cm", "mm")
 
 _IMPORT = """\
@@ -79,7 +84,8 @@ def _judge_map(parser: _Parser, given: argparse.Namespace) -> None:
     if given.map.suffix.lower() not in ENDINGS:
         parser.error(f"{given.map} must end in one of {', '.join(ENDINGS)}, which says what it is")
     if given.out is None:
-        given.out = Path(given.map.stem + ".nml")
+        name = re.sub(r"[^A-Za-z0-9_.-]+", "_", given.map.stem)[:64].lstrip("_.-")
+        given.out = Path(f"{name or 'map'}.nml")
 
 
 def _judge_laws(parser: _Parser, given: argparse.Namespace) -> None:
@@ -95,6 +101,8 @@ def _judge_files(parser: _Parser, given: argparse.Namespace) -> None:
         parser.error(f"there is no scene file {given.scene}")
     if given.out.suffix != ".nml":
         parser.error(f"--out must end in .nml, unlike {given.out}")
+    if given.scene is None:
+        judge_name(parser, given.out)
     if given.out.is_dir() or not given.out.parent.is_dir():
         parser.error(f"the scene cannot go to {given.out}: there is no such folder, or it is one")
     for file in (given.out, given.out.with_suffix(".repairs.csv")):
@@ -152,7 +160,7 @@ def _add_network(commands: argparse._SubParsersAction[_Parser]) -> _Parser:
     )
     parser.add_argument(
         "--distance",
-        type=_positive,
+        type=_length,
         default=0.0,
         metavar="D",
         help="least distance of two fractures [m], which then do not cross (default: none kept)",
@@ -185,16 +193,16 @@ def _add_common(parser: _Parser, needs_out: bool) -> None:
         metavar="NAME=VALUE",
         help="entry of all fractures that do not say it, as friction=0.7",
     )
-    parser.add_argument("--cell", type=_positive, metavar="SIZE", help="cells at the fractures [m]")
+    parser.add_argument("--cell", type=_length, metavar="SIZE", help="cells at the fractures [m]")
     parser.add_argument(
-        "--margin", type=_positive, metavar="D", help="room around the fractures in the body [m]"
+        "--margin", type=_length, metavar="D", help="room around the fractures in the body [m]"
     )
     parser.add_argument(
-        "--repair", type=_positive, metavar="D", help="repair what is nearer than this [m]"
+        "--repair", type=_length, metavar="D", help="repair what is nearer than this [m]"
     )
     parser.add_argument(
         "--near",
-        type=_positive,
+        type=_length,
         metavar="D",
         help="list what is nearer than this [m] (default: D of --repair, or a fortieth of the"
         " median length)",
@@ -247,6 +255,10 @@ def _judge_length(name: str, numbers: tuple[float, ...], text: str) -> None:
         lengths = numbers
     if min(lengths) <= 0.0 or (name == "lognormal" and numbers[1] <= 0.0):
         raise argparse.ArgumentTypeError(f"'{text}': lengths must be greater than 0")
+    if name == "lognormal" and numbers[1] > _WIDEST:
+        raise argparse.ArgumentTypeError(f"'{text}': SIGMA must be at most {_WIDEST:g}")
+    if max(lengths) > FARTHEST:
+        raise argparse.ArgumentTypeError(f"'{text}': lengths must be at most {FARTHEST:.0e} m")
     if len(numbers) > 2 and not 0.0 <= numbers[-2] < numbers[-1]:
         raise argparse.ArgumentTypeError(f"'{text}': MIN must be less than MAX")
 
@@ -275,6 +287,22 @@ def _positive(text: str) -> float:
     return number
 
 
+def _length(text: str) -> float:
+    number = _positive(text)
+    if number > FARTHEST:
+        raise argparse.ArgumentTypeError(f"'{text}' must be at most {FARTHEST:.0e} m")
+    return number
+
+
+def _places(text: str, count: int, what: str) -> tuple[float, ...]:
+    """So many coordinates [m]."""
+    words = text.split(",")
+    numbers = tuple(map(_number, words)) if len(words) == count else (math.inf,)
+    if max(map(abs, numbers)) > FARTHEST:
+        raise argparse.ArgumentTypeError(f"'{text}' must be {what}, none beyond {FARTHEST:.0e} m")
+    return numbers
+
+
 def _angle(text: str) -> float:
     number = _number(text)
     if not 3.0 <= number <= 45.0:
@@ -290,16 +318,12 @@ def _whole(text: str) -> int:
 
 def _origin(text: str) -> str:
     if text not in ("centre", "corner"):
-        words = text.split(",")
-        if len(words) != 2:
-            raise argparse.ArgumentTypeError(f"'{text}' must be X,Y, centre or corner")
-        for word in words:
-            _number(word)
+        _places(text, 2, "X,Y, centre or corner")
     return text
 
 
 def _box(text: str) -> tuple[float, ...]:
-    numbers = tuple(_number(word) for word in text.split(","))
-    if len(numbers) != 4 or not (numbers[0] < numbers[2] and numbers[1] < numbers[3]):
+    numbers = _places(text, 4, "X0,Y0,X1,Y1")
+    if min(numbers[2] - numbers[0], numbers[3] - numbers[1]) < 1.0 / FARTHEST:
         raise argparse.ArgumentTypeError(f"'{text}' must be X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1")
     return numbers

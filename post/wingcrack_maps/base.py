@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import f90nml
-from shapely.geometry import Polygon, box
+from shapely.geometry import Polygon
 
+from wingcrack_post.text_files import namelist_groups, read_text
 from wingcrack_scenes.errors import SceneError
 
 
@@ -46,9 +47,15 @@ class Base:
                 low_x, low_y, high_x, high_y = (
                     float(domain[name]) for name in ("x_min", "y_min", "x_max", "y_max")
                 )
-                return box(low_x, low_y, high_x, high_y)
-            if domain.get("shape") == "polygon":
-                return Polygon(list(zip(domain["x"], domain["y"], strict=True)))
+                corners = [(low_x, low_y), (high_x, low_y), (high_x, high_y), (low_x, high_y)]
+            elif domain.get("shape") == "polygon":
+                corners = [
+                    (float(x), float(y)) for x, y in zip(domain["x"], domain["y"], strict=True)
+                ]
+            else:
+                return None
+            if all(math.isfinite(number) for corner in corners for number in corner):
+                return Polygon(corners)
         except (KeyError, TypeError, ValueError):
             return None  # the solver says what is wrong with it
         return None
@@ -59,12 +66,12 @@ def read_base(path: Path | None) -> Base | None:
     if path is None:
         return None
     try:
-        text = path.read_text(encoding="utf-8")
-        scene = f90nml.reads(text)
+        text = read_text(path)
+        scene = namelist_groups(text)
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
-    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
-        raise SceneError(f"{path}: no scene file of namelist groups ({reason})") from None
+    except ValueError as reason:
+        raise SceneError(f"{path}: {reason}") from None
     found: dict[str, list[dict[str, Any]]] = {}
     for name, group in scene.items():
         for item in group if isinstance(group, list) else [group]:

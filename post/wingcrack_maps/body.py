@@ -34,6 +34,8 @@ def assign_roles(content: Map, polygons: str | None, path: str) -> None:
             " body has one"
         )
     for area in content.areas:
+        if len(area.points) < 3:
+            raise SceneError(f"{path}: {area.source}: the polygon has no area")
         if not Polygon(area.points).is_valid:
             raise SceneError(f"{path}: {area.source}: the polygon's outline crosses itself")
 

@@ -45,9 +45,12 @@ def give_names(content: Map, taken: set[str]) -> None:
 
 
 def _allowed(name: str) -> str:
-    """Letters, digits, `_`, `-` and `.` of a name, letters without their accents."""
+    """Letters, digits, `_`, `-` and `.` of a name, letters without their accents.
+
+    The first one is a letter or a digit.
+    """
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", plain).strip("_")[:_LONGEST]
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", plain).lstrip("_.-").rstrip("_")[:_LONGEST]
 
 
 def _different(name: str, used: set[str]) -> str:

@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 
+from wingcrack_maps.arguments import FARTHEST
 from wingcrack_maps.features import Line, Map
 from wingcrack_scenes.errors import SceneError
 
@@ -111,7 +112,7 @@ def sizes_of(fractures: Set, area: float, generator: np.random.Generator) -> Num
     """
     kind, density = fractures.density
     if kind == "p20":
-        count = round(density * area)
+        count = round(min(density * area, 2.0 * _MOST))
         _judge_count(count)
         return draw_lengths(fractures.length, count, generator)
     wanted, found = density * area, np.empty(0)
@@ -155,6 +156,8 @@ def random_network(
     drawn: list[tuple[float, float, int]] = []
     for number, one in enumerate(sets, start=1):
         lengths = sizes_of(one, area, generator)
+        if lengths.max() > FARTHEST:
+            raise SceneError(f"the length law gives fractures of more than {FARTHEST:.0e} m")
         angles = draw_angles(one.orientation, lengths.size, generator)
         drawn.extend((float(s), float(a), number) for s, a in zip(lengths, angles, strict=True))
     # the longest first, which are hardest to place

@@ -11,6 +11,7 @@ from wingcrack_maps.read_geojson import read_geojson
 from wingcrack_maps.read_msh import read_msh
 from wingcrack_maps.read_wkt import read_wkt
 from wingcrack_maps.units import could_be_degrees, scale
+from wingcrack_post.text_files import read_text
 from wingcrack_scenes.errors import SceneError
 
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
@@ -51,9 +52,9 @@ def read_map(path: Path, unit: str | None) -> Map:
 
 def _read_text(path: Path, ending: str) -> tuple[Map, bool]:
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise SceneError(f"{path}: it is not UTF-8 text; save it as UTF-8") from None
+        text = read_text(path)
+    except ValueError as reason:
+        raise SceneError(f"{path}: {reason}") from None
     except OSError as reason:
         raise SceneError(f"{path}: it cannot be read: {reason.strerror}") from None
     if not text.strip():

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
-
 import numpy as np
 from shapely.geometry import LineString
 
 from wingcrack_maps.features import Attributes, Line, Map
 from wingcrack_maps.geometry import add_geometry, name_of
 from wingcrack_maps.read_wkt import geometry_of
+from wingcrack_post.text_files import csv_rows
 from wingcrack_scenes.errors import SceneError
 
 _GEOMETRY = ("wkt", "geometry", "geom", "the_geom")
@@ -35,18 +33,14 @@ def read_csv(text: str, path: str) -> Map:
     if not rows:
         raise SceneError(f"{path}: the table is empty; it must have a row of column names")
     separator = next((mark for mark in "\t;" if mark in rows[0][1]), ",")
-    header = [word.strip() for word in _cells(rows[0][1], separator)]
+    header = csv_rows([rows[0][1]], separator)[0]
     repeated = {word for word in header if word and header.count(word) > 1}
     if repeated:
         raise SceneError(f"{path}: the column '{sorted(repeated)[0]}' is given twice")
     table = _Table(path, {word.lower(): k for k, word in enumerate(header)}, header, separator)
     for number, line in rows[1:]:
-        table.add(number, _cells(line, separator))
+        table.add(number, csv_rows([line], separator)[0])
     return table.finish()
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader(io.StringIO(line), delimiter=separator))]
 
 
 class _Table:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any
 
 import shapely
@@ -11,7 +12,11 @@ from shapely.geometry import shape
 from wingcrack_maps.features import Map
 from wingcrack_maps.geometry import add_geometry
 from wingcrack_maps.units import refuse_degrees
+from wingcrack_post.text_files import json_value
 from wingcrack_scenes.errors import SceneError
+
+_DEPTHS = {"Point": 0, "MultiPoint": 1, "LineString": 1, "MultiLineString": 2, "Polygon": 2,
+           "MultiPolygon": 3}  # fmt: skip
 
 
 def read_geojson(text: str, path: str) -> tuple[Map, bool]:
@@ -23,7 +28,7 @@ def read_geojson(text: str, path: str) -> tuple[Map, bool]:
         The map in its own unit, and whether it says its coordinate system.
     """
     try:
-        content = json.loads(text, parse_constant=_no_constant)
+        content = json_value(text)
     except ValueError as reason:
         raise SceneError(f"{path}: not a JSON file: {reason}") from None
     if not isinstance(content, dict) or "type" not in content:
@@ -35,10 +40,6 @@ def read_geojson(text: str, path: str) -> tuple[Map, bool]:
     if system:
         found.note("coordinate system", f"the map says {system}; its unit is taken as asked for")
     return found, bool(system)
-
-
-def _no_constant(word: str) -> float:
-    raise ValueError(f"{word} is no number that JSON knows")
 
 
 def _system(content: dict[str, Any], path: str) -> str:
@@ -77,7 +78,37 @@ def _add(found: Map, feature: Any, path: str, source: str) -> None:
         found.note("empty", f"{source} has no geometry and gives nothing")
         return
     try:
+        _judge(geometry)
         made = shape(geometry)
-    except (AttributeError, KeyError, TypeError, ValueError, shapely.errors.ShapelyError) as reason:
+    except (ValueError, shapely.errors.ShapelyError) as reason:
         raise SceneError(f"{path}: {source} has no geometry that can be read: {reason}") from None
     add_geometry(found, made, attributes, path, source)
+
+
+def _judge(geometry: Any) -> None:
+    """Refuse what is no geometry: shapely takes much for one, and fails in many ways."""
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind == "GeometryCollection":
+        parts = geometry.get("geometries")
+        if not isinstance(parts, list):
+            raise ValueError('the GeometryCollection has no list "geometries"')
+        for part in parts:
+            _judge(part)
+    elif isinstance(kind, str) and kind in _DEPTHS:
+        _judge_places(geometry.get("coordinates"), _DEPTHS[kind], kind)
+    else:
+        known = ", ".join((*_DEPTHS, "GeometryCollection"))
+        raise ValueError(f"its type {json.dumps(kind)[:40]} is none of {known}")
+
+
+def _judge_places(given: Any, depth: int, kind: str) -> None:
+    """Judge places [x, y] or [x, y, height] that stand so many lists deep."""
+    if not isinstance(given, list):
+        raise ValueError(f"{json.dumps(given)[:40]} in the {kind} must be a list")
+    if depth == 1 and len({len(item) for item in given if isinstance(item, list)}) > 1:
+        raise ValueError(f"some places of the {kind} have a height and others have none")
+    for item in given:
+        if depth:
+            _judge_places(item, depth - 1, kind)
+        elif isinstance(item, bool | str | list | dict | None) or not math.isfinite(item):
+            raise ValueError(f"the place {json.dumps(given)[:60]} must hold finite numbers only")

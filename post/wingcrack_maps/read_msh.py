@@ -160,7 +160,7 @@ class _Mesh:
         found = _FORMAT.match(self.data)
         if found is None:
             raise SceneError(f"{self.path}:1: no mesh of gmsh, which begins with $MeshFormat")
-        version, self.binary = found[1].decode(), found[2] == b"1"
+        version, self.binary = found[1].decode("utf-8", "replace"), found[2] == b"1"
         self.is_old = version.startswith("2")
         if not (self.is_old or version == "4.1") or found[3] != b"8":
             _refuse(

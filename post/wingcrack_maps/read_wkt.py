@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
+
+import numpy as np
 import shapely
 
 from wingcrack_maps.features import Map
 from wingcrack_maps.geometry import add_geometry
 from wingcrack_maps.units import refuse_degrees
 from wingcrack_scenes.errors import SceneError
+
+_DEEPEST = 100  # brackets within one another: GEOS ends the process at some thousand
 
 
 def read_wkt(text: str, path: str) -> Map:
@@ -26,9 +31,14 @@ def geometry_of(text: str, path: str, source: str) -> shapely.Geometry:
     if separator and head.upper().startswith("SRID="):
         refuse_degrees(path, head)
         text = rest
+    opened = accumulate((mark == "(") - (mark == ")") for mark in text if mark in "()")
     try:
-        return shapely.from_wkt(text)
-    except shapely.errors.ShapelyError as reason:
+        if "\0" in text or max(opened, default=0) > _DEEPEST:
+            raise ValueError(f"it has a zero byte, or more than {_DEEPEST} brackets in one another")
+        with np.errstate(all="ignore"):  # numbers that are too large are refused with the others
+            return shapely.from_wkt(text)
+    except (ValueError, shapely.errors.ShapelyError) as reason:
         raise SceneError(
-            f"{path}: {source} is no well-known text such as LINESTRING (0 0, 1 2): {reason}"
+            f"{path}: {source} is no well-known text such as LINESTRING (0 0, 1 2):"
+            f" {' '.join(str(reason).split())}"
         ) from None

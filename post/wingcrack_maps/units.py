@@ -6,12 +6,11 @@ import re
 
 import numpy as np
 
+from wingcrack_maps.arguments import FARTHEST
 from wingcrack_maps.features import Map, Points
 from wingcrack_scenes.errors import SceneError
 
 METRES = {"m": 1.0, "km": 1000.0, "ft": 0.3048, "cm": 0.01, "mm": 0.001}
-
-_FARTHEST = 1e8  # [m]
 
 # Projected systems among the numbers that the EPSG registry otherwise gives to geographic ones.
 _PROJECTED = (range(4087, 4089), range(4217, 4218), range(4399, 4464), range(4484, 4490),
@@ -46,7 +45,7 @@ def in_degrees(system: str) -> bool:
     if re.search(r"CRS:?8[34]|CRS:?27|WGS ?84$|^GEOG", system, re.IGNORECASE):
         return True
     code = re.search(r"EPSG.*?(\d+)$|^(?:SRID=)?(\d+)$", system, re.IGNORECASE)
-    if code is None:
+    if code is None or len(code[0]) > 100:
         return False
     number = int(code[1] or code[2])
     return 4000 <= number < 5000 and not any(number in numbers for numbers in _PROJECTED)
@@ -68,10 +67,10 @@ def scale(content: Map, unit: str, path: str) -> None:
     """
     for item in content.features:
         item.points = item.points * METRES[unit]
-        if np.abs(item.points).max() > _FARTHEST:
+        if np.abs(item.points).max() > FARTHEST:
             raise SceneError(
                 f"{path}: {item.source} has a coordinate of {np.abs(item.points).max():.3g} m, but"
-                f" none may be beyond {_FARTHEST:.0e} m"
+                f" none may be beyond {FARTHEST:.0e} m"
             )
 
 

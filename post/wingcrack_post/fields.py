@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wingcrack_post.durations import moment_of
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import FloatArray
 from wingcrack_post.vtu import Grid, IntArray, read_vtu
@@ -107,8 +108,15 @@ def _told_by(path: Path) -> tuple[int | None, float | None]:
 
 
 def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
-    """Give the snapshot written closest to a time."""
-    return min(series, key=lambda snapshot: abs(snapshot.time_s - time_s))
+    """Give the snapshot written closest to a time.
+
+    Raises
+    ------
+    RunError
+        If the time is no finite number.
+    """
+    wanted = moment_of(time_s)
+    return min(series, key=lambda snapshot: abs(snapshot.time_s - wanted))
 
 
 def read_matrix(path: Path) -> MatrixField:

@@ -54,7 +54,7 @@ def read_growth(network: Mapping[str, Any]) -> list[Growth]:
         steps = network["steps"]
         first = {item["fracture"]: item for item in steps[0]["fractures"]}
         return [_growth(item, first[item["fracture"]], steps) for item in network["fractures"]]
-    except (KeyError, IndexError, TypeError, ValueError) as reason:
+    except (LookupError, TypeError, ValueError, AttributeError, StopIteration) as reason:
         raise RunError(f"the network is damaged ({reason!r}).") from None
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from wingcrack_post.errors import RunError
 from wingcrack_post.scene import read_groups
 from wingcrack_post.table import FloatArray
+from wingcrack_post.text_files import read_text
 
 _PER_SIDE = 5  # arrows
 _PER_RIM = 24
@@ -68,7 +69,7 @@ def read_loading(path: Path, outline: FloatArray | None) -> Loading:
     if outline is None or not path.exists():
         return found
     try:
-        groups = read_groups(path.read_text(encoding="utf-8"))
+        groups = read_groups(read_text(path))
         _fill(found, groups, outline)
     except (OSError, ValueError, IndexError) as reason:
         raise RunError(f"{path}: the sides cannot be read ({reason}).") from None

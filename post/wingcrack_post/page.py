@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import json
 import os
 import re
 from collections.abc import Iterable, Sequence
@@ -13,6 +12,7 @@ from urllib.parse import quote
 
 from wingcrack_post.facts import Facts, gather_facts
 from wingcrack_post.read import Run
+from wingcrack_post.text_files import read_json
 
 NAME = "index.html"
 _COSTS = (
@@ -125,7 +125,7 @@ def _natural(name: str) -> list[tuple[int, str]]:
 def _costs(directory: Path) -> list[str]:
     """Time and memory; nothing while the run goes on."""
     try:
-        record = json.loads((directory / "run.json").read_text(encoding="utf-8"))
+        record = read_json(directory / "run.json")
         return [f"{what}: {record[key]:.3g} {unit}" for key, what, unit in _COSTS if key in record]
     except (OSError, ValueError, TypeError):
         return []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from wingcrack_post.errors import AbsentError, RunError
 from wingcrack_post.fields import Snapshot, read_series
 from wingcrack_post.scene import Scene, read_scene
 from wingcrack_post.table import Table, read_table
+from wingcrack_post.text_files import read_json
 from wingcrack_post.unchanged import MEASURED
 
 
@@ -100,8 +100,8 @@ def read_run(directory: str | Path) -> Run:
         wells=_optional_table(root / "wells.csv"),
         events=_optional_table(root / "events.csv"),
         slip_events=_optional_table(root / "slip_events.csv"),
-        record=_without_measures(_optional_json(root / "run.json")),
-        network=_optional_json(root / "network.json"),
+        record=_without_measures(optional_json(root / "run.json")),
+        network=optional_json(root / "network.json"),
         scene=read_scene(root / "scene.nml"),
         matrix=read_series(root / "matrix.pvd"),
         fracture_fields=read_series(root / "fractures.pvd"),
@@ -127,11 +127,18 @@ def _optional_table(path: Path) -> Table | None:
     return read_table(path) if path.exists() else None
 
 
-def _optional_json(path: Path) -> dict[str, Any] | None:
+def optional_json(path: Path) -> dict[str, Any] | None:
+    """Give the object that a JSON file holds; None where there is no such file.
+
+    Raises
+    ------
+    RunError
+        If it is damaged.
+    """
     if not path.exists():
         return None
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = read_json(path)
     except (OSError, ValueError) as reason:
         raise RunError(f"{path}: the file is no valid JSON ({reason}).") from None
     if not isinstance(content, dict):

@@ -13,6 +13,7 @@ from wingcrack_post.errors import RunError
 from wingcrack_post.proportional import control_of, drive_of
 from wingcrack_post.regions import Region, read_region
 from wingcrack_post.table import FloatArray
+from wingcrack_post.text_files import read_text
 
 # quoted text (a doubled quote stands for one), comment, group, slash, equal sign, plain word
 _TOKEN = re.compile(r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|![^\n]*|&\w+|/|=|[^\s,=/!&'\"]+")
@@ -99,7 +100,7 @@ class Scene:
         for fracture in self.fractures:
             if fracture.name == label:
                 return fracture
-        if label.isdecimal() and 1 <= int(label) <= len(self.fractures):
+        if label.isdecimal() and len(label) < 10 and 1 <= int(label) <= len(self.fractures):
             return self.fractures[int(label) - 1]
         return None
 
@@ -130,10 +131,10 @@ def read_groups(text: str) -> list[tuple[str, dict[str, list[str]]]]:
 def read_scene(path: Path) -> Scene | None:
     """Read ``scene.nml``; None where the run has none."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except FileNotFoundError:
         return None
-    except (OSError, UnicodeDecodeError) as reason:
+    except (OSError, ValueError) as reason:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
     groups = read_groups(text)
     first: dict[str, dict[str, list[str]]] = {}

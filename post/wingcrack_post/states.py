@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from wingcrack_post.durations import moment_of
 from wingcrack_post.errors import RunError
 from wingcrack_post.pressures import well_pressures
 from wingcrack_post.read import Run
@@ -58,7 +59,7 @@ def select_states(
     if moments.size == 0:
         raise RunError(f"{run.directory}: no fields are written yet.")
     if len(wanted):
-        return sorted({int(np.argmin(np.abs(moments - moment))) for moment in wanted})
+        return sorted({int(np.argmin(np.abs(moments - moment_of(moment)))) for moment in wanted})
     in_history = _history_rows(run, moments, rows)
     places = np.flatnonzero(_settled(run, in_history))
     begun = _begun(run, in_history[places])

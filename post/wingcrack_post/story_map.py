@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from wingcrack_post import style
+from wingcrack_post.errors import RunError
 from wingcrack_post.foremost import foremost
 from wingcrack_post.growth import Growth, read_growth
 from wingcrack_post.names import Names
@@ -161,9 +162,12 @@ def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
 def well_places(scene: Scene | None, network: Mapping[str, Any]) -> list[tuple[float, float]]:
     """Where wells are drawn [m]: at their points, or on their fractures at the start of the run."""
     wells = scene.wells if scene else ()
-    first = network["steps"][0] if network.get("steps") else network
-    fractures = {item["name"]: item for item in first.get("fractures", [])}
-    places = {_place(well.fracture, well.place_m, fractures) for well in wells}
+    try:
+        first = network["steps"][0] if network.get("steps") else network
+        fractures = {item["name"]: item for item in first.get("fractures", [])}
+        places = {_place(well.fracture, well.place_m, fractures) for well in wells}
+    except (LookupError, TypeError, ValueError, AttributeError) as reason:
+        raise RunError(f"the network is damaged ({reason!r}).") from None
     return sorted(place for place in places if place is not None)
 
 

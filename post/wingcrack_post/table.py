@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from io import StringIO
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wingcrack_post.errors import RunError
+from wingcrack_post.text_files import csv_rows, read_text
 
 FloatArray = npt.NDArray[np.float64]
 TextArray = npt.NDArray[np.str_]
@@ -101,18 +101,17 @@ def read_table(path: Path) -> Table:
         values.
     """
     try:
-        content = path.read_text(encoding="utf-8")
+        content = read_text(path)
     except FileNotFoundError:
         raise RunError(f"{path}: the file is missing.") from None
-    except (OSError, UnicodeDecodeError) as reason:
+    except (OSError, ValueError) as reason:
         raise RunError(f"{path}: the file cannot be read ({reason}).") from None
-    lines = list(csv.reader(StringIO(content, newline=""), skipinitialspace=True))
+    lines = csv_rows(StringIO(content, newline=""))
     if not lines or not lines[0]:
         raise RunError(f"{path}: the file is empty, a header line was expected.")
-    names = [name.strip() for name in lines[0]]
+    names, values = lines[0], lines[1:]
     if len(set(names)) != len(names):
         raise RunError(f"{path}: a column name stands twice in the header.")
-    values = [[cell.strip() for cell in line] for line in lines[1:]]
     if values and len(values[-1]) < len(names) and not content.endswith("\n"):
         values.pop()
     for row, cells in enumerate(values):

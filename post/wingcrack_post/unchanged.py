@@ -16,6 +16,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.text_files import json_value, read_json
+
 RECORD = ".drawn.json"
 _LARGEST = 2**28  # [byte] of fields that are read to see whether they changed
 _LIBRARIES = ("matplotlib", "numpy", "fonttools")
@@ -36,7 +38,7 @@ class Drawn:
         self._path = folder / RECORD
         self._entries: dict[str, dict[str, Any]] = {}
         try:
-            entries = json.loads(self._path.read_text(encoding="utf-8"))
+            entries = read_json(self._path)
         except (OSError, ValueError):
             return
         if isinstance(entries, dict):
@@ -134,7 +136,7 @@ def program() -> str:
 
 def _without_measures(content: bytes) -> bytes:
     try:
-        record = json.loads(content)
+        record = json_value(content.decode())
         kept = {name: value for name, value in record.items() if name not in MEASURED}
     except (ValueError, AttributeError):
         return content

@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.text_files import read_json
+
 RECORD = "outcome.json"
 
 
@@ -74,7 +76,7 @@ def write_outcome(folder: Path, outcome: Outcome) -> None:
 def read_outcome(folder: Path) -> Outcome | None:
     """Outcome that an earlier call left, or None."""
     try:
-        found = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        found = read_json(folder / RECORD)
         return Outcome(**(found | {"folder": str(folder), "reused": True}))
     except (OSError, ValueError, TypeError):
         return None
@@ -82,7 +84,7 @@ def read_outcome(folder: Path) -> Outcome | None:
 
 def _run_record(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = read_json(path)
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}

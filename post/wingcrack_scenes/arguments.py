@@ -35,6 +35,15 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"wingcrack new: {message}; ./wingcrack new --help says more\n")
 
 
+def judge_name(parser: argparse.ArgumentParser, out: Path) -> None:
+    """Refuse a scene file by whose name the scene could not be called."""
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}", out.stem):
+        parser.error(
+            f"the scene is called as its file, so {out.name} may have letters, digits, '_', '-' and"
+            " '.' only, at most 64, and begins with a letter or a digit"
+        )
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """Understand the command line, or end with a reason and status 2."""
     parser = argparse.ArgumentParser(prog="wingcrack_scenes")
@@ -66,11 +75,7 @@ def _judge(parser: _Parser, given: argparse.Namespace) -> None:
         given.out = Path(f"{given.kind}.nml")
     if given.out.suffix != ".nml":
         parser.error(f"--out must end in .nml, unlike {given.out}")
-    if not re.fullmatch(r"[A-Za-z0-9_.-]{1,64}", given.out.stem):
-        parser.error(
-            f"the scene is called as its file, so {given.out.name} may have letters, digits,"
-            " '_', '-' and '.' only"
-        )
+    judge_name(parser, given.out)
     if given.out.is_dir() or not given.out.parent.is_dir():
         parser.error(f"the scene cannot go to {given.out}: there is no such folder, or it is one")
     if given.out.exists() and not given.overwrite:

@@ -101,6 +101,8 @@ def _run(
         run_tasks(open_tasks, cluster, workers, ledger)
     except _Ended as ended:
         status = ended.status
+    except SystemExit as ended:  # nobody reads what is printed any more
+        status = int(ended.code or 1)
     except UnreadableError as reason:
         status, why = 1, f"{reason}; ended"
     with _undisturbed():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import json
 import re
 from collections.abc import Collection, Iterable, Mapping
 from functools import lru_cache
@@ -12,6 +11,7 @@ from typing import Any
 
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import read_table
+from wingcrack_post.text_files import read_json
 from wingcrack_study.arguments import TOP
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.paths import COLUMNS, NETWORK
@@ -97,7 +97,7 @@ def judge_run(selection: Selection, output: Path, constants: Collection[str]) ->
     try:
         known: set[str] = set(COLUMNS)
         if selection.key:
-            known = set(_keys(json.loads(path.read_text(encoding="utf-8"))))
+            known = set(_keys(read_json(path)))
         elif selection.file != NETWORK:
             known = set(read_table(path).cells)
     except FileNotFoundError:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.text_files import is_file
 from wingcrack_study.arguments import TOP
 from wingcrack_study.cluster import Cluster, read_cluster
 from wingcrack_study.distributions import SAMPLE, read_draws
@@ -114,7 +115,7 @@ def read_study(path: Path, quick: bool = False) -> Study:
     title = fields.text("title")
     fields.text("about", "")
     scene = path.parent / fields.text("scene")
-    if not scene.is_file():
+    if not is_file(scene):
         raise CaseError(f"{path.name}: there is no scene file {scene}")
     given = fields.mapping("quick")
     if "count" in given and not fields.has("draw"):

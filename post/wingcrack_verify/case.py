@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post import text_files
 from wingcrack_verify.economy import Economy, read_economy
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
@@ -128,10 +128,10 @@ class Case:
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; a `CaseError` tells what is wrong with it."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return text_files.read_toml(path)
     except FileNotFoundError:
         raise CaseError(f"{path.name} is missing") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as reason:
+    except (OSError, ValueError) as reason:
         raise CaseError(f"{path.name}: {reason}") from None
 
 
@@ -198,7 +198,7 @@ def read_run(data: Any, place: str, folder: Path) -> Run:
     if scene is not None:
         changes, unset, args = fields.mapping("set"), fields.texts("unset", ()), ()
         path = folder / scene
-        if not path.is_file():
+        if not text_files.is_file(path):
             raise CaseError(f"{fields.place}: there is no scene file {scene}")
     else:
         changes, unset, args, path = {}, (), fields.texts("args", ()), None

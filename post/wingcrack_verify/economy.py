@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
 from wingcrack_verify.orders import Point
@@ -70,7 +70,7 @@ def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
 def unknowns_of(output: Path) -> float | None:
     """Unknowns of all kinds of a run; None where its run.json tells none."""
     try:
-        blocks = json.loads((output / "run.json").read_text(encoding="utf-8")).get("dofs", {})
+        blocks = read_json(output / "run.json").get("dofs", {})
         total = float(sum(blocks.values()))
     except (OSError, ValueError, AttributeError, TypeError):
         return None

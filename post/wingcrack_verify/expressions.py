@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import warnings
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -59,15 +60,24 @@ def evaluate(text: str, values: Mapping[str, Array | float]) -> Array:
     CaseError
         If the text is no arithmetic, or if a name is unknown.
     """
-    with np.errstate(all="ignore"):
-        return np.asarray(_value(_parse(text).body, values, text), dtype=np.float64)
+    tree = _parse(text).body
+    try:
+        with np.errstate(all="ignore"):
+            return np.asarray(_value(tree, values, text), dtype=np.float64)
+    except (RecursionError, OverflowError):
+        raise CaseError(f"{_short(text)} is too deep, or has too large a whole number") from None
 
 
 def _parse(text: str) -> ast.Expression:
     try:
-        return ast.parse(text.strip(), mode="eval")
-    except SyntaxError:
-        raise CaseError(f"'{text}' is no arithmetic expression") from None
+        with warnings.catch_warnings(action="ignore", category=SyntaxWarning):
+            return ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):  # too deep; with a zero byte
+        raise CaseError(f"{_short(text)} is no arithmetic expression, or too long") from None
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 80 else f"{text[:77]}...")
 
 
 def _value(node: ast.expr, values: Mapping[str, Array | float], text: str) -> Array:
@@ -82,7 +92,7 @@ def _value(node: ast.expr, values: Mapping[str, Array | float], text: str) -> Ar
             if name in values:
                 return np.asarray(values[name], dtype=np.float64)
             there = ", ".join(sorted(values)) or "none"
-            raise CaseError(f"'{name}' in '{text}' is missing (there are: {there})")
+            raise CaseError(f"'{name}' in {_short(text)} is missing (there are: {there})")
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -_value(operand, values, text)
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):
@@ -92,10 +102,9 @@ def _value(node: ast.expr, values: Mapping[str, Array | float], text: str) -> Ar
             return operate(_value(left, values, text), _value(right, values, text))
         case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
             operands = [_value(argument, values, text) for argument in arguments]
-            try:
-                return np.asarray(FUNCTIONS[name](*operands), dtype=np.float64)
-            except (TypeError, ValueError):
-                raise CaseError(f"'{name}' in '{text}' has the wrong number of arguments") from None
+            if len(operands) != getattr(FUNCTIONS[name], "nin", 1):
+                raise CaseError(f"'{name}' in {_short(text)} has the wrong number of arguments")
+            return np.asarray(FUNCTIONS[name](*operands), dtype=np.float64)
         case _:
             pass
-    raise CaseError(f"'{text}' holds what no expression may: {ast.unparse(node)}")
+    raise CaseError(f"{_short(text)} holds what no expression may: {_short(ast.unparse(node))}")

@@ -9,12 +9,12 @@ Work is unknowns times accepted states: it goes with the run time (within a thir
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.economy import unknowns_of
 from wingcrack_verify.orders import Point
 
@@ -38,7 +38,7 @@ def work_of(output: Path) -> float | None:
     """Unknowns times states of a run; None where its run.json does not tell."""
     unknowns = unknowns_of(output)
     try:
-        record = json.loads((output / "run.json").read_text(encoding="utf-8"))
+        record = read_json(output / "run.json")
         states = float(record["steps"]) + 1.0
     except (OSError, ValueError, KeyError, TypeError):
         return None

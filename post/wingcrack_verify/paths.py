@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from wingcrack_post.errors import RunError
 from wingcrack_post.growth import read_growth
 from wingcrack_post.table import Table
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import Array
 
@@ -56,7 +56,7 @@ def network_table(path: Path) -> Table:
         If the file is missing, or not what it should be.
     """
     try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        content: Any = read_json(path)
         growths = read_growth(content)
     except FileNotFoundError:
         raise CaseError(f"{path.name}: the file is missing") from None

@@ -9,8 +9,6 @@ computed again from scene.nml, the tables, the VTU files and run.json.
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +19,8 @@ import f90nml
 import numpy as np
 import numpy.typing as npt
 import pyvista
+
+from wingcrack_post.text_files import csv_rows, read_json
 
 Numbers: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = dict[str, npt.NDArray[Any]]
@@ -97,7 +97,7 @@ def read_limits() -> dict[str, Limit]:
 
 def read_table(path: Path) -> Table:
     """A CSV file by its columns; numbers where all items are numbers."""
-    rows = list(csv.reader(path.read_text().splitlines()))
+    rows = csv_rows(path.read_text().splitlines())
     table: Table = {}
     for k, name in enumerate(rows[0]):
         column = [row[k] for row in rows[1:]]
@@ -110,7 +110,7 @@ def read_table(path: Path) -> Table:
 
 def read_run(folder: Path) -> Run:
     """All files of a run that has written its fields in each accepted state."""
-    record = json.loads((folder / "run.json").read_text())
+    record = read_json(folder / "run.json")
     history = read_table(folder / "history.csv")
     scene = f90nml.read(folder / "scene.nml")
     if not len(history["time_s"]):

@@ -6,7 +6,6 @@ held against the toughness and against the events, what errors are stated is loo
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -16,6 +15,7 @@ import f90nml
 import numpy as np
 import numpy.typing as npt
 
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.recompute import Findings, Table, read_table
 
 Points: TypeAlias = npt.NDArray[np.float64]
@@ -46,8 +46,8 @@ def judge_growth(folder: Path) -> Findings:
     findings = Findings()
     files = GrowthFiles(
         f90nml.read(folder / "scene.nml"),
-        json.loads((folder / "run.json").read_text()),
-        json.loads((folder / "network.json").read_text()),
+        read_json(folder / "run.json"),
+        read_json(folder / "network.json"),
         read_table(folder / "history.csv"),
         read_table(folder / "tips.csv"),
         read_table(folder / "events.csv"),

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import f90nml
 
+from wingcrack_post.text_files import namelist_groups, read_text
 from wingcrack_verify.errors import CaseError
 
 _Groups: TypeAlias = dict[str, list[Any]]
@@ -36,9 +37,9 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
         If the file cannot be read or an address leads nowhere.
     """
     try:
-        groups = _groups(f90nml.read(path))
-    except Exception as reason:  # the library raises many kinds, ValueError and AttributeError too
-        raise CaseError(f"{path.name}: not a namelist file ({reason})") from None
+        groups = _groups(namelist_groups(read_text(path)))
+    except (OSError, ValueError) as reason:
+        raise CaseError(f"{path.name}: {reason}") from None
     for address in unset:
         _remove(groups, address)
     for address, value in (DEFAULTS | dict(changes)).items():
@@ -64,7 +65,10 @@ def _set(groups: _Groups, address: str, value: Any) -> None:
     if not items or item == [str(len(items) + 1)]:  # the first of its kind, or one more
         items.append(f90nml.Namelist())
     group = _pick(items, item, address)
-    group[name] = list(value) if isinstance(value, list | tuple) else value
+    values = list(value) if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(one, str | int | float) for one in values):
+        raise CaseError(f"'{address}' must be numbers, texts or truth values, not {value}")
+    group[name] = values if isinstance(value, list | tuple) else value
 
 
 def _remove(groups: _Groups, address: str) -> None:
@@ -92,7 +96,7 @@ def _pick(items: Sequence[Any], item: Sequence[str], address: str) -> Any:
             raise CaseError(f"'{address}': there are {len(items)} such groups; say which")
         return items[0]
     (wanted,) = item
-    if wanted.isdigit():
+    if wanted.isdecimal() and len(wanted) < 10:
         if not 1 <= int(wanted) <= len(items):
             raise CaseError(f"'{address}': there is no item {wanted} (there are {len(items)})")
         return items[int(wanted) - 1]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ import numpy.typing as npt
 
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import Table, read_table
+from wingcrack_post.text_files import read_json
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import FUNCTIONS, Array, evaluate, names_in
 from wingcrack_verify.fields import Fields, as_number
@@ -267,7 +267,7 @@ def _numbers(table: Table, name: str) -> Array:
 def _json_number(selection: Selection, folder: Path) -> float:
     """Value of the key, or of the arithmetic that it is: names are paths into the file."""
     try:
-        content: Any = json.loads((folder / selection.file).read_text(encoding="utf-8"))
+        content: Any = read_json(folder / selection.file)
     except FileNotFoundError:
         raise CaseError(f"{selection.file}: the file is missing") from None
     except ValueError as reason:

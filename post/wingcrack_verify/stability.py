@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.text_files import is_file, read_json
 from wingcrack_verify.case import Run, read_toml, refuse_doubles
 from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
@@ -151,7 +151,7 @@ def read_stability(folder: Path) -> Stability:
     title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
     group = fields.choice("group", tuple(GROUPS))
     base = folder / fields.text("scene")
-    if not base.is_file():
+    if not is_file(base):
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
     mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
     limit_s, from_files = fields.positive("time_limit_s", TIME_LIMIT_S), fields.flag("from_files")
@@ -349,7 +349,7 @@ def _beyond_limits(found: Stability, numbers: Mapping[str, float | None]) -> str
 
 def _numbers(output: Path) -> dict[str, float | None]:
     """Numbers of a finished run; only the two estimates may be absent."""
-    record = json.loads((output / "run.json").read_text(encoding="utf-8"))
+    record = read_json(output / "run.json")
     numbers: dict[str, float | None] = {
         name: _finite(record.get(name), name)
         for name in ("mass_error_relative", "contact_residual", "step_cuts")

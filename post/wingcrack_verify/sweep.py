@@ -263,6 +263,8 @@ class _Filler:
         if not isinstance(value, str) and not _is_number(value):
             raise CaseError(f"{self.place}: '{expression}' is no text and no number")
         try:
+            if re.search(r"\d{4}", form or ""):  # of so many characters
+                raise ValueError
             return format(value, form or "")
         except ValueError:
             raise CaseError(f"{self.place}: '{form}' is no format for '{expression}'") from None
