@@ -39,6 +39,7 @@ groups of figures (--only), written to DIR/figures:
   fractures  opening, slip, aperture, pressure and tractions along each fracture; of more than 12
              those with a well, that grow, that are longest, unless --only names this group
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
+  wells      pressures, flow, volume and injectivity of each well
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, its displacements drawn larger than they are
 
