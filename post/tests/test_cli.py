@@ -5,23 +5,25 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from wingcrack_post import style
 from wingcrack_post.cli import main
+from wingcrack_post.figures import Outcome
+from wingcrack_post.read import Run
 
 POST = Path(__file__).resolve().parents[1]
 
 
-def test_all_figures_as_png_and_pdf(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_figures_of_some_groups(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(own_run), "--only", "maps,fractures,tips,probes"]) == 0
     names = ["pressure_maps", "fracture_1", "intensities", "development", "balance", "probes"]
-    files = [own_run / "figures" / f"{n}.{f}" for n in names for f in ("png", "pdf")]
+    files = [own_run / "figures" / f"{name}.png" for name in names]
     out = capsys.readouterr().out.splitlines()
     assert [line for line in out if "left out" not in line] == [str(file) for file in files]
     assert [line for line in out if "left out" in line] == [
@@ -32,7 +34,7 @@ def test_all_figures_as_png_and_pdf(own_run: Path, capsys: pytest.CaptureFixture
     assert sorted((own_run / "figures").glob("[!.]*")) == sorted(files)
     for file in files:
         content = file.read_bytes()
-        assert content.startswith(b"%PDF" if file.suffix == ".pdf" else b"\x89PNG")
+        assert content.startswith(b"\x89PNG")
         assert len(content) > 5000
     # the widest figures fill a page of 7.1 inches at 300 dots per inch
     assert imread(own_run / "figures" / "probes.png").shape[1] == 2130
@@ -42,10 +44,13 @@ def test_same_run_gives_the_same_bytes(own_run: Path) -> None:
     contents = []
     for _ in range(2):
         shutil.rmtree(own_run / "figures", ignore_errors=True)
-        assert main(["plot", str(own_run), "--only", "tips", "--quiet"]) == 0
-        figures = sorted((own_run / "figures").glob("[!.]*"))
-        contents.append([file.read_bytes() for file in figures])
+        assert main(["plot", str(own_run), "--only", "maps", "--format", "png,pdf"]) == 0
+        drawn = sorted((own_run / "figures").glob("[!.]*"))
+        assert [file.name for file in drawn] == ["pressure_maps.pdf", "pressure_maps.png"]
+        contents.append([file.read_bytes() for file in drawn])
     assert contents[0] == contents[1]
+    assert contents[0][0].startswith(b"%PDF")
+    assert b"/FontFile2" in contents[0][0]  # text in it stays text
 
 
 def test_quiet_prints_nothing(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -62,19 +67,68 @@ def test_fonts_that_lack_are_nobodys_business(
     assert [record.getMessage() for record in caplog.records if "font" in record.name] == []
 
 
-def test_panels_are_laid_out_once_for_all_formats(
-    own_run: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the figures that would be drawn; empty files are written in their place."""
+    names: list[str] = []
+
+    def pretend(_run: Run, kind: Any, folder: Path, *_: object, **__: object) -> Outcome:
+        names.append(kind.name)
+        folder.mkdir(exist_ok=True)
+        file = folder / f"{kind.name}.png"
+        file.touch()
+        return Outcome(kind.name, (file,))
+
+    monkeypatch.setattr("wingcrack_post.figures._drawn", pretend)
+    return names
+
+
+_WELLS = "time_s,well,stage\n0.0,a,0\n1.0,a,1\n"
+_ALWAYS = ["summary", "story", "load", "equilibrium", "probes"]  # where the run has them
+_MOTION = ["pressure_maps", "stress_maps", "fracture", "development"]
+
+
+def _zero(run: Path, columns: Sequence[str]) -> None:
+    """Let columns of the history be zero in all rows."""
+    path = run / "history.csv"
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    names = head.split(",")
+    assert set(columns) <= set(names)
+    changed = [
+        ",".join("0" if n in columns else c for n, c in zip(names, row.split(","), strict=True))
+        for row in rows
+    ]
+    path.write_text("\n".join([head, *changed]) + "\n", encoding="utf-8")
+
+
+def test_by_default_only_figures_in_which_something_happens(
+    own_run: Path, drawn: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    layouts = []
-    execute = ConstrainedLayoutEngine.execute
+    (own_run / "wells.csv").write_text(_WELLS, encoding="utf-8")
+    call = ["plot", str(own_run)]
+    assert main(call) == 0
+    assert sorted(drawn) == sorted([*_ALWAYS, *_MOTION, "network", "intensities"])
+    out = capsys.readouterr().out
+    assert "balance: left out: drawn on request (--only tips).\n" in out
+    assert "wells: left out: drawn on request (--only wells).\n" in out
+    shutil.rmtree(own_run / "figures")
+    drawn.clear()
+    (own_run / "events.csv").unlink()
+    _zero(own_run, ("n_slip", "n_open", "fracture_length_m"))
+    (own_run / "wells.csv").write_text(f"{_WELLS}2.0,a,2\n", encoding="utf-8")
+    assert main(call) == 0
+    assert sorted(drawn) == sorted([*_ALWAYS, "wells"])
 
-    def counted(engine: ConstrainedLayoutEngine, figure: Figure) -> object:
-        layouts.append(figure)
-        return execute(engine, figure)
 
-    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", counted)
-    assert main(["plot", str(own_run), "--only", "probes", "--quiet"]) == 0
-    assert len(layouts) == 1
+def test_what_was_asked_for_once_is_kept_up_to_date(own_run: Path, drawn: list[str]) -> None:
+    assert main(["plot", str(own_run), "--only", "view"]) == 0
+    assert drawn == ["view"]
+    _zero(own_run, ("n_slip",))
+    assert main(["plot", str(own_run)]) == 0
+    assert drawn.count("view") == 2
+    assert "balance" not in drawn
+    assert main(["plot", str(own_run), "--only", "all"]) == 0
+    assert "balance" in drawn
 
 
 def test_mechanics_only_names_what_it_leaves_out(
@@ -95,7 +149,6 @@ def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFi
     assert "intensities: left out: the run has no tips.csv (stress intensity factors).\n" in out
     figures = sorted(path.name for path in (own_run / "figures").glob("[!.]*"))
     assert figures == [
-        "balance.png",
         "development.png",
         "fracture_1.png",
         "index.html",
@@ -173,7 +226,7 @@ def test_missing_directory() -> None:
         (["plot"], "the following arguments are required: DIR"),
         (
             ["plot", "d", "--only", "map"],
-            "'map' is none of summary, story, network, maps, fractures, tips, wells, probes, view",
+            "'map' is none of summary, story, network, maps, fractures, tips, wells, probes, view,",
         ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),

@@ -11,8 +11,8 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from wingcrack_post import figures, profiles
 from wingcrack_post import foremost as foremost_module
-from wingcrack_post import profiles
 from wingcrack_post.cli import main
 from wingcrack_post.foremost import MOST, foremost
 from wingcrack_post.growth import Growth
@@ -88,7 +88,8 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
 ) -> None:
     monkeypatch.setattr(profiles, "MOST", 2)
     monkeypatch.setattr(foremost_module, "MOST", 2)
-    monkeypatch.setattr("wingcrack_post.figures.GROUPS", ("fractures",))
+    only = [kind for kind in figures._FIGURES if kind.group == "fractures"]
+    monkeypatch.setattr(figures, "_FIGURES", only)
     path = own_run / "fractures.csv"
     head, *rows = path.read_text(encoding="utf-8").splitlines()
     place = head.split(",").index("fracture")
@@ -98,18 +99,18 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
         for row in rows
     ]
     path.write_text("\n".join([head, *rows, *more]) + "\n", encoding="utf-8")
-    call = ["plot", str(own_run), "--format", "png", "--only"]
+    call = ["plot", str(own_run)]
 
     def pictures() -> list[str]:
         return sorted(file.name for file in (own_run / "figures").glob("fracture*"))
 
-    assert main([*call, "fractures"]) == 0
+    assert main(call) == 0
     assert "1 of 3 fractures: they have no well" in capsys.readouterr().out
     assert pictures() == ["fracture_1.png", "fracture_2.png"]
-    assert main([*call, "fractures,network"]) == 0
+    assert main([*call, "--only", "fractures"]) == 0
     assert pictures() == ["fracture_1.png", "fracture_2.png", "fracture_3.png"]
-    assert main([*call, "fractures"]) == 0
+    assert main(call) == 0
     assert pictures() == ["fracture_1.png", "fracture_2.png"]
     capsys.readouterr()
-    assert main([*call, "fractures"]) == 0
+    assert main(call) == 0
     assert "(unchanged)" in capsys.readouterr().out

@@ -157,7 +157,7 @@ def test_files_and_what_is_missing(
 ) -> None:
     assert main(["plot", str(stimulated), "--only", "story", "--quiet"]) == 0
     names = sorted(path.name for path in (stimulated / "figures").glob("[!.]*"))
-    assert names == ["story.pdf", "story.png"]
+    assert names == ["story.png"]
     (stimulated / "slip_events.csv").write_text(HEAD, encoding="utf-8")
     figure = story(read_run(stimulated))
     assert "none" in [text.get_text() for text in panel(figure, "slip events").texts]

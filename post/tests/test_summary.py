@@ -138,7 +138,7 @@ def test_the_page_shows_what_is_there(own_run: Path) -> None:
     path = own_run / "run.json"
     record = json.loads(path.read_text(encoding="utf-8")) | {"warnings": ["a <script>"]}
     path.write_text(json.dumps(record), encoding="utf-8")
-    assert main(["plot", str(own_run), "--only", "summary", "--quiet"]) == 0
+    assert main(["plot", str(own_run), "--only", "summary", "--format", "png,pdf"]) == 0
     page = own_run / "figures" / "index.html"
     first = _Page()
     first.feed(page.read_text(encoding="utf-8"))

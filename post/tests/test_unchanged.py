@@ -130,7 +130,7 @@ def test_pictures_that_are_not_as_they_were_left(
     drawn_run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     figures = drawn_run / "figures"
-    (figures / "probes.pdf").unlink()
+    (figures / "probes.png").unlink()
     assert _drawn(drawn_run, capsys) == ["probes"]
     (figures / "view.png").write_bytes(b"something else")
     assert _drawn(drawn_run, capsys) == ["view"]
@@ -139,12 +139,12 @@ def test_pictures_that_are_not_as_they_were_left(
     assert _drawn(drawn_run, capsys) == ALL
     for nonsense in ('{"probes": {"fingerprint": 3}, "view": [], "more": null}', "[1]", "{}"):
         (figures / unchanged.RECORD).write_text(nonsense, "utf-8")
-        assert _drawn(drawn_run, capsys, "--format", "png") == ALL
+        assert _drawn(drawn_run, capsys) == ALL
 
 
 def test_another_way_of_drawing(drawn_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert _drawn(drawn_run, capsys, "--times", "20h") == ALL
-    assert _drawn(drawn_run, capsys, "--times", "20h", "--format", "png") == ALL
+    assert _drawn(drawn_run, capsys, "--times", "20h", "--format", "pdf") == ALL
     assert _drawn(drawn_run, capsys) == ALL
 
 

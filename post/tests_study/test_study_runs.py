@@ -22,7 +22,7 @@ def study(tmp_path: Path) -> SmallStudy:
 
 def test_a_grid_gives_a_row_and_a_run_for_each_value(study: SmallStudy) -> None:
     study.write(DRAWN)
-    done = study.call()
+    done = study.call("--format", "png,pdf")
     assert (done.returncode, done.stderr) == (0, "")
     assert sorted(study.calls) == ["1e-09 plain", "2e-09 plain", "4e-09 plain"]
     rows = study.rows

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from wingcrack.errors import AbsentError, RunError, SceneError
 from wingcrack.fields import Fields, read_fields
 from wingcrack.tables import column, frame
-from wingcrack_post.arguments import GROUPS
+from wingcrack_post.arguments import DEFAULT_FORMATS
 from wingcrack_post.fields import Snapshot, read_series
 from wingcrack_post.table import FloatArray, Table, read_table
 
@@ -238,10 +238,11 @@ class Run:
     # Figures
 
     def draw(
-        self, only: Sequence[str] = GROUPS, formats: Sequence[str] = ("png", "pdf")
+        self, only: Sequence[str] = (), formats: Sequence[str] = DEFAULT_FORMATS
     ) -> list[Path]:
         """Draw the figures that ``wingcrack plot`` draws, into ``figures`` in the run's folder.
 
+        `only` names groups of them, or ``all``; default: those in which something happens.
         Those that are there and still true are not drawn again.
         """
         from wingcrack_post.figures import draw_figures

@@ -20,9 +20,15 @@ GROUPS = (
     "probes",
     "view",
 )
+ALL = "all"
 FORMATS = ("png", "pdf")
+DEFAULT_FORMATS = ("png",)
 
 _EPILOG = """\
+Without --only, the figures in which something happens are drawn, and those that were drawn before:
+network and stress intensities where tips grow, maps, profiles, lengths and states where a fracture
+slips or opens, wells where there are several or stages; balance and view only on request.
+
 groups of figures (--only), written to DIR/figures:
   summary    any run on one page: body and loads, network by state, pressure or load, length,
              K_eq over K_IC, errors, warnings; and index.html, which shows all figures
@@ -33,6 +39,7 @@ groups of figures (--only), written to DIR/figures:
   fractures  opening, slip, aperture, pressure and tractions along each fracture; of more than 12
              those with a well, that grow, that are longest, unless --only names this group
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
+  wells      pressures, flow, volume and injectivity of each well
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, its displacements drawn larger than they are
 
@@ -90,20 +97,25 @@ def _parser() -> argparse.ArgumentParser:
     )
     plot.add_argument(
         "--only",
-        type=_one_of(GROUPS),
-        default=GROUPS,
+        type=_one_of((*GROUPS, ALL)),
+        default=(),
         metavar="GROUP,...",
-        help=f"draw only these groups: {', '.join(GROUPS)}",
+        help=f"draw these groups: {', '.join(GROUPS)}, or {ALL}",
     )
-    plot.add_argument(
-        "--format",
-        type=_one_of(FORMATS),
-        default=FORMATS,
-        metavar="FORMAT,...",
-        help="png, pdf (default: both)",
-    )
+    add_format(plot)
     plot.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """Let a command that draws be asked for formats."""
+    parser.add_argument(
+        "--format",
+        type=_one_of(FORMATS),
+        default=DEFAULT_FORMATS,
+        metavar="FORMAT,...",
+        help="of the figures: png, pdf, or png,pdf (default: png)",
+    )
 
 
 def _times(text: str) -> tuple[float, ...]:

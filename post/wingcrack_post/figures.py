@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import gc
 import re
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
-from importlib.util import LazyLoader, find_spec, module_from_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wingcrack_post.arguments import FORMATS, GROUPS
+from wingcrack_post.arguments import ALL, DEFAULT_FORMATS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.read import Run, read_run
+from wingcrack_post.states import grows, slips_or_opens
 from wingcrack_post.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
 if TYPE_CHECKING:
@@ -59,6 +58,8 @@ class _Figures:
         Whether it needs the VTU files, and takes the wanted times.
     several : bool
         Whether the function gives pairs of a label and a figure, and takes the wanted times.
+    shown : callable
+        Whether it is drawn without being asked for: whether something happens in it.
     """
 
     group: str
@@ -66,13 +67,13 @@ class _Figures:
     maker: str
     of_fields: bool = False
     several: bool = False
+    shown: Callable[[Run], bool] = lambda _run: True
 
     def draw(
         self, run: Run, times_s: Sequence[float], *, every: bool = True
     ) -> Iterator[tuple[str, Figure]]:
         """Give each figure with its label; of several that are many, `every` one if wanted."""
         module, _, function = self.maker.partition(":")
-        load_quickly()
         make: Callable[..., Any] = getattr(import_module(f"wingcrack_post.{module}"), function)
         if self.several:
             yield from make(run, times_s, every=every)
@@ -84,34 +85,50 @@ class _Figures:
 
 _MANY = 16  # files of figures of a kind, after which what is left of them is tidied up
 
+
+def _changing_wells(run: Run) -> bool:
+    """Whether there are several wells or stages: of a single one, summary and story tell all."""
+    if run.wells is None:
+        return True  # the function tells that there are none
+    wells, stages = (set(run.wells.text(column)) for column in ("well", "stage"))
+    return len(wells) > 1 or len(stages - {"0"}) > 1  # 0: shut
+
+
+def _on_request(_run: Run) -> bool:
+    return False
+
+
 _FIGURES = (
     _Figures("summary", "summary", "summary:summary"),
     _Figures("story", "story", "story:story"),
-    _Figures("network", "network", "network:network_figure"),
-    _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True),
-    _Figures("maps", "stress_maps", "stress:stress_maps", of_fields=True),
-    _Figures("fractures", "fracture", "profiles:fracture_profiles", several=True),
-    _Figures("tips", "intensities", "history:intensities"),
+    _Figures("network", "network", "network:network_figure", shown=grows),
+    _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True, shown=slips_or_opens),
+    _Figures("maps", "stress_maps", "stress:stress_maps", of_fields=True, shown=slips_or_opens),
+    _Figures(
+        "fractures", "fracture", "profiles:fracture_profiles", several=True, shown=slips_or_opens
+    ),
+    _Figures("tips", "intensities", "history:intensities", shown=grows),
     _Figures("tips", "load", "load:load_figure"),
     _Figures("tips", "equilibrium", "equilibrium_figure:equilibrium_figure"),
-    _Figures("tips", "development", "history:development"),
-    _Figures("tips", "balance", "history:balance"),
-    _Figures("wells", "wells", "wells:well_histories"),
+    _Figures("tips", "development", "history:development", shown=slips_or_opens),
+    _Figures("tips", "balance", "history:balance", shown=_on_request),
+    _Figures("wells", "wells", "wells:well_histories", shown=_changing_wells),
     _Figures("probes", "probes", "probes:probe_histories"),
-    _Figures("view", "view", "view:view", of_fields=True),
+    _Figures("view", "view", "view:view", of_fields=True, shown=_on_request),
 )
 
 
 def draw_figures(
     directory: Path,
-    only: Sequence[str],
-    formats: Sequence[str] = FORMATS,
+    only: Sequence[str] = (),
+    formats: Sequence[str] = DEFAULT_FORMATS,
     times_s: Sequence[float] = (),
 ) -> Iterator[Outcome]:
-    """Draw the figures of the named groups into ``figures`` in the run's directory.
+    """Draw the figures of the named groups, or of ``all``, into ``figures`` in the run's folder.
 
-    Those whose files are there and would come out the same are not drawn again. Yields an outcome
-    per figure as soon as it is known. Damaged files raise `RunError`.
+    Without names these are the figures in which something happens, and those drawn before. Those
+    whose files are there and would come out the same are not drawn again. Yields an outcome per
+    figure as soon as it is known. Damaged files raise `RunError`.
     """
     # fingerprints come before what they are of is read: what changes in between is drawn again
     tables = tables_of(directory) if directory.is_dir() else ""
@@ -119,14 +136,17 @@ def draw_figures(
     record = Drawn(directory / "figures")
     way = [program(), tables, str(directory.resolve()), repr(tuple(formats)), repr(tuple(times_s))]
     fields: str | None = None
-    every = tuple(only) != GROUPS  # who names groups wants all of them
+    by_name = bool(only) and ALL not in only
     for figures in _FIGURES:
-        if figures.group not in only:
+        if by_name and figures.group not in only:
+            continue
+        if not (only or figures.shown(run) or record.has(figures.name)):
+            yield Outcome(figures.name, (), f"drawn on request (--only {figures.group})")
             continue
         if figures.of_fields and fields is None:
             fields = fields_of(s.path for s in (*run.matrix, *run.fracture_fields))
         used = [*way, fields or ""] if figures.of_fields else way
-        used = [*used, str(every)] if figures.several else used
+        used = [*used, str(by_name)] if figures.several else used
         known = "" if figures.of_fields and not fields else fingerprint_of(used)
         found = record.find(figures.name, known)
         if found is not None:
@@ -135,13 +155,13 @@ def draw_figures(
         before = record.forget(figures.name)
         # what needs no fields does not get them, so that it cannot come to depend on them
         given = run if figures.of_fields else replace(run, matrix=(), fracture_fields=())
-        outcome = _drawn(given, figures, directory / "figures", formats, times_s, every=every)
+        outcome = _drawn(given, figures, directory / "figures", formats, times_s, every=by_name)
         for file in before.difference(outcome.files):
             file.unlink(missing_ok=True)  # it shows what is no more
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
-    if "summary" in only:
+    if not by_name or "summary" in only:
         yield _page(run, record, way)
 
 
@@ -181,39 +201,6 @@ def figure_of(run: Run, name: str) -> Figure:
                 return figure
     known = (f"{f.name}_NAME" if f.several else f.name for f in _FIGURES)
     raise RunError(f"there is no figure '{name}'; there are {', '.join(known)}.")
-
-
-def load_quickly() -> None:
-    """Load matplotlib without what no figure needs.
-
-    It would write help for each class, by asking all its methods, and load what takes letters out
-    of fonts and tells their names, which is seldom called for (`letters`).
-    """
-    for module in ("fontTools.subset", "fontTools.agl"):
-        load_when_used(module)
-    artist: Any = import_module("matplotlib.artist")
-    artist.kwdoc = _no_help
-
-
-def load_when_used(name: str) -> None:
-    """Let a module be there at once and be loaded when something of it is asked for."""
-    if name in sys.modules:
-        return
-    spec = find_spec(name)
-    if spec is None or spec.loader is None:
-        return
-    loader = LazyLoader(spec.loader)
-    spec.loader = loader
-    module = module_from_spec(spec)
-    sys.modules[name] = module
-    loader.exec_module(module)
-    parent, _, own = name.rpartition(".")
-    if parent:
-        setattr(import_module(parent), own, module)
-
-
-def _no_help(_artist: object) -> str:
-    return ""
 
 
 def _drawn(

@@ -35,6 +35,17 @@ def growth_start(run: Run) -> float | None:
     return float(run.history.moments()[longer[0] - 1]) if longer.size else None
 
 
+def grows(run: Run) -> bool:
+    """Whether tips have advanced."""
+    return growth_start(run) is not None
+
+
+def slips_or_opens(run: Run) -> bool:
+    """Whether a fracture cell slips or is open in some state; True where the files do not tell."""
+    counts = [run.history.number(name) for name in ("n_slip", "n_open") if run.history.has(name)]
+    return not counts or bool(np.any(counts))
+
+
 def select_states(
     run: Run,
     written: Sequence[float] | FloatArray,

@@ -16,10 +16,6 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from wingcrack_post.fonts import fall_back, small_fonts
-from wingcrack_post.still import keep_still
-from wingcrack_post.twin import draw_twins
-
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -37,7 +33,7 @@ STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
 STEADY = 1.0e-6  # share of the values below which their differences say nothing
 
 FIELD_COLOURS = "cividis"
-FORMATS = ("png", "pdf")
+_METADATA: dict[str, dict[str, Any]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
 
 RC: dict[Any, Any] = {
     "axes.axisbelow": True,
@@ -86,7 +82,6 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def within(*args: P.args, **kwargs: P.kwargs) -> R:
-        small_fonts()
         with matplotlib.rc_context(RC):
             return function(*args, **kwargs)
 
@@ -165,17 +160,12 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     gives the same bytes.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
-    aside = {form: stem.with_name(f".{stem.name}.{os.getpid()}.{form}") for form in FORMATS}
-    keep_still(figure)
-    fall_back(figure)
     written = []
-    try:
-        draw_twins(figure, aside["png"], aside["pdf"], RC["savefig.dpi"])
-        for form in formats:
-            target = stem.with_name(f"{stem.name}.{form}")
-            aside[form].replace(target)
-            written.append(target)
-    finally:
-        for file in aside.values():
-            file.unlink(missing_ok=True)
+    for form in formats:
+        aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
+        try:
+            figure.savefig(aside, metadata=_METADATA[form])
+            written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
+        finally:
+            aside.unlink(missing_ok=True)
     return written

@@ -20,7 +20,7 @@ from wingcrack_post.text_files import json_value, read_json
 
 RECORD = ".drawn.json"
 _LARGEST = 2**28  # [byte] of fields that are read to see whether they changed
-_LIBRARIES = ("matplotlib", "numpy", "fonttools")
+_LIBRARIES = ("matplotlib", "numpy")
 # What run.json says of the machine and of how long it took: figures do not get it (`read_run`).
 MEASURED = ("timers_s", "cpu_s", "wall_s", "peak_memory_mb")
 
@@ -56,6 +56,11 @@ class Drawn:
             return list(files), str(entry["reason"])
         except (KeyError, TypeError, AttributeError, OSError):
             return None
+
+    def has(self, name: str) -> bool:
+        """Whether files of a figure were written."""
+        entry = self._entries.get(name)
+        return isinstance(entry, dict) and bool(entry.get("files"))
 
     def note(self, name: str, fingerprint: str, files: Sequence[Path], reason: str) -> None:
         """Remember what became of a figure."""

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from wingcrack_post.arguments import add_format
+
 TOP = Path(__file__).resolve().parents[2]
 CLUSTERS = ("none", "local", "slurm", "pbs", "ssh")
 
@@ -78,6 +80,7 @@ def _parser() -> argparse.ArgumentParser:
         help="how the runs are spread: none (processes of this call), or by Dask on this machine "
         "(local) or others (default: as the study's file says, else none)",
     )
+    add_format(parser)
     parser.add_argument(
         "--check", action="store_true", help="read the study and check all its scenes, run nothing"
     )

@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post.figures import load_quickly
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
 from wingcrack_study.arguments import parse
@@ -176,7 +175,7 @@ def _finish(
     if study.quantiles:
         write_statistics(study, table, out / "statistics.csv")
     before_s = clock.cpu_s()
-    notes = [] if ended else _draw(study, table, out)
+    notes = [] if ended else _draw(study, table, out, given.format)
     figures_s = clock.cpu_s() - before_s
     _write_record(study, ledger, given, cluster, clock, ended, figures_s)
     _tell(table, notes)
@@ -200,17 +199,16 @@ def _read_of_none(study: Study, table: StudyTable) -> str:
     return ""
 
 
-def _draw(study: Study, table: StudyTable, out: Path) -> list[str]:
+def _draw(study: Study, table: StudyTable, out: Path, formats: Sequence[str]) -> list[str]:
     """Draw all figures; give what is missing in them."""
     if not study.plots:
         return []
-    load_quickly()
     from wingcrack_study.figures import draw
 
     notes = []
     for plot in study.plots:
         try:
-            files, missing = draw(study, plot, table, out)
+            files, missing = draw(study, plot, table, out, formats)
             print(files[0], flush=True)
             notes += [f"figure '{plot.name}': {item}" for item in missing]
         except CaseError as reason:

@@ -1,4 +1,4 @@
-"""Comparison figures of a study, in the house's style, as PNG and PDF."""
+"""Comparison figures of a study, in the house's style."""
 
 from __future__ import annotations
 
@@ -36,7 +36,9 @@ class _Curve:
     values: Values
 
 
-def draw(study: Study, plot: Plot, table: StudyTable, out: Path) -> tuple[list[Path], list[str]]:
+def draw(
+    study: Study, plot: Plot, table: StudyTable, out: Path, formats: Sequence[str]
+) -> tuple[list[Path], list[str]]:
     """Draw a figure into ``figures/``; give its files, and what could not be drawn, run by run.
 
     Raises
@@ -50,7 +52,7 @@ def draw(study: Study, plot: Plot, table: StudyTable, out: Path) -> tuple[list[P
     else:
         missing = []
         figure = _over(study, plot, table) if plot.kind == "over" else _bars(study, plot, table)
-    return style.save(figure, out / "figures" / plot.name, style.FORMATS), missing
+    return style.save(figure, out / "figures" / plot.name, formats), missing
 
 
 def _curves(

@@ -11,7 +11,8 @@ TOP = Path(__file__).resolve().parents[2]
 
 _EPILOG = """\
 Runs the verification cases, measures their errors and writes verification/report/ with index.html,
-report.pdf and report.json. What has not changed since an earlier call is not run again.
+report.json and, where Chromium or Chrome is installed, report.pdf. What has not changed since an
+earlier call is not run again.
 
 Exit status: 0 all passed or known gaps; 1 a case failed or is in error; 2 bad usage; 3 not built.
 

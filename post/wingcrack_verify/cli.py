@@ -50,9 +50,11 @@ def _verify(suite: Suite, runner: Runner, given: argparse.Namespace) -> int:
         run_s=run_s,
         build=given.build,
     )
-    written = make_report(report, given.report)
+    written, unprinted = make_report(report, given.report)
     for line in report.summary_lines():
         print(line)
+    if unprinted:
+        print(unprinted)
     print(f"{written}  ({time.perf_counter() - begin:.0f} s)")
     return 1 if report.verdict in RED else 0
 

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-PYTHON_PACKAGES = ("numpy", "matplotlib", "gmsh", "f90nml", "jinja2", "markdown-it-py", "fpdf2")
+PYTHON_PACKAGES = ("numpy", "matplotlib", "gmsh", "f90nml", "jinja2", "markdown-it-py")
 SYSTEM_PACKAGES = ("libmumps-seq-dev", "libmumps-seq-5.5", "libopenblas0-pthread", "liblapack3")
 
 

@@ -11,12 +11,9 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends import backend_agg, backend_svg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-from PIL import Image
 
-from wingcrack_post.still import keep_still
 from wingcrack_post.style import CYCLE, new_figure, styled
 from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
@@ -26,12 +23,8 @@ from wingcrack_verify.stability import MapReport
 
 WIDTH, HEIGHT = 4.3, 2.7  # [inch]: at this width the letters keep their size on a phone
 MARKERS = "osD^vP*X<>"
-# matplotlib gives these no types
-_Pixels: Any = backend_agg.FigureCanvasAgg
-_Vectors: Any = backend_svg.FigureCanvasSVG
 MOST_PROFILES = 4  # in one figure
-PNG_DPI = 160  # 200 in the size of the PDF
-LINE_COLOURS, FIELD_COLOURS = 16, 256  # of a PNG: lines and letters take few, fields many
+RASTER_DPI = 160  # of fields, 200 in the size of the PDF
 LABEL_LETTERS = 36  # that stand beside an axis of this height
 
 
@@ -43,14 +36,12 @@ class Drawing:
     ----------
     title, caption : str
         Said beside the figure.
-    svg, png : bytes
-        For the page and for the PDF, which would take several times as long to draw lines.
+    svg : bytes
     """
 
     title: str
     caption: str
     svg: bytes
-    png: bytes
 
 
 @styled
@@ -236,7 +227,7 @@ def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
     request = drawn.request
     if drawn.folder is not None and request.picture is not None:
         figure = picture_of(request.picture, drawn.folder)
-        return _finish(figure, request.title, request.caption, FIELD_COLOURS)
+        return _finish(figure, request.title, request.caption)
     if not drawn.lines:
         return None
     figure, axes = _new()
@@ -334,19 +325,12 @@ def _legend(figure: Figure, axes: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=columns)
 
 
-def _finish(figure: Figure, title: str, caption: str, colours: int = LINE_COLOURS) -> Drawing:
-    """Draw a figure for page and PDF; `savefig` would go through all of it twice for each."""
-    keep_still(figure)
-    svg, png = BytesIO(), BytesIO()
-    figure.set_dpi(PNG_DPI)
-    canvas = _Pixels(figure)
-    canvas.draw()
-    pixels = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    pixels.quantize(colours, dither=Image.Dither.NONE).save(png, "png", optimize=True)
-    figure.set_layout_engine("none")  # the layout stands; finding it again would take as long
-    with matplotlib.rc_context({"svg.hashsalt": title}):
-        _Vectors(figure).print_svg(svg, metadata={"Date": None})
-    return Drawing(title, caption, svg.getvalue(), png.getvalue())
+def _finish(figure: Figure, title: str, caption: str) -> Drawing:
+    """Draw a figure; without a date and by its title, so that it gives the same bytes again."""
+    svg = BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": title, "savefig.dpi": RASTER_DPI}):
+        figure.savefig(svg, format="svg", metadata={"Date": None})
+    return Drawing(title, caption, svg.getvalue())
 
 
 def check_drawings(report: CheckReport) -> Sequence[Drawing]:

@@ -1,4 +1,4 @@
-"""All figures of a report, made once for page and PDF."""
+"""All figures of a report, several cases at a time."""
 
 from __future__ import annotations
 
@@ -18,11 +18,6 @@ class Illustration:
 
     of_case: Sequence[Drawing]
     of_checks: Sequence[Sequence[Drawing]]
-
-    @property
-    def all(self) -> Sequence[Drawing]:
-        """In the order of the page."""
-        return [*self.of_case, *(drawing for drawings in self.of_checks for drawing in drawings)]
 
 
 def illustrate(judged: JudgedSuite, jobs: int) -> dict[str, Illustration]:

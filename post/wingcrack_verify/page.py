@@ -108,11 +108,11 @@ def _figure(drawing: Drawing, sheet: Sheet) -> dict[str, str]:
     }
 
 
-def readme_html(case: Path, folder: Path | None) -> str:
+def readme_html(case: Path, folder: Path) -> str:
     """README.md of a case as HTML.
 
     Headings move down below those of the report; a link to a file leads there from `folder`, and
-    pictures are put in. Without a folder (for the PDF) links to files become plain text.
+    pictures are put in.
     """
     file = case / "README.md"
     if not file.is_file():
@@ -120,8 +120,6 @@ def readme_html(case: Path, folder: Path | None) -> str:
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = parser.parse(file.read_text(encoding="utf-8"))
     for token in tokens:
-        if folder is None and token.type.startswith("paragraph") and token.level > 0:
-            token.hidden = True  # in a list: the PDF would set its bullets apart from the words
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{min(int(token.tag[1]) + 2, 6)}"
         for child in token.children or []:
@@ -132,7 +130,7 @@ def readme_html(case: Path, folder: Path | None) -> str:
     )
 
 
-def _embed_target(token: Token, case: Path, folder: Path | None) -> None:
+def _embed_target(token: Token, case: Path, folder: Path) -> None:
     if token.type == "image":
         path = case / str(token.attrs["src"])
         if path.is_file():
@@ -141,5 +139,5 @@ def _embed_target(token: Token, case: Path, folder: Path | None) -> None:
             token.attrs["src"] = f"data:{kind};base64,{data}"
     elif token.type == "link_open":
         target = str(token.attrs["href"])
-        if re.match(r"[a-z]+:|#", target) is None and folder is not None:
+        if re.match(r"[a-z]+:|#", target) is None:
             token.attrs["href"] = os.path.relpath(case / target, folder)

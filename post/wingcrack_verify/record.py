@@ -1,4 +1,4 @@
-"""The report as data: what report.json holds, and what page and PDF are filled with."""
+"""The report as data: what report.json holds, and what the page is filled with."""
 
 from __future__ import annotations
 

@@ -10,10 +10,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from wingcrack_verify import environment
-from wingcrack_verify.booklet import write_booklet
 from wingcrack_verify.illustrate import illustrate
 from wingcrack_verify.judge import PASSED, VERDICTS
 from wingcrack_verify.page import page_text, shortened
+from wingcrack_verify.printing import print_page
 from wingcrack_verify.record import Context, record_of
 from wingcrack_verify.rows import Row, rows_of
 from wingcrack_verify.suite import JudgedSuite
@@ -62,8 +62,11 @@ class Report:
         return [*lines, f"{counts}; {self.runs} runs, {self.reused} of them as before"]
 
 
-def make_report(report: Report, folder: Path) -> Path:
-    """Write index.html, report.pdf and report.json, each of them whole; return the page's path."""
+def make_report(report: Report, folder: Path) -> tuple[Path, str]:
+    """Write index.html, report.json and, where a browser can print it, report.pdf, each whole.
+
+    Gives the page's path, and why there is no PDF, else an empty text.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     context = Context(
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
@@ -83,10 +86,7 @@ def make_report(report: Report, folder: Path) -> Path:
     _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
     _write(page, page_text(report.judged, record, pictures, folder).encode())
-    aside = folder / f".report.{os.getpid()}.pdf"
-    write_booklet(report.judged, record, pictures, aside)
-    aside.replace(folder / "report.pdf")
-    return page
+    return page, print_page(page, folder / "report.pdf")
 
 
 def _scope(report: Report) -> str:
