@@ -13,78 +13,77 @@ module simulation_describe
    character(len=*), parameter :: introduction(*) = [character(len=128) :: &
       "# Limits of a run", &
       "", &
-      "This page is written by `wingcrack-solver --describe-limits` from the tables that the", &
-      "program follows; a test holds it against them.", &
+      "This page is written by `wingcrack-solver --describe-limits` from the tables of the", &
+      "program; a test compares them.", &
       "", &
-      "At each accepted state a run watches the quantities below. Where one passes its limit", &
-      "for a warning, the run goes on and says so: in run.log when it first happens, at the end", &
-      "in the list `warnings` of run.json and on the terminal. A sentence per quantity gives", &
-      "the first value with its time and place, in how many states the limit was passed, and", &
-      "the worst value. Where one passes its limit for a stop, or is not a number, the state is", &
-      "not accepted: the run ends with status 1, and the last good state is on disk. Those of", &
-      "tips are known after the state is accepted, and end the run there.", &
+      "At each accepted state a run monitors the quantities below. If one exceeds its warning", &
+   "limit, the run continues and reports it: in run.log at the first occurrence, and at the end", &
+      "in the list `warnings` of run.json and on the terminal. One sentence per quantity has the", &
+      "first value with its time and location, the number of states beyond the limit, and the", &
+   "worst value. If one exceeds its stop limit, or is not a number, the state is not accepted:", &
+      "the run ends with status 1, and the last good state is on disk. Quantities of tips are", &
+      "known only after the state is accepted, and end the run there.", &
       "", &
-      "## What is watched", &
+      "## Monitored quantities", &
       "", &
-      "The smallest angle is watched from below, all others from above.", &
+      "The smallest angle has lower limits, all others upper limits.", &
       ""]
 
    character(len=*), parameter :: budget(*) = [character(len=128) :: &
       "", &
-      "## Where the limits come from", &
+      "## Origin of the limits", &
       "", &
-      "The error of a result is that of the model, of the mesh and step, and of the solution of", &
-   "the equations. With the meshes of `inputs/` the mesh gives about 1 % (docs/verification.md),", &
-      "so the share of each other source is held to a small part of that without a warning,", &
-      "and a run stops where a source alone exceeds what anybody could use.", &
+      "The error of a result has contributions from the model, from mesh and step, and from the", &
+      "solution of the equations. With the meshes of `inputs/` the mesh contributes about 1 %", &
+   "(docs/verification.md). Each other contribution is limited to a small part of that without", &
+      "a warning, and a run stops if a single contribution makes the results useless.", &
       "", &
-     "* **Solution of the equations**: forward error bound, mass error, contact residual. In the", &
+   "* **Solution of the equations**: forward error bound, mass error, contact residual. In the", &
       "  scenes of `inputs/` they are at most 5e-10, 3e-12 and 9e-11. A warning comes three", &
-      "  decades or more below 1 %: something is badly scaled, but results are still good. Steps", &
+      "  decades or more below 1 %: the scene is badly scaled, but results are still good. Steps", &
       "  of a scene with a fluid are cut before their contact residual reaches its limit. The", &
-      "  forward error bound is that of jumps and pressures, by the condition of the matrix, in", &
-      "  one step. In one sealed body, whose pressure is known, the error of the pressure was", &
-      "  0.2 to 0.3 of it after one step; errors add up, and after three to five steps the slip", &
+   "  forward error bound is that of jumps and pressures in one step, from the condition number", &
+      "  of the matrix. In one sealed body with known pressure, the error of the pressure was", &
+      "  0.2 to 0.3 of it after one step. Errors accumulate: after three to five steps the slip", &
       "  was wrong by 6e-5, 4e-4 and 9e-4 at bounds of 1e-5, 1e-4 and 3e-4. So a run stops at", &
-      "  1e-3; the error of the mass, which is measured, may stop it before that. Flows round", &
-      "  loops of wide fractures are known less well than all else: they have a limit of", &
-      "  their own.", &
-      "* **Small strains**: jump, strain, pressure over Young's modulus. What the linear", &
-      "  equations leave out is about the strain itself, so 1 to 2 % of strain is worth 1 to 2 %", &
-      "  of error. The faces of a fracture are coupled as if they had not moved: half a cell is", &
-      "  where traction and pressure act at the wrong place by as much as the mesh can tell.", &
-      "  As the equations stay solvable, only values that are nobody's rock stop a run.", &
-      "* **Cubic law**: it is for fractures that are thin beside their length, and these are", &
-      "  smaller than the body; a tenth of the body is no fracture.", &
+      "  1e-3; the measured error of the mass may stop it before. Flows round loops of wide", &
+      "  fractures are less accurate than other quantities and have a separate limit.", &
+      "* **Small strains**: jump, strain, pressure over Young's modulus. The error of the linear", &
+      "  equations is about the strain itself: 1 to 2 % of strain corresponds to 1 to 2 % of", &
+      "  error. The coupling of the two faces assumes small jumps: at half a cell, traction and", &
+      "  pressure act at wrong positions by as much as the mesh resolves. The equations remain", &
+      "  solvable, so only values that no rock has stop a run.", &
+   "* **Cubic law**: it is valid for fractures that are thin compared with their length, which", &
+      "  is smaller than the body; an aperture of a tenth of the body is invalid.", &
       "* **Pressure over the load**: a fracture opens at about the compression across it, and", &
-      "  grows at a little more. Ten times as much comes from steps too long or rates too large,", &
-      "  or from a fluid that has nowhere to go.", &
+      "  grows at slightly more. Ten times as much is due to too large steps or rates, or to a", &
+      "  confined fluid.", &
       "* **Smallest angle**: errors grow with one over its sine; the mesher gives 20 degrees and", &
-      "  more where the fractures leave it room.", &
-     "* **Stress intensity factors**: on sound meshes the two methods differ by 1 to 2 % and the", &
-      "  estimated errors are below 1 %. Growth asks whether K_eq reaches K_IC, so errors and", &
-     "  excess are in shares of K_IC: at 5 % the onset is uncertain by as much. In a state whose", &
-    "  growth is done no tip should exceed K_IC; 2 % is what fluid and growth, which take turns,", &
-    "  may leave. More means that growth lags behind the load, and times and pressures of growth", &
-      "  depend on the step.", &
-      "* **Error in time**: of each step by itself. Steps that the program chooses are held to", &
-     "  the tolerance of &time; those that a scene gives are warned of where the estimate, which", &
-    "  is some times too large where a well has just begun, is half of what has happened so far.", &
-      "  The first step after the start, or after a well's switch, has nothing to compare with.", &
+      "  more where fractures leave enough space.", &
+      "* **Stress intensity factors**: on good meshes the two methods differ by 1 to 2 % and the", &
+      "  estimated errors are below 1 %. The growth criterion compares K_eq with K_IC, so errors", &
+      "  and excess are relative to K_IC: at 5 % the onset is uncertain by as much. After growth", &
+      "  in a state no tip should exceed K_IC; 2 % is the tolerance of the alternation of fluid", &
+      "  and growth. A larger excess means that growth lags behind the load, and that times and", &
+      "  pressures of growth depend on the step.", &
+      "* **Error in time**: of each step separately. Automatic steps satisfy the tolerance of", &
+      "  &time. For prescribed steps there is a warning if the estimate is half of the range so", &
+   "  far; it is some times too large where a well has just begun. There is no estimate in the", &
+      "  first step after the start, or after a switch of a well.", &
       "* **Shortest step**: with a fluid a step is never cut to less than a 64th of", &
       "  `smallest_factor` times `step`, or times `end` without it; it is shorter only where a", &
-      "  stage, a course or the scene ends. There it is taken whatever its error in time, if its", &
-      "  equations are solved, else the run ends. It also ends when time makes no headway: after", &
-   "  300 steps that were cut, none of them longer than 100 times `smallest_factor` times `step`", &
-      "  or `end`, and in which no tip grew.", &
+      "  stage, a schedule or the scene ends. A step of this length is accepted for any time", &
+   "  error if its equations are solved; otherwise the run ends. It also ends without progress", &
+   "  in time: after 300 cut steps, none of them longer than 100 times `smallest_factor` times", &
+      "  `step` or `end`, and in which no tip grew.", &
       "", &
-      "## What is doubted", &
+      "## Plausibility checks", &
       "", &
-      "`check` prints, and `run` puts first among the warnings, what can be simulated but is", &
-      "hardly meant: values out of the usual range, as wrong units give, and values that do not", &
-      "go together.", &
+   "`check` prints, and `run` lists first among the warnings, values that can be simulated but", &
+      "are probably unintended: values out of the usual range, as with wrong units, and", &
+      "inconsistent values.", &
       "", &
-      "| group | name | unit | doubted | why |", &
+      "| group | name | unit | condition | reason |", &
       "|---|---|---|---|---|"]
    !&>
 
@@ -98,7 +97,7 @@ contains
       integer :: i
 
       write (unit, "(a)") (trim(introduction(i)), i=1, size(introduction))
-      write (unit, "(a)") "| quantity | unit | watched | warning | stop | meaning | remedy |", &
+      write (unit, "(a)") "| quantity | unit | runs | warning | stop | meaning | remedy |", &
          "|---|---|---|---|---|---|---|"
       do i = 1, size(limits)
          l = limits(i)

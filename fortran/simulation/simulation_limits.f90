@@ -45,79 +45,79 @@ module simulation_limits
    !&<
    type(limit_t), parameter :: limits(*) = [ &
       limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 1.0e-3_rk, &
-              "Bound of the rounding errors in the solution on the fractures, relative", &
-              "look for values of the scene that lie too many decades apart"), &
+              "Relative bound of rounding errors in the solution on the fractures", &
+              "look for values of the scene that differ by too many decades"), &
       limit_t("mass error", "-", with_fluid, 1.0e-8_rk, 1.0e-3_rk, &
-              "Fluid gained or lost by numerical error so far, over the injected fluid or the "// &
-              "fractures' volume, or without these what the pressure would store in the rock", &
-              "look for values of the scene that lie too many decades apart"), &
+              "Numerical error of the fluid mass so far, relative to the injected volume or "// &
+              "the fracture volume, or without these to the storage of the rock under its "// &
+              "pressure", &
+              "look for values of the scene that differ by too many decades"), &
       limit_t("contact residual", "-", "always", 1.0e-8_rk, 1.0e-4_rk, &
-              "How far the law of contact is missed, over the largest traction", &
-              "give a smaller newton_tolerance"), &
+              "Residual of the contact law over the largest traction", &
+              "reduce newton_tolerance"), &
       limit_t("aperture over the body's size", "-", with_fluid, 1.0e-2_rk, 1.0e-1_rk, &
               "Largest aperture of a fracture cell over the body's shorter side", &
-              "look at the rates of the wells, how the body is held, and all units"), &
+              "check well rates, boundary conditions and units"), &
       limit_t("jump over its fracture cell's length", "-", "always", 0.5_rk, 1.0e4_rk, &
-              "Largest opening or slip over the length of its fracture cell; the faces are "// &
-              "coupled as if they had not moved", &
-              "look at the loads, or give larger fracture cells: finer ones do not help"), &
+              "Largest opening or slip over the length of its fracture cell; the coupling of "// &
+              "the faces assumes small jumps", &
+              "check the loads, or use larger fracture cells; smaller ones do not help"), &
       limit_t("strain of the body", "-", "always", 2.0e-2_rk, 1.0e2_rk, &
               "Difference between the largest and the smallest displacement over the body's "// &
               "size in that direction", &
-              "look at the loads and at young: the equations are for small strains"), &
+              "check the loads and young: the equations are for small strains"), &
       limit_t("pressure over the load", "-", with_fluid, 1.0e1_rk, 1.0e4_rk, &
-              "Largest fluid pressure, without its sign, over what can be expected: the "// &
-              "largest load, initial pressure, or pressure that lets the longest fracture grow", &
-              "look at the rates of the wells; shorten the step"), &
+              "Largest absolute fluid pressure over the expected one: the largest load, "// &
+              "initial pressure, or pressure for growth of the longest fracture", &
+              "check well rates; reduce the step"), &
       limit_t("pressure over Young's modulus", "-", with_fluid, 1.0e-2_rk, 1.0_rk, &
-              "Largest fluid pressure, without its sign, over Young's modulus", &
-              "look at the rates of the wells and at young; shorten the step"), &
+              "Largest absolute fluid pressure over Young's modulus", &
+              "check well rates and young; reduce the step"), &
       limit_t("smallest angle of the mesh", "degree", "always", 10.0_rk, 0.1_rk, &
               "Smallest angle of all triangles", &
-              "move fractures apart that run closely beside each other, or give smaller cells"), &
+              "separate fractures that are nearly parallel and close, or use smaller cells"), &
       limit_t("disagreement of the stress intensity factors", "-", "always", 0.1_rk, 10.0_rk, &
               "Difference of K by the interaction integral and by displacement correlation, "// &
               "over the largest K of all tips, or over K_IC if that is larger and tips may grow", &
-              "give smaller cells around the tip"), &
+              "use smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
               10.0_rk, "Estimated error of K of a tip that may grow, over K_IC; with a fluid "// &
               "that of both levels", &
-              "growth in this state is not certain: give smaller cells around the tip, or with "// &
-              "a fluid a larger window"), &
+              "growth in this state is uncertain: use smaller cells around the tip, or with a "// &
+              "fluid a larger window"), &
       limit_t("error of K over K_IC where a tip would grow", "%", with_growth, 5.0_rk, 5.0_rk, &
               "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
-              "is at K_IC within it; with a fluid after its window was improved; not with law "// &
-              "= 'paris'", &
-              "growth cannot be decided: give a smaller size_fracture, with a fluid a larger "// &
+              "equals K_IC within it; with a fluid after window refinement; not with law = "// &
+              "'paris'", &
+              "growth cannot be decided: reduce size_fracture, with a fluid use a larger "// &
               "window, without one &adaptive"), &
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
-              "Largest K_eq, over K_IC, of the tips that may grow, when growth in the state is "// &
-              "done", &
-              "shorten the step: growth lags behind the load"), &
+              "Largest K_eq, over K_IC, of tips that may grow, after growth in the state", &
+              "reduce the step: growth lags behind the load"), &
       limit_t("error in time of a step", "-", with_fluid, 0.5_rk, never, &
-              "Estimated error of a time step in the mean pressure, slip or opening, over the "// &
-              "range that these have gone through", &
-              "shorten the step, or leave it out: then the error decides about it"), &
+              "Estimated time error of a step in the mean pressure, slip or opening, over "// &
+              "their range so far", &
+              "reduce the step, or omit it: it is then chosen by its error"), &
       limit_t("contrast in a cell that an outline cuts", "-", "with &region", 1.0e3_rk, never, &
-              "How much better rock conducts along the outline than across, in a cell with "// &
-              "both; above it flow along is up to a quarter too small, and pressures may leave "// &
+              "Ratio of the permeabilities along and across the outline in a cut cell; above "// &
+              "the limit flow along is up to a quarter too small, and pressures may leave "// &
               "their bounds by a third", &
-              "leave outlines room from fractures and each other (docs/theory.md), so that the "// &
+              "keep outlines away from fractures and each other (docs/theory.md), so that the "// &
               "mesh follows them"), &
       limit_t("flow round loops of fractures", "-", with_fluid, 1.0e-3_rk, never, &
-              "What is not known of it, over the largest flow, or one that exchanges the "// &
-              "fluid of a cell in the step: nothing but pressure differences below their "// &
-              "rounding decides about it", &
-              "such fractures are wide for the equations: shorter steps help, smaller apertures"), &
+              "Its uncertainty over the largest flow, or that which exchanges the fluid of a "// &
+              "cell in the step: it depends on pressure differences below their rounding", &
+              "these fractures are too wide for the equations: use shorter steps or smaller "// &
+              "apertures"), &
       limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
-              "How far the pressure in a fracture lies outside of table_pressure, over its "// &
-              "range; the fluid is as at the end of the table there", &
-              "give the table of the fluid further pressures"), &
+              "Distance of the pressure in a fracture from the range of table_pressure, over "// &
+              "that range; fluid properties are constant there", &
+              "extend the table of the fluid"), &
       limit_t("fluid of the rock beside its law", "-", "with a fluid law", 0.1_rk, never, &
-              "How far viscosity over density at a pressure in the rock is from that at "// &
-              "reference_pressure, relative: the rock takes the latter", &
-              "give a reference_pressure in the middle of the rock's pressures, with the "// &
-              "viscosity and compressibility there")]
+              "Relative difference of viscosity over density at a pressure in the rock from "// &
+              "that at reference_pressure, which the rock uses", &
+              "use a reference_pressure within the rock's pressures, with the viscosity and "// &
+              "compressibility there")]
    !&>
 
 contains
