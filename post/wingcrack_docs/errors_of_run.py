@@ -17,7 +17,7 @@ def describe_errors(run: wingcrack.Run) -> str:
     energy = run.record.get("energy_error_relative")
     if energy is not None:
         said.append(f"energy norm {percent(float(energy))}")
-    return ", ".join(said) or "none stated: no intensities are asked for"
+    return ", ".join(said) or "none: no stress intensity factors"
 
 
 def _of_intensities(run: wingcrack.Run) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The gallery: every scene of inputs/ with its picture, what it costs and how far it errs."""
+"""The gallery: every scene of inputs/ with its picture, cost and errors."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ _SECTIONS = {
     "paper_b": "Stress intensity factors and paths, without fluid (Paper B)",
     "paper_c": "Injection into a fracture: slip and wing cracks (Paper C)",
     "paper_d": "Fractures that cross and join (Paper D)",
-    "examples": "Examples of our own",
-    "benchmarks": "A measure of speed",
+    "examples": "Examples",
+    "benchmarks": "Benchmark",
 }
 
 _HEAD = """\
 # Gallery
 
-Every scene that comes with the program: what it looks like at its end, what it costs, how far it
-errs. `./wingcrack docs --pictures` runs them and writes this page; CPU times are those of one core
-of the machine that it was written on ({processor}), which did other work, too.
+This page shows the final state, cost and estimated errors of every shipped scene. It is written by
+`./wingcrack docs --pictures`, which runs the scenes. CPU times are those of one core of the machine
+used ({processor}) under other load.
 
-Pictures show the pore pressure, or without a fluid the mean stress, and the fractures in the
-colour of their state: black sticks, orange slips, blue is open. **Errors** are the run's own
-estimates ([K and its error](howto_intensities.md)), at the end of the run or, of K, the largest of
-all its growing tips, over K; what they are worth is measured by the verification cases that run the
-scene, with its settings or others.
+Pictures show the pore pressure, or without a fluid the mean stress, and the fractures coloured by
+state: black stick, orange slip, blue open. **Errors** are estimates of the run
+([K and its error](howto_intensities.md)) at its end; for K the largest of all growing tips,
+relative to K. The verification cases that run the scene, with its settings or others, measure the
+reliability of these estimates.
 """
 
 
