@@ -92,7 +92,7 @@ def test_a_sweep_is_a_product_and_its_last_axis_changes_first(tmp_path: Path) ->
         "b, 8 cells of 12.5 %",
     ]
     assert [run.size for run in runs] == [None, 0.5, None, 0.5]
-    assert runs[1].constants == {"cells": 8.0, "width": 0.125}
+    assert runs[1].constants == {"factor": 2.0, "size": 0.5, "cells": 8.0, "width": 0.125}
     assert runs[3].set == {"scene.name": "b", "fe.order": 2}
 
 
