@@ -310,7 +310,7 @@ def read_run(
     fields.place = f"run '{name}'"
     method, size = fields.text("method"), fields.positive("size", None)
     default, own = fields.flag("default"), fields.constants("constants")
-    known = (constants or {}) | ({} if size is None else {"size": size}) | own
+    known = {**(constants or {}), **({} if size is None else {"size": size}), **own}
     limit = fields.positive("time_limit_s", TIME_LIMIT_S)
     scene, program = fields.text("scene", None), fields.text("program", None)
     if (scene is None) == (program is None):

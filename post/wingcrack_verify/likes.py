@@ -30,7 +30,9 @@ class Likes:
 
     def __init__(self, data: Mapping[str, Any], file: str, outer: Likes | None = None) -> None:
         self._entries = {kind: _tables(data.get(kind)) for kind in NAMED_BY}
-        self._files = [file] if outer is None else list(dict.fromkeys([file, *outer._files]))
+        self._files: list[str] = (
+            [file] if outer is None else list(dict.fromkeys([file, *outer._files]))
+        )
         self._outer = outer
 
     def complete(self, entry: Mapping[str, Any], kind: str, place: str) -> Table:
