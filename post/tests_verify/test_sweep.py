@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from small_case import CHECKS, SmallCase, small_case
-from wingcrack_verify.case import Case, read_case
+from wingcrack_verify.case import read_case
+from wingcrack_verify.contents import Case
 from wingcrack_verify.judge import ERROR, FAILED, PASSED
 
 # The first two runs of the small case, as a sweep; the third stays.

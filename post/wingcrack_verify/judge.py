@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack_verify.case import Case, Check, FigureRequest, Run
+from wingcrack_verify.contents import Case, Check, FigureRequest, Run
 from wingcrack_verify.economy import Saving, saving, unknowns_of
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from wingcrack_post.text_files import is_file, read_json
-from wingcrack_verify.case import Run, read_toml, refuse_doubles
+from wingcrack_verify.case import read_toml, refuse_doubles
+from wingcrack_verify.contents import Run
 from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
