@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from launcher_tree import Tree, make_tree
-from system_scene import SCENE, call
+from system_scene import GROWING, SCENE, call, run
 
 
 @pytest.fixture
@@ -50,3 +50,15 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> None:
     (place / "small.nml").write_text(SCENE)
     done = call(place, "check", "small.nml")
     assert done.returncode == 0, done.stderr
+
+
+@pytest.fixture(scope="session")
+def resting(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Files of a run without growth; a test must leave them as they are."""
+    return run(tmp_path_factory.mktemp("resting"), SCENE)
+
+
+@pytest.fixture(scope="session")
+def growing(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Files of a run whose fracture grows at both ends; a test must leave them as they are."""
+    return run(tmp_path_factory.mktemp("growing"), GROWING)

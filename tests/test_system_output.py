@@ -12,7 +12,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from system_scene import GROWING, TOP, rows, run, varied
+from system_scene import TOP, rows, run, varied
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -104,8 +104,9 @@ def out_and_runs(
 ) -> tuple[Path, set[str]]:
     """Files of a run, and the words of the page that hold for it."""
     which: str = request.param
+    if which == "fluid":
+        return request.getfixturevalue("growing"), FLUID
     scene, words = {
-        "fluid": (GROWING, FLUID),
         "joints": (CROSSING, JOINTS),
         "wells": (SEVERAL_WELLS, SEVERAL),
         "mechanics": (EDGE_CRACK, MECHANICS),

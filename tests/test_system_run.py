@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -126,18 +127,6 @@ STRAIN = [(1 + POISSON) / YOUNG * (_EFFECTIVE[i] - POISSON * sum(_EFFECTIVE)) fo
 
 
 pytestmark = pytest.mark.usefixtures("program")
-
-
-@pytest.fixture(scope="module")
-def resting(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Files of a run without growth."""
-    return run(tmp_path_factory.mktemp("resting"), SCENE)
-
-
-@pytest.fixture(scope="module")
-def growing(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Files of a run whose fracture grows at both ends."""
-    return run(tmp_path_factory.mktemp("growing"), GROWING)
 
 
 def header(path: Path) -> list[str]:
@@ -351,8 +340,8 @@ def test_the_scene_as_understood_gives_the_same_run(
         assert (again / name).read_bytes() == (out / name).read_bytes(), name
 
 
-def test_a_directory_can_be_used_again(resting: Path, tmp_path: Path) -> None:
-    run(tmp_path, GROWING)
+def test_a_directory_can_be_used_again(resting: Path, growing: Path, tmp_path: Path) -> None:
+    shutil.copytree(growing, tmp_path / "out")
     out = run(tmp_path, SCENE)
     assert sorted(p.name for p in out.rglob("*")) == sorted(p.name for p in resting.rglob("*"))
     assert (out / "history.csv").read_bytes() == (resting / "history.csv").read_bytes()

@@ -104,7 +104,7 @@ def test_small_windows_beside_a_neighbour_say_so(tmp_path: Path, window: float) 
         call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot").returncode == 0
     )
     tips = rows(tmp_path / "out" / "tips.csv")
-    known = 1.863e6  # the same body without a fluid: verification/windows_in_networks
+    known = 1.863e6  # the same body without a fluid: verification/windows_of_scenes
     for tip in (tip for tip in tips if float(tip["time_s"]) == 0.0 and tip["tip"] in "14"):
         excess = float(tip["k1_pa_sqrtm"]) - known
         assert excess > 0.04 * known

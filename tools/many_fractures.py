@@ -28,10 +28,10 @@ HEADER = """\
 &output vtu = .false. /
 """
 
-FRACTURE = """\
-&fracture name = 'f{number}', x = {x[0]:.6f}, {x[1]:.6f}, y = {y[0]:.6f}, {y[1]:.6f},
-  friction = {friction:.3f}, dilation_deg = 1.0, aperture = 1.0e-3 /
-"""
+FRACTURE = (
+    "&fracture name = 'f{number}', x = {x[0]:.6f}, {x[1]:.6f}, y = {y[0]:.6f}, {y[1]:.6f}, "
+    "friction = {friction:.3f}, dilation_deg = 1.0, aperture = 1.0e-3 /"
+)
 
 
 def main() -> None:

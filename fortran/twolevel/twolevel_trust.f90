@@ -19,7 +19,7 @@
 !!     lower, counts by half.
 !! Their safety factor is the smallest, in tenths, with which 95 % of the stated errors held in 62
 !! arrangements of one or two cracks and windows as large as these; in networks and smaller windows
-!! 54 to 62 % do (verification/windows_in_networks).
+!! 54 to 62 % do (verification/windows_of_scenes).
 !!
 !! What passes by itself, and no window could mend, is no reason not to grow (simulation_doubt): it
 !! is stated and warned of. What the coarse level gets wrong in the fractures' pressure is not seen.

@@ -16,7 +16,9 @@ from wingcrack_verify.suite import JudgedSuite, judge_suite, read_suite
 _SOLVER = """\
 #!/bin/bash
 # run SCENE --out DIR --quiet
-name=$(sed -n "s/^ *name = '\\(.*\\)'/\\1/p" "$2")
+while read -r key _ value; do
+  if [ "$key" = name ]; then name=${value//\\'/}; fi
+done <"$2"
 echo "$name" >>@CALLS@
 cp -r @RESULTS@/"$name"/. .
 if [ -f do.sh ]; then . ./do.sh; fi

@@ -151,6 +151,17 @@ def test_quick_leaves_the_long_cases_out(case: SmallCase) -> None:
     assert verify(case) == 0
 
 
+def test_quick_draws_what_did_not_pass(case: SmallCase) -> None:
+    assert verify(case, "--quick") == 0
+    assert '<svg viewBox="' not in (case.root / "report" / "index.html").read_text()
+    case.toml = case.toml.replace("expected = 2.0", "expected = 1.0")
+    assert verify(case, "--quick") == 1
+    drawn = (case.root / "report" / "index.html").read_text().count('<svg viewBox="')
+    assert verify(case) == 1
+    whole = (case.root / "report" / "index.html").read_text().count('<svg viewBox="')
+    assert 0 < drawn <= whole
+
+
 @pytest.mark.parametrize("arguments", [["no_such_case"], ["--jobs", "0"], ["--fast"]])
 def test_bad_usage_exits_with_2(
     case: SmallCase, arguments: list[str], capsys: pytest.CaptureFixture[str]

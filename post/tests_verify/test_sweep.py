@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from small_case import CHECKS, SmallCase, small_case
-from wingcrack_verify.case import Case, read_case
+from wingcrack_verify.case import read_case
+from wingcrack_verify.contents import Case
 from wingcrack_verify.judge import ERROR, FAILED, PASSED
 
 # The first two runs of the small case, as a sweep; the third stays.
@@ -92,7 +93,7 @@ def test_a_sweep_is_a_product_and_its_last_axis_changes_first(tmp_path: Path) ->
         "b, 8 cells of 12.5 %",
     ]
     assert [run.size for run in runs] == [None, 0.5, None, 0.5]
-    assert runs[1].constants == {"cells": 8.0, "width": 0.125}
+    assert runs[1].constants == {"factor": 2.0, "size": 0.5, "cells": 8.0, "width": 0.125}
     assert runs[3].set == {"scene.name": "b", "fe.order": 2}
 
 

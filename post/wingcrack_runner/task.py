@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -154,13 +155,23 @@ def _call(
                 env=os.environ | ONE_THREAD,
             )
         )
+        late = threading.Event()
+        # wait(timeout) would look every few milliseconds whether it has ended
+        limit = threading.Timer(limit_s, _end, (child, late))
+        limit.daemon = True
+        limit.start()
         try:
-            return child.wait(timeout=limit_s), False
-        except subprocess.TimeoutExpired:
-            child.kill()
-            return child.wait(), True
+            return child.wait(), late.is_set()
         finally:
+            limit.cancel()
             ended(child)
+
+
+def _end(child: subprocess.Popen[bytes], late: threading.Event) -> None:
+    """End a process that is still there at its time limit, and say so."""
+    if child.poll() is None:
+        late.set()
+        child.kill()
 
 
 def _remove(folder: Path) -> None:

@@ -1,128 +1,37 @@
-"""A case of ``verification/``: its check.toml as typed values (docs/verification.md)."""
+"""Reading a case of ``verification/``: its check.toml as typed values (docs/verification.md)."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from wingcrack_post import text_files
-from wingcrack_verify.economy import Economy, read_economy
+from wingcrack_verify.contents import (
+    Case,
+    Check,
+    FigureRequest,
+    Line,
+    Order,
+    Part,
+    Reference,
+    Run,
+)
+from wingcrack_verify.economy import read_economy
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields, as_number
 from wingcrack_verify.groups import GROUPS
+from wingcrack_verify.likes import Likes, shared_likes
 from wingcrack_verify.metrics import METRICS
 from wingcrack_verify.picture_files import PICTURES
-from wingcrack_verify.selection import Selection, read_selection
+from wingcrack_verify.selection import read_selection
 from wingcrack_verify.sweep import Defaults, read_tables
 
 TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
-
-
-@dataclass(frozen=True)
-class Run:
-    """One call of the solver or of a verification program."""
-
-    name: str
-    method: str
-    size: float | None
-    default: bool
-    scene: Path | None
-    set: dict[str, Any]
-    unset: tuple[str, ...]
-    program: str | None
-    args: tuple[str, ...]
-    constants: dict[str, float]
-    time_limit_s: float
-
-
-@dataclass(frozen=True)
-class Reference:
-    """What the result is compared with; exactly one of these is given."""
-
-    numbers: tuple[float, ...] | None = None
-    expression: str | None = None
-    selection: Selection | None = None
-    of_run: bool = False
-    other_run: str | None = None
-    limits: tuple[float, float] | None = None
-    direction: str | None = None
-
-
-@dataclass(frozen=True)
-class Order:
-    """Order of convergence that is expected, bounded on both sides."""
-
-    expected: float
-    within: float
-    methods: tuple[str, ...] | None
-
-
-@dataclass(frozen=True)
-class Check:
-    """One quantity, its reference and its tolerance."""
-
-    quantity: str
-    unit: str
-    runs: tuple[str, ...]
-    judged: tuple[str, ...]
-    result: Selection
-    reference: Reference
-    metric: str
-    by_range: bool
-    tolerance: float
-    scale: float | None
-    order: Order | None
-    economy: Economy | None
-    front: float | None
-    work_precision: bool
-    known_gap: str | None
-    x_label: str
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of a further figure: from a run, or from a file of the case."""
-
-    label: str
-    run: str | None
-    selection: Selection
-    points: bool
-
-
-@dataclass(frozen=True)
-class FigureRequest:
-    """A further figure: of lines, or a picture of a run."""
-
-    title: str
-    caption: str
-    x_label: str
-    y_label: str
-    x_log: bool
-    y_log: bool
-    equal_axes: bool
-    lines: tuple[Line, ...]
-    picture: str | None = None
-    run: str | None = None  # that the picture is of
-
-
-@dataclass(frozen=True)
-class Case:
-    """A folder of ``verification/``."""
-
-    name: str
-    folder: Path
-    title: str
-    group: str
-    source: str
-    quick: bool
-    constants: dict[str, float]
-    runs: tuple[Run, ...]
-    checks: tuple[Check, ...]
-    figures: tuple[FigureRequest, ...]
+_DEFAULTS = ("run", "check", "figure")  # kinds of entries that have some
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -146,35 +55,87 @@ def read_case(folder: Path) -> Case:
     data = read_toml(folder / "check.toml")
     fields = Fields(data, "check.toml")
     title, source = fields.text("title"), fields.text("source")
-    group = fields.choice("group", tuple(GROUPS))
-    quick, gap = fields.flag("quick"), fields.text("known_gap", None)
-    constants = fields.constants("constants")
-    defaults = Defaults(fields.mapping("defaults"))
+    group, quick = fields.choice("group", tuple(GROUPS)), fields.flag("quick")
+    around = _Around(
+        folder=folder,
+        gap=fields.text("known_gap", None),
+        constants=fields.constants("constants"),
+        defaults=Defaults(fields.mapping("defaults"), _DEFAULTS),
+        likes=Likes(data, "check.toml", shared_likes(folder.parent)),
+    )
+    tables = fields.tables("part")
+    parts = []
+    if not tables or any(kind in data for kind in ("run", "sweep", "check", "figure")):
+        parts.append(_read_part(fields, data, quick, around))
+    parts += [
+        _read_named_part(item, number, quick, around) for number, item in enumerate(tables, 1)
+    ]
+    fields.done()
+    around.defaults.done()
+    case = Case(folder.name, folder, title, group, source, tuple(parts))
+    refuse_doubles([run.name for run in case.runs], "run")
+    refuse_doubles([check.quantity for check in case.checks], "quantity")
+    return case
+
+
+@dataclass(frozen=True)
+class _Around:
+    """What holds in a part beside what it says itself."""
+
+    folder: Path
+    gap: str | None
+    constants: dict[str, float]
+    defaults: Defaults
+    likes: Likes
+
+
+def _read_named_part(data: Any, number: int, quick: bool, around: _Around) -> Part:
+    """Read a ``[[part]]``: it has constants and defaults of its own, and those of the file."""
+    fields = Fields(data, f"part {number}")
+    name = fields.text("name")
+    own = fields.flag("quick", quick)
+    try:
+        fields.place = "check.toml"
+        defaults = Defaults(fields.mapping("defaults"), _DEFAULTS, around.defaults)
+        inside = replace(
+            around,
+            constants=around.constants | fields.constants("constants"),
+            defaults=defaults,
+            likes=Likes(data, "check.toml", around.likes),
+        )
+        part = _read_part(fields, data, own, inside)
+        fields.done()
+        defaults.done()
+    except CaseError as reason:
+        raise CaseError(f"part '{name}': {reason}") from None
+    return part.named(name)
+
+
+def _read_part(fields: Fields, data: Mapping[str, Any], quick: bool, around: _Around) -> Part:
+    """Read the runs, checks and figures of a table: the file's, or a part's."""
+
+    def tables(kind: str) -> list[tuple[str, dict[str, Any]]]:
+        return read_tables(fields, kind, around.defaults, around.likes)
+
     kinds = [kind for kind in data if kind in ("run", "sweep")]  # in the order of the file
     runs = tuple(
-        read_run(item, place, folder)
+        read_run(item, place, around.folder, around.constants)
         for kind in kinds
-        for place, item in read_tables(fields, kind, defaults)
+        for place, item in tables(kind)
     )
     if not runs:
         raise CaseError("check.toml: a case needs at least one [[run]] or [[sweep]]")
-    refuse_doubles([run.name for run in runs], "run")
     for run in runs:
         if "*" in run.name or run.name.startswith("!"):
             raise CaseError(f"run '{run.name}': '*', and '!' in front, are for patterns of names")
-    checks = tuple(
-        _read_check(item, place, runs, gap)
-        for place, item in read_tables(fields, "check", defaults)
-    )
+    refuse_doubles([run.name for run in runs], "run")
+    checks = tuple(_read_check(item, place, runs, around.gap) for place, item in tables("check"))
     if not checks:
         raise CaseError("check.toml: a case needs at least one [[check]]")
-    refuse_doubles([check.quantity for check in checks], "quantity")
     figures = tuple(
-        _read_figure(item, place, runs) for place, item in read_tables(fields, "figure", defaults)
+        _read_figure(item, place, runs, around.constants) for place, item in tables("figure")
     )
-    fields.done()
-    defaults.done()
-    return Case(folder.name, folder, title, group, source, quick, constants, runs, checks, figures)
+    return Part(runs, checks, figures, quick)
 
 
 def refuse_doubles(names: list[str], kind: str) -> None:
@@ -184,13 +145,16 @@ def refuse_doubles(names: list[str], kind: str) -> None:
             raise CaseError(f"check.toml: the {kind} '{name}' stands twice")
 
 
-def read_run(data: Any, place: str, folder: Path) -> Run:
-    """Read one ``[[run]]``."""
+def read_run(
+    data: Any, place: str, folder: Path, constants: Mapping[str, float] | None = None
+) -> Run:
+    """Read one ``[[run]]``, to whose constants those of its case and its size belong."""
     fields = Fields(data, place)
     name = fields.text("name")
     fields.place = f"run '{name}'"
     method, size = fields.text("method"), fields.positive("size", None)
-    default, constants = fields.flag("default"), fields.constants("constants")
+    default, own = fields.flag("default"), fields.constants("constants")
+    known = {**(constants or {}), **({} if size is None else {"size": size}), **own}
     limit = fields.positive("time_limit_s", TIME_LIMIT_S)
     scene, program = fields.text("scene", None), fields.text("program", None)
     if (scene is None) == (program is None):
@@ -203,7 +167,7 @@ def read_run(data: Any, place: str, folder: Path) -> Run:
     else:
         changes, unset, args, path = {}, (), fields.texts("args", ()), None
     fields.done()
-    return Run(name, method, size, default, path, changes, unset, program, args, constants, limit)
+    return Run(name, method, size, default, path, changes, unset, program, args, known, limit)
 
 
 def _read_check(data: Any, place: str, runs: tuple[Run, ...], case_gap: str | None) -> Check:
@@ -353,7 +317,9 @@ def _read_order(data: Any, place: str) -> Order:
     return order
 
 
-def _read_figure(data: Any, place: str, runs: tuple[Run, ...]) -> FigureRequest:
+def _read_figure(
+    data: Any, place: str, runs: tuple[Run, ...], constants: dict[str, float]
+) -> FigureRequest:
     fields = Fields(data, place)
     title = fields.text("title")
     fields.place = f"figure '{title}'"
@@ -379,6 +345,7 @@ def _read_figure(data: Any, place: str, runs: tuple[Run, ...]) -> FigureRequest:
         y_log=fields.flag("y_log"),
         equal_axes=fields.flag("equal_axes"),
         lines=lines,
+        constants=constants,
     )
     fields.done()
     return request

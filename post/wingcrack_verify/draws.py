@@ -9,7 +9,7 @@ import numpy as np
 
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
-from wingcrack_verify.sweep import Defaults, Table, read_tables
+from wingcrack_verify.sweep import Table, read_tables
 
 
 def read_draw(data: Any, place: str) -> list[tuple[str, Table]]:
@@ -36,7 +36,7 @@ def read_draw(data: Any, place: str) -> list[tuple[str, Table]]:
         shares = (random.permutation(count) + random.random(count)) / count
         points[name] = _places(entry, shares.tolist(), f"{place}: ranges.{name}")
     whole = {**trial, "over": {"place": points}}
-    tables = read_tables(Fields({"trial": [whole]}, place), "trial", Defaults({}))
+    tables = read_tables(Fields({"trial": [whole]}, place), "trial")
     return [
         (place, {"quick": number <= quick, **table})
         for number, (_, table) in enumerate(tables, start=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -67,10 +68,21 @@ def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
     return economy
 
 
+def run_record(output: Path) -> Any:
+    """What run.json of a run says, which many checks ask: read once."""
+    path = output / "run.json"
+    return _read(path, path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=1024)
+def _read(path: Path, _changed: int) -> Any:
+    return read_json(path)
+
+
 def unknowns_of(output: Path) -> float | None:
     """Unknowns of all kinds of a run; None where its run.json tells none."""
     try:
-        blocks = read_json(output / "run.json").get("dofs", {})
+        blocks = run_record(output).get("dofs", {})
         total = float(sum(blocks.values()))
     except (OSError, ValueError, AttributeError, TypeError):
         return None

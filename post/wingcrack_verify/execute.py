@@ -10,7 +10,7 @@ from pathlib import Path
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.pool import Pool
 from wingcrack_runner.task import Task, hash_of, tables_of
-from wingcrack_verify.case import Run
+from wingcrack_verify.contents import Run
 from wingcrack_verify.errors import CaseError, EnvironmentLacksError
 from wingcrack_verify.scene import scene_text
 

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from wingcrack_post.text_files import read_json
-from wingcrack_verify.economy import unknowns_of
+from wingcrack_verify.economy import run_record, unknowns_of
 from wingcrack_verify.orders import Point
 
 
@@ -38,7 +37,7 @@ def work_of(output: Path) -> float | None:
     """Unknowns times states of a run; None where its run.json does not tell."""
     unknowns = unknowns_of(output)
     try:
-        record = read_json(output / "run.json")
+        record = run_record(output)
         states = float(record["steps"]) + 1.0
     except (OSError, ValueError, KeyError, TypeError):
         return None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack_verify.case import Case, Check, FigureRequest, Run
+from wingcrack_verify.contents import Case, Check, FigureRequest, Run
 from wingcrack_verify.economy import Saving, saving, unknowns_of
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
@@ -233,7 +233,7 @@ def _measure(case: Case, check: Check, run: Run, outcomes: Mapping[str, Outcome]
         broken = outcome.reason if outcome.status == "invalid" else ""
         return Measured(run, judged, outcome, None, None, None, False, broken, False)
     try:
-        constants = _constants(case, run)
+        constants = run.constants
         output = Path(outcome.folder) / "output"
         result = select(check.result, output, constants, METRICS[check.metric].is_path)
         if check.reference.other_run is None:
@@ -247,11 +247,6 @@ def _measure(case: Case, check: Check, run: Run, outcomes: Mapping[str, Outcome]
         return Measured(run, judged, outcome, None, None, None, False, str(reason), False)
     good = error <= check.tolerance  # a NaN is not good
     return Measured(run, judged, outcome, error, size, pair, result.profile, "", good)
-
-
-def _constants(case: Case, run: Run) -> dict[str, float]:
-    size = {} if run.size is None else {"size": run.size}
-    return case.constants | size | run.constants
 
 
 def _pair(
@@ -286,7 +281,7 @@ def _pair_of_runs(
         raise CaseError(f"the run '{other.name}' that it is compared with has not finished")
     folder = Path(outcomes[other.name].folder) / "output"
     is_path = METRICS[check.metric].is_path
-    return _beside(check.reference.selection, result, folder, _constants(case, other), is_path)
+    return _beside(check.reference.selection, result, folder, other.constants, is_path)
 
 
 def _beside(
@@ -355,12 +350,12 @@ def _figure(case: Case, request: FigureRequest, outcomes: Mapping[str, Outcome])
     runs = {run.name: run for run in case.runs}
     for line in request.lines:
         if line.run is None:
-            folder, constants = case.folder, case.constants
+            folder, constants = case.folder, request.constants
         else:
             if outcomes[line.run].status != "finished":
                 continue  # the run's own checks say so
             folder = Path(outcomes[line.run].folder) / "output"
-            constants = _constants(case, runs[line.run])
+            constants = runs[line.run].constants
         try:
             values = select(line.selection, folder, constants, as_path=True)
         except CaseError as reason:

@@ -82,7 +82,7 @@ def make_report(report: Report, folder: Path) -> tuple[Path, str]:
         },
     )
     record = record_of(report.judged, report.rows, report.counts, context)
-    pictures = illustrate(report.judged, report.jobs)
+    pictures = illustrate(report.judged, report.jobs, passed=not report.quick)
     _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
     _write(page, page_text(report.judged, record, pictures, folder).encode())
@@ -91,7 +91,8 @@ def make_report(report: Report, folder: Path) -> tuple[Path, str]:
 
 def _scope(report: Report) -> str:
     which = "the quick cases" if report.quick else "all cases"
-    return f"{which} that were asked for by name" if report.selected else which
+    which = f"{which} that were asked for by name" if report.selected else which
+    return f"{which}, figures of what did not pass" if report.quick else which
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from wingcrack_post.text_files import is_file, read_json
-from wingcrack_verify.case import Run, read_toml, refuse_doubles
+from wingcrack_verify.case import read_toml, refuse_doubles
+from wingcrack_verify.contents import Run
 from wingcrack_verify.draws import read_draw
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.fields import Fields
 from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
+from wingcrack_verify.likes import Likes, shared_likes
 from wingcrack_verify.selection import read_selection, select
 from wingcrack_verify.sweep import Defaults, read_tables
 
@@ -147,7 +149,8 @@ class StabilityReport:
 
 def read_stability(folder: Path) -> Stability:
     """Read ``stability.toml``; a `CaseError` tells what is wrong with it."""
-    fields = Fields(read_toml(folder / "stability.toml"), "stability.toml")
+    data = read_toml(folder / "stability.toml")
+    fields = Fields(data, "stability.toml")
     title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
     group = fields.choice("group", tuple(GROUPS))
     base = folder / fields.text("scene")
@@ -156,7 +159,10 @@ def read_stability(folder: Path) -> Stability:
     mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
     limit_s, from_files = fields.positive("time_limit_s", TIME_LIMIT_S), fields.flag("from_files")
     maker = _Maker(base, ALL_FIELDS if from_files else {}, limit_s)
-    tables = read_tables(fields, "trial", Defaults({}))
+    defaults = Defaults(fields.mapping("defaults"), ("trial",))
+    likes = Likes(data, "stability.toml", shared_likes(folder.parent))
+    tables = read_tables(fields, "trial", defaults, likes)
+    defaults.done()
     for index, item in enumerate(fields.tables("draw"), start=1):
         tables += read_draw(item, f"draw {index}")
     trials = tuple(maker.trial(item, place) for place, item in tables)

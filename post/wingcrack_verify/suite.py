@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wingcrack_verify.arguments import case_folders
-from wingcrack_verify.case import Case, Run, read_case
+from wingcrack_verify.case import read_case
+from wingcrack_verify.contents import Case, Run
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome
 from wingcrack_verify.groups import UNREADABLE
@@ -84,7 +85,11 @@ def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
         else:
             cases.append(_read_case(folder))
     if quick:
-        cases = [item for item in cases if isinstance(item, BrokenCase) or item.quick]
+        cases = [
+            item if isinstance(item, BrokenCase) else item.quick_part
+            for item in cases
+            if isinstance(item, BrokenCase) or item.quick
+        ]
         stability = [
             item if isinstance(item, BrokenCase) else item.quick_part
             for item in stability

@@ -1,4 +1,4 @@
-"""Tables that stand for several: ``over``, its templates, and ``[defaults]`` of check.toml.
+"""Tables that stand for several: ``over``, its templates, and ``[defaults]`` of a file.
 
 Everything here turns tables into tables; what the keys mean is told by `case`.
 """
@@ -8,12 +8,13 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from typing import Any, TypeAlias
 
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import FUNCTIONS, evaluate, names_in
 from wingcrack_verify.fields import Fields
+from wingcrack_verify.likes import Likes, joined
 
 Table: TypeAlias = dict[str, Any]
 
@@ -42,22 +43,26 @@ _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")
 
 
 class Defaults:
-    """Keys of ``[defaults.run]`` and ``[defaults.check]``; `done` refuses those never needed."""
+    """Keys of ``[defaults.KIND]``, and then of those around it; `done` refuses what nobody needs.
 
-    def __init__(self, data: Any) -> None:
+    Runs and sweeps have theirs in ``[defaults.run]``.
+    """
+
+    def __init__(self, data: Any, kinds: Sequence[str], outer: Defaults | None = None) -> None:
         fields = Fields(data, "defaults")
-        run, check = fields.mapping("run"), fields.mapping("check")
+        self._tables = {kind: fields.mapping(kind) for kind in kinds}
         fields.done()
-        self._tables = {"run": run, "sweep": run, "check": check, "figure": {}, "trial": {}}
-        self._left = {"run": set(run), "check": set(check)}
+        self._left = {kind: set(table) for kind, table in self._tables.items()}
+        self._outer = outer
 
     def complete(self, data: Mapping[str, Any], kind: str) -> Table:
         """Table with what it does not give itself, tables joined item by item."""
-        defaults = self._tables[kind]
-        whole = _joined(defaults, data)
+        kept = "run" if kind == "sweep" else kind
+        defaults = self._tables.get(kept, {})
+        whole = joined(defaults, data)
         needed = {name for name in defaults if name not in data or whole[name] != data[name]}
-        self._left["check" if kind == "check" else "run"] -= needed
-        return whole
+        self._left.get(kept, set()).difference_update(needed)
+        return whole if self._outer is None else self._outer.complete(whole, kind)
 
     def done(self) -> None:
         """Refuse a default that every table overrides, or that no table is there for."""
@@ -66,22 +71,26 @@ class Defaults:
                 raise CaseError(f"defaults.{kind}: no {kind} needs '{name}'")
 
 
-def read_tables(fields: Fields, kind: str, defaults: Defaults) -> list[tuple[str, Table]]:
+def read_tables(
+    fields: Fields, kind: str, defaults: Defaults | None = None, likes: Likes | None = None
+) -> list[tuple[str, Table]]:
     """All tables of a kind, expanded, each with its place for errors.
 
     Raises
     ------
     CaseError
-        As `_expand`; and if a run has an ``over``, or a sweep has none.
+        As `_expand`; if a run has an ``over``, or a sweep has none; and if one is like another
+        that is not there.
     """
     found = []
     for index, item in enumerate(fields.tables(kind), start=1):
         place = f"{kind} {index}"
         if not isinstance(item, Mapping):
             raise CaseError(f"{place} must be a table")
-        if kind in ("run", "sweep") and (kind == "sweep") != ("over" in item):
+        whole = item if likes is None else likes.complete(item, kind, place)
+        if kind in ("run", "sweep") and (kind == "sweep") != ("over" in whole):
             raise CaseError(f"{place}: a [[sweep]] needs 'over', and a [[run]] has none")
-        whole = defaults.complete(item, kind)
+        whole = whole if defaults is None else defaults.complete(whole, kind)
         found += [(place, table) for table in _expand(whole, place, _KEYS[kind])]
     return found
 
@@ -120,20 +129,11 @@ def _expand(
     for point in points:
         given = {name: value for name, value in point.items() if name in keys}
         filler = _Filler({**around, **point}, used, place)
-        found.append(filler.filled(_joined(template, given)))
+        found.append(filler.filled(joined(template, given)))
     for name in names:
         if name not in keys and name not in used:
             raise CaseError(f"{place}: over: nothing uses '{name}'")
     return found
-
-
-def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> Table:
-    """Keys of both; what the second gives goes before, and tables are joined item by item."""
-    joined = {**first, **second}
-    for name in first.keys() & second.keys():
-        if isinstance(first[name], Mapping) and isinstance(second[name], Mapping):
-            joined[name] = {**first[name], **second[name]}
-    return joined
 
 
 def filled(

@@ -1,4 +1,4 @@
-!> Patch tests of the finite volumes on distorted triangles (verification/patch_finite_volumes).
+!> Patch tests of the finite volumes on distorted triangles (verification/patch_tests).
 !!
 !! Arguments: mesh size [m], distortion as a share of the shortest edge. The fields are linear, so
 !! that the discretization must reproduce them to round-off.

@@ -1,5 +1,5 @@
 !> Cracks that see each other, kinked and winged cracks in a window so large that its edge may carry
-!! the uniform remote strain (verification/collinear_cracks, kinked_crack, winged_crack).
+!! the uniform remote strain (verification/interacting_cracks, kinked_crack, winged_crack).
 !!
 !! Arguments: element size at the cracks [m], then one of
 !!   collinear B             two cracks of length 1 m with a gap of 2 B, s_yy = s_xy = 1 MPa

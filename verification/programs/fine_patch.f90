@@ -1,4 +1,4 @@
-!> Patch test of the six-node triangles with quarter points (verification/patch_finite_elements):
+!> Patch test of the six-node triangles with quarter points (verification/patch_tests):
 !! a uniform stress is carried across cracks by contact traction and fluid pressure on their faces.
 !!
 !! Arguments: element size [m], sectors of the rosettes. Errors are relative to the largest

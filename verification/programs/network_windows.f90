@@ -1,5 +1,5 @@
 !> Stress intensity factors of networks from windows of several sizes, and from the whole body as
-!! one window, against known ones (verification/windows_in_networks).
+!! one window, against known ones (verification/windows_of_scenes).
 !!
 !! The fluid keeps its pressure and the rock is hardly porous: the same body without a fluid, with
 !! that pressure on the faces, has the same K, found there on adaptive meshes without coarse level

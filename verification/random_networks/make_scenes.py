@@ -47,12 +47,10 @@ SCENE = """\
 &output vtu = .false. /
 """
 
-FRACTURE = """\
-&fracture
-  name = '{name}', friction = 0.5, dilation_deg = 1.0, aperture = 1.0e-3
-  x = {x0:.6f}, {x1:.6f}
-  y = {y0:.6f}, {y1:.6f}
-/"""
+FRACTURE = (
+    "&fracture name = '{name}', x = {x0:.6f}, {x1:.6f}, y = {y0:.6f}, {y1:.6f}, "
+    "friction = 0.5, dilation_deg = 1.0, aperture = 1.0e-3 /"
+)
 
 
 @dataclass(frozen=True)
