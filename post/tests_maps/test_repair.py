@@ -55,6 +55,30 @@ def test_a_near_end_is_joined_or_cut_back() -> None:
     assert apart[1].points[-1].tolist() == pytest.approx([2.0, 0.101])
 
 
+@pytest.mark.parametrize("is_start", [True, False])
+@pytest.mark.parametrize(
+    ("other", "line"),
+    [
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(2, -3), (2, 5.95)]),  # crosses it elsewhere
+        ([(0, 0), (5, 0), (5, 3), (0, 3), (0, 6), (5, 6)], [(2, -3), (2, 5.95)]),  # and twice
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(2, 0), (2, 5.95)]),  # is joined to it
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(1, 3), (3, 3), (3, 1), (2, 1), (2, 5.95)]),  # itself
+        ([(4, 6), (0, 6)], [(4, 3), (2.5, 5), (2, 5.95)]),  # arrives askew
+    ],
+)
+def test_nothing_but_the_end_is_cut_back(other: Places, line: Places, is_start: bool) -> None:
+    """The last segment rises towards y = 6 and is cut 1.01 distances below it."""
+    line = line[::-1] if is_start else line
+    repaired, done = repair(lines_of([other, line]), None, LIMITS, "gap")
+    (foot, top) = (line[1], line[0]) if is_start else line[-2:]
+    y = 6 - 1.01 * LIMITS.near
+    end = (foot[0] + (top[0] - foot[0]) * (y - foot[1]) / (top[1] - foot[1]), y)
+    wanted = [end, *line[1:]] if is_start else [*line[:-1], end]
+    assert repaired[1].points.ravel().tolist() == pytest.approx(np.ravel(wanted).tolist())
+    assert [one.kind for one in done] == ["near end"]
+    assert done[0].length_change == pytest.approx(-math.dist(end, top))
+
+
 def test_of_an_overlap_the_rest_goes_on_from_the_other_fracture() -> None:
     repaired, _ = repair(lines_of(CASES["overlap"]), None, LIMITS, "join")
     assert [line.points.tolist() for line in repaired] == [[[0, 0], [5, 0]], [[5, 0], [8, 0]]]
