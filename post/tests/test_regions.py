@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from wingcrack_post.regions import Region, draw_regions, region_label
+from wingcrack_post.regions import Region, draw_regions, read_region, region_label
 from wingcrack_post.scene import read_scene
 from wingcrack_post.units import METRE
 
@@ -58,6 +58,16 @@ def test_all_to_the_left_of_a_line(tmp_path: Path) -> None:
     )
     inside = Polygon(half.corners).get_path().contains_points([(0, 0.9), (0.1, 1), (2, 0), (1, 0)])
     assert inside.tolist() == [True, True, False, False]
+
+
+def test_a_half_plane_reaches_to_the_body_from_afar() -> None:
+    """Its line is given where the body's centre lies twice as far from the origin."""
+    body = np.array([[1000.0, 0.0], [1002.0, 0.0], [1002.0, 1.0], [1000.0, 1.0]])
+    line = {"x": [2002.0, 2003.0], "y": [0.5, 0.5], "permeability": [1.0e-19]}
+    half = read_region("h", "half_plane", line, body)
+    assert half is not None
+    inside = Polygon(half.corners).get_path().contains_points(body)
+    assert inside.tolist() == [False, False, True, True]
 
 
 def test_parabolas(tmp_path: Path) -> None:

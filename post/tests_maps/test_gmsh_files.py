@@ -212,3 +212,34 @@ def test_a_geometry_that_is_none_is_refused(
     (tmp_path / "m.geo").write_text(RECTANGLES.replace(old, new))
     with pytest.raises(SceneError, match=re.escape(reason)):
         read_map(tmp_path / "m.geo", None)
+
+
+def mesh(nodes: list[tuple[float, float]], *elements: tuple[int, int, list[int]]) -> str:
+    """Give a mesh: elements as type, physical group and nodes, which count from 1."""
+    places = "".join(f"{k} {x} {y} 0\n" for k, (x, y) in enumerate(nodes, start=1))
+    rows = "".join(
+        f"{k} {kind} 2 {group} 1 {' '.join(map(str, corners))}\n"
+        for k, (kind, group, corners) in enumerate(elements, start=1)
+    )
+    return (
+        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(nodes)}\n{places}$EndNodes\n"
+        f"$Elements\n{len(elements)}\n{rows}$EndElements\n"
+    )
+
+
+def test_elements_of_no_group_and_points_are_no_map(tmp_path: Path) -> None:
+    nodes = [(0.0, 0.0), (10.0, 0.0), (10.0, 5.0)]
+    elements = [(1, 3, [1, 2]), (1, 0, [2, 3]), (15, 4, [3]), (15, 0, [1])]
+    (tmp_path / "m.msh").write_text(mesh(nodes, *elements))
+    found = read_map(tmp_path / "m.msh", None)
+    assert [(line.name, line.points.tolist()) for line in found.lines] == [
+        ("3", [[0.0, 0.0], [10.0, 0.0]])
+    ]
+    assert found.areas == []
+
+
+def test_a_body_of_two_pieces_is_refused(tmp_path: Path) -> None:
+    nodes = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (5.0, 0.0), (6.0, 0.0), (5.0, 1.0)]
+    (tmp_path / "m.msh").write_text(mesh(nodes, (2, 1, [1, 2, 3]), (2, 2, [4, 5, 6])))
+    with pytest.raises(SceneError, match="surfaces must be one piece, which is the body"):
+        read_map(tmp_path / "m.msh", None)

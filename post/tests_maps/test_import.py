@@ -146,6 +146,15 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize("text", ["friction", "frictoin=0.5", "x=1.0", "=0.5"])
+def test_what_is_set_must_be_an_entry(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
+) -> None:
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    assert imported(path, "--unit", "m", "--set", text)[0] == 2
+    assert f"--set {text}: it must be NAME=VALUE with a NAME of" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("name", "text", "reason"),
     [
