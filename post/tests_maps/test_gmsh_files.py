@@ -243,3 +243,16 @@ def test_a_body_of_two_pieces_is_refused(tmp_path: Path) -> None:
     (tmp_path / "m.msh").write_text(mesh(nodes, (2, 1, [1, 2, 3]), (2, 2, [4, 5, 6])))
     with pytest.raises(SceneError, match="surfaces must be one piece, which is the body"):
         read_map(tmp_path / "m.msh", None)
+
+
+def test_a_curve_on_a_slanted_rim_far_from_the_origin_is_a_side(tmp_path: Path) -> None:
+    """In UTM coordinates a node on the rim is off it by some 1e-10 m, for want of digits."""
+    corners = [(500000.1, 5400000.3), (501000.7, 5400333.9), (500400.2, 5400900.6)]
+    (x, y), (x_end, y_end) = corners[:2]
+    shares = [k / 7.0 for k in range(8)]
+    nodes = [(x + s * (x_end - x), y + s * (y_end - y)) for s in shares]
+    edges = [(1, 2 + k, [4 + k, 5 + k]) for k in range(7)]
+    (tmp_path / "m.msh").write_text(mesh([*corners, *nodes], (2, 1, [1, 2, 3]), *edges))
+    found = read_map(tmp_path / "m.msh", None)
+    assert found.lines == []
+    assert sum("lies on the rim: a side" in note.what for note in found.notes) == 7
