@@ -23,6 +23,7 @@ from synthetic_run import (
     STEPS,
     fracture_cells,
     polyline,
+    square,
     times,
     well_pressure,
     wing_length,
@@ -162,6 +163,25 @@ def test_a_map_has_its_colours_in_mpa(wet_run: Path) -> None:
     assert values is not None
     assert 6.8 <= values.min() < values.max() <= well_pressure(STEPS - 1) / 1e6
     assert "pore pressure [MPa]" in [other.get_ylabel() for other in axes.figure.axes]
+
+
+@pytest.mark.parametrize(
+    ("field", "label", "slope", "value"),
+    [
+        ("stress.mean", "mean in-plane stress [MPa]", 0.0, -15.0),  # of -20 and -10
+        ("stress.yy", "stress, yy [MPa]", 0.0, -10.0),
+        ("displacement.x", "displacement, x [mm]", -0.4, 0.0),  # by the strain
+    ],
+)
+def test_a_map_has_the_values_of_the_cells(
+    wet_run: Path, field: str, label: str, slope: float, value: float
+) -> None:
+    axes = wingcrack.open(wet_run).plot_map(field, times()[-1])
+    assert label in [other.get_ylabel() for other in axes.figure.axes]
+    points, triangles = square(12)
+    x = points[triangles].mean(axis=1)[:, 0]
+    drawn = axes.collections[0].get_array()
+    assert np.asarray(drawn) == pytest.approx(value + slope * x, rel=1e-6)
 
 
 def test_without_a_fluid(dry_run: Path) -> None:
