@@ -124,13 +124,8 @@ def test_what_lies_beside_a_mesh_is_not_executed(tmp_path: Path) -> None:
     assert not {"x", "y"} & {path.name for path in tmp_path.iterdir()}
 
 
-@needs_solver
-@pytest.mark.parametrize("version", [2.2, 4.1])
-@pytest.mark.parametrize("binary", [0, 1])
-@pytest.mark.parametrize("order", [1, 2])
-def test_meshes_of_all_formats_give_the_same_scene(
-    tmp_path: Path, version: float, binary: int, order: int
-) -> None:
+def write_mesh(path: Path, version: float, binary: int, order: int, parametric: int = 0) -> None:
+    """Let gmsh write the mesh of a rectangle with a fracture."""
     gmsh.initialize(["t"], readConfigFiles=False, interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     occ = gmsh.model.occ
@@ -145,15 +140,46 @@ def test_meshes_of_all_formats_give_the_same_scene(
     gmsh.model.mesh.setOrder(order)
     gmsh.option.setNumber("Mesh.MshFileVersion", version)
     gmsh.option.setNumber("Mesh.Binary", binary)
-    gmsh.write(str(tmp_path / "m.msh"))
+    gmsh.option.setNumber("Mesh.SaveParametric", parametric)
+    gmsh.write(str(path))
     gmsh.finalize()
 
+
+@needs_solver
+@pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.parametrize("binary", [0, 1])
+@pytest.mark.parametrize("order", [1, 2])
+def test_meshes_of_all_formats_give_the_same_scene(
+    tmp_path: Path, version: float, binary: int, order: int
+) -> None:
+    write_mesh(tmp_path / "m.msh", version, binary, order)
     status, scene = imported(tmp_path / "m.msh")
     assert status == 0
     found = fractures(scene)["the_fault"]
     ends = sorted(zip(found["x"], found["y"], strict=True))  # type: ignore[call-overload]
     assert ends == [(5.0, 5.0), (15.0, 12.0)]
     assert "&domain x_min = 0.0, x_max = 40.0, y_min = 0.0, y_max = 20.0 /" in scene.read_text()
+
+
+@pytest.mark.parametrize("binary", [0, 1])
+def test_places_on_curves_and_surfaces_are_left_aside(tmp_path: Path, binary: int) -> None:
+    """A mesh may give each node its parameters on its curve or surface, too."""
+    found = []
+    for parametric in (0, 1):
+        write_mesh(tmp_path / f"{parametric}.msh", 4.1, binary, 1, parametric)
+        found.append(read_map(tmp_path / f"{parametric}.msh", None))
+    sizes = [(tmp_path / f"{parametric}.msh").stat().st_size for parametric in (0, 1)]
+    assert sizes[0] < sizes[1]
+    for plain, other in zip(found[0].lines, found[1].lines, strict=True):
+        assert sorted(plain.points.tolist()) == sorted(other.points.tolist())
+    ends = sorted(map(tuple, found[1].lines[0].points.tolist()))
+    assert ends == [(5.0, 5.0), (15.0, 12.0)]
+    assert sorted(map(tuple, found[1].areas[0].points.tolist())) == [
+        (0.0, 0.0),
+        (0.0, 20.0),
+        (40.0, 0.0),
+        (40.0, 20.0),
+    ]
 
 
 RECTANGLES = """\

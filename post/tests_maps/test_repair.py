@@ -124,6 +124,17 @@ def test_faults_at_the_boundary(places: Places, kind: str) -> None:
     assert all(body.buffer(1e-9).contains(LineString(line.points)) for line in repaired)
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_leaves_the_body_is_found_at_its_end(way: int) -> None:
+    lines = lines_of([[(-18, 0), (17, 0)][::way], [(0, 5), (0, 14)][::way]])
+    first, second = find_faults(lines, box(-10, -10, 10, 10), LIMITS)
+    assert {first.kind, second.kind} == {"outside"}
+    assert first.place in {(-18.0, 0.0), (17.0, 0.0)}
+    assert first.size == pytest.approx(8.0 + 7.0, abs=1e-6)
+    assert second.size == pytest.approx(4.0, abs=1e-6)
+    assert second.place[1] == pytest.approx(10.0 if way == 1 else 14.0, abs=1e-6)
+
+
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("ends", ["join", "gap"])
 def test_careless_networks_are_repaired_whatever_they_are(seed: int, ends: str) -> None:
