@@ -18,6 +18,7 @@ from matplotlib.image import imread
 
 import wingcrack
 from synthetic_run import (
+    GROWTH_STEP,
     LAST_WING,
     LENGTH,
     STEPS,
@@ -148,6 +149,24 @@ def test_runs_in_one_figure(wet_run: Path, own_run: Path) -> None:
     assert [text.get_text() for text in legend.get_texts()] == [
         f"synthetic ({folder.name})" for folder in (wet_run, own_run)
     ]
+
+
+def test_each_tip_has_its_lines_and_its_colour_in_the_legend(wet_run: Path) -> None:
+    axes = wingcrack.open(wet_run).plot_tips("k1")
+    legend = axes.get_legend()
+    assert legend is not None
+    words = [text.get_text() for text in legend.get_texts()]
+    colours = dict(zip(words, [line.get_color() for line in legend.get_lines()], strict=True))
+    assert words[2:] == ["lines: interaction integral", "circles: displacement correlation"]
+    steps = np.arange(STEPS)
+    for tip in (1, 2):
+        k1 = 0.02 * steps + np.where(steps > GROWTH_STEP, 0.35, 0.0) + 0.01 * tip  # [MPa m^1/2]
+        colour = colours[f"tip {tip} (flaw)"]
+        lines, circles = (one for one in axes.lines if one.get_markeredgecolor() == colour)
+        assert (circles.get_linestyle(), circles.get_marker()) == ("None", "o")
+        assert lines.get_ydata() == pytest.approx(k1)
+        assert circles.get_ydata() == pytest.approx(1.02 * k1)
+        assert lines.get_xdata() == pytest.approx(times() / 3600.0)
 
 
 def test_a_profile_shows_the_cells(wet_run: Path) -> None:
