@@ -83,6 +83,14 @@ def test_zoom_holds_the_fracture_in_a_square_inside_the_body() -> None:
     assert zoom.ratio == pytest.approx(1.0, rel=1e-12)
 
 
+def test_zoom_in_the_far_corner_ends_there() -> None:
+    ends = np.array([[[1.9, 0.95], [2.0, 1.0]]])
+    zoom = zoom_window(Window(0.0, 2.0, 0.0, 1.0), [FractureField(ends, np.array([0]))])
+    assert zoom is not None
+    found = (zoom.x_min, zoom.x_max, zoom.y_min, zoom.y_max)
+    assert found == pytest.approx((1.86, 2.0, 0.86, 1.0), rel=1e-12)
+
+
 @pytest.mark.parametrize("shift", [(0.0, -2000.0), (3000.0, 500.0)])
 def test_zoom_moves_with_the_body(shift: tuple[float, float]) -> None:
     """In a body of 4 m x 2 m squares of 1.4 fractures, and none above two fifths of its height."""

@@ -122,7 +122,8 @@ contains
       call other%see_tips(sheared, 1.0e6_rk, .true., "1 s")
       list = other%sentences()  ! 4 over hypot(1.5, 2)
       call checks%is_true(size(list) == 1, "one bad tip in shear")
-      call checks%is_true(index(list(1)%text, " 1.6 above 0.1 at 1 s, (0, 0) m; ") > 0, list(1)%text)
+      call checks%is_true(index(list(1)%text, " 1.6 above 0.1 at 1 s, (0, 0) m; ") > 0, &
+                          list(1)%text)
       tips%intensity%k2 = 0.0_rk
       tips%intensity%k2_dc = 0.0_rk
       tips(1)%intensity%k1_dc = 2.0e6_rk
