@@ -117,7 +117,7 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
 
 
 @pytest.mark.parametrize("way", [(1.0, 0.0), (0.0, 1.0), (3.0, 4.0), (-3.0, 4.0)])
-def test_names_stand_on_one_side_whichever_way_a_fracture_is_drawn(
+def test_names_stand_on_one_side_whichever_way_it_is_drawn(
     way: tuple[float, float],
 ) -> None:
     """Beside its middle: above it, and of an upright one to the right."""
