@@ -137,8 +137,8 @@ contains
       end do
    end subroutine test_half_way
 
-   !> Growth is over at the given gain: the last increment ends there, and where less than 1.3 of one
-   !! are left, they are halved.
+   !> Growth is over at the given gain: the last increment ends there, and where less than 1.3 of
+   !! one are left, they are halved.
    subroutine test_last_increments()
       type(sample_t) :: front
       type(timers_t) :: timers

@@ -161,9 +161,9 @@ contains
    end subroutine solve_frictional
 
    !> Rock that hardly changes its volume: normal tractions between the faces are off, and so is
-   !! friction. K_II is as far off as it says at most; and it says no more than the largest deviation
-   !! on all the faces makes if it acts as far as four radii from the tip: mu df sqrt(2/pi) times the
-   !! integral of r**(-1/2).
+   !! friction. K_II is as far off as it says at most; and it says no more than the largest
+   !! deviation on all the faces makes if it acts as far as four radii from the tip: mu df
+   !! sqrt(2/pi) times the integral of r**(-1/2).
    subroutine nearly_incompressible(poisson)
       real(rk), intent(in) :: poisson
       real(rk), parameter :: pressure = 6.8e6_rk, k2 = 0.3566994568e6_rk  ! catalogue 3.1
