@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import pty
 import re
 import signal
 import subprocess
@@ -17,6 +19,7 @@ import pyvista
 from system_scene import (
     GROWING,
     SCENE,
+    SOLVER,
     TOP,
     bare,
     call,
@@ -498,3 +501,16 @@ def test_the_moment_of_slip_in_a_region_has_its_modulus_in_both_tables(
         assert float(event["magnitude"]) == pytest.approx(magnitude, rel=1e-12)
     if begin < -1:
         assert total == pytest.approx(3.30e6, rel=0.01)
+
+
+def test_a_terminal_has_a_line_that_is_renewed_and_a_file_has_none(tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    leader, terminal = pty.openpty()
+    with os.fdopen(leader, "rb") as shown, os.fdopen(terminal, "wb") as error:
+        command = [SOLVER, "run", "small.nml", "--out", "shown"]
+        done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=error)
+        assert done.returncode == 0
+        words = shown.read1(65536).decode()
+    assert words.count("\r") >= 2  # it is written, and taken away at the end
+    assert re.search(r"\r *[0-9]+ *%", words)
+    assert "\r" not in bare(tmp_path, "run", "small.nml", "--out", "told").stderr
