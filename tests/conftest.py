@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
 import pytest
-from launcher_tree import Tree, make_tree
+from launcher_tree import (
+    APT_CACHE,
+    APT_GET,
+    PACKAGES,
+    SUDO,
+    Tree,
+    add_environment,
+    add_program,
+    make_tree,
+)
 from system_scene import GROWING, SCENE, call, run
 
 
@@ -40,6 +50,25 @@ def own_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
     place.mkdir()
     tree = Tree(root, place)
     assert tree.call("check", tree.scene()).returncode == 0
+    return tree
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A folder for PATH that holds a package manager."""
+    folder = tmp_path / "machine"
+    add_program(folder, "apt-get", APT_GET)
+    add_program(folder, "apt-cache", APT_CACHE)
+    add_program(folder, "sudo", SUDO)
+    return folder
+
+
+@pytest.fixture
+def lacking_tree(tmp_path: Path, machine: Path) -> Tree:
+    """A tree whose system packages are not there, and nothing else is missing."""
+    tree = make_tree(tmp_path, PACKAGES)
+    add_environment(tree)
+    tree.environment["PATH"] = f"{machine}:{os.environ['PATH']}"
     return tree
 
 

@@ -71,6 +71,37 @@ print("post", *sys.argv[1:])
 sys.exit(int(os.environ.get("POST_STATUS", "0")))
 """
 
+PACKAGES = """\
+# a remark
+alpha-tool | command alpha-tool | first thing
+beta-lib-5* | command beta-tool | second thing
+always     | command sh | here anyway
+"""
+
+# A stand-in for apt-get: it writes down what it is asked, and what it "installs" appears on PATH.
+APT_GET = """\
+here=${0%/*}
+words=$*
+case " $words " in
+    *' update '*) echo update >>"$here/asked"; touch "$here/updated" ;;
+    *' install '*)
+        echo "install ${words#*--no-install-recommends }" >>"$here/asked"
+        if [[ -e $here/stale && ! -e $here/updated ]]; then exit 100; fi
+        if [[ -e $here/broken ]]; then echo 'E: no such package' >&2; exit 100; fi
+        ln -sf "$(type -P true)" "$here/alpha-tool"
+        ln -sf "$(type -P true)" "$here/beta-tool"
+        if [[ $words == *gamma-mpi* ]]; then ln -sf "$(type -P true)" "$here/gamma-mpi"; fi ;;
+esac
+"""
+# Of the names that it knows, one is of no package: what another one provides.
+APT_CACHE = """\
+case $1 in
+    pkgnames) printf '%s\\n' beta-lib-5.10 beta-lib-5.7 beta-lib-5.11 beta-lib-5.9 ;;
+    show) if [[ $2 != *.11 ]]; then echo "Package: $2"; fi ;;
+esac
+"""
+SUDO = 'exec "$@"'
+
 
 def _heed_interrupts() -> None:
     """Undo an ignored SIGINT, which a shell would inherit and could not undo."""
@@ -126,12 +157,11 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     shutil.copy(TOP / "CMakePresets.json", root)
     shutil.copytree(TOP / "tools", root / "tools")
     (root / "tools" / "system_packages.txt").write_text(packages)
-    (root / "tools" / "system_packages_ranks.txt").write_text("")
+    for use in ("ranks", "tests", "browser"):
+        (root / "tools" / f"system_packages_{use}.txt").write_text("")
     (root / "requirements.txt").write_text(requirements)
-    (root / "requirements_developer.txt").write_text("")
-    (root / "requirements_study.txt").write_text("")
-    (root / "requirements_maps.txt").write_text("")
-    (root / "requirements_docs.txt").write_text("")
+    for use in ("developer", "study", "maps", "docs", "browser"):
+        (root / f"requirements_{use}.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
@@ -164,3 +194,9 @@ def add_program(folder: Path, name: str, text: str) -> None:
     program = folder / name
     program.write_text(f"#!/bin/bash\n{text}\n")
     program.chmod(0o755)
+
+
+def asked(machine: Path) -> list[str]:
+    """What the stand-in for apt-get was asked."""
+    file = machine / "asked"
+    return file.read_text().splitlines() if file.exists() else []

@@ -12,56 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from launcher_tree import Tree, add_environment, add_program, make_tree
-
-PACKAGES = """\
-# a remark
-alpha-tool | command alpha-tool | first thing
-beta-lib-5* | command beta-tool | second thing
-always     | command sh | here anyway
-"""
-
-# A stand-in for apt-get: it writes down what it is asked, and what it "installs" appears on PATH.
-APT_GET = """\
-here=${0%/*}
-words=$*
-case " $words " in
-    *' update '*) echo update >>"$here/asked"; touch "$here/updated" ;;
-    *' install '*)
-        echo "install ${words#*--no-install-recommends }" >>"$here/asked"
-        if [[ -e $here/stale && ! -e $here/updated ]]; then exit 100; fi
-        if [[ -e $here/broken ]]; then echo 'E: no such package' >&2; exit 100; fi
-        ln -sf "$(type -P true)" "$here/alpha-tool"
-        ln -sf "$(type -P true)" "$here/beta-tool"
-        if [[ $words == *gamma-mpi* ]]; then ln -sf "$(type -P true)" "$here/gamma-mpi"; fi ;;
-esac
-"""
-APT_CACHE = "printf '%s\\n' beta-lib-5.10 beta-lib-5.7 beta-lib-5.9"
-SUDO = 'exec "$@"'
-
-
-@pytest.fixture
-def machine(tmp_path: Path) -> Path:
-    """A folder for PATH that holds a package manager."""
-    folder = tmp_path / "machine"
-    add_program(folder, "apt-get", APT_GET)
-    add_program(folder, "apt-cache", APT_CACHE)
-    add_program(folder, "sudo", SUDO)
-    return folder
-
-
-@pytest.fixture
-def lacking_tree(tmp_path: Path, machine: Path) -> Tree:
-    """A tree whose system packages are not there, and nothing else is missing."""
-    tree = make_tree(tmp_path, PACKAGES)
-    add_environment(tree)
-    tree.environment["PATH"] = f"{machine}:{os.environ['PATH']}"
-    return tree
-
-
-def asked(machine: Path) -> list[str]:
-    file = machine / "asked"
-    return file.read_text().splitlines() if file.exists() else []
+from launcher_tree import PACKAGES, Tree, add_environment, add_program, asked, make_tree
 
 
 def test_forbidden_to_install_it_names_all_that_is_missing(tmp_path: Path, machine: Path) -> None:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import pty
 import re
+import select
 import shutil
 import signal
 import subprocess
@@ -18,6 +21,7 @@ import pyvista
 from system_scene import (
     GROWING,
     SCENE,
+    SOLVER,
     TOP,
     bare,
     call,
@@ -487,3 +491,17 @@ def test_the_moment_of_slip_in_a_region_has_its_modulus_in_both_tables(
         assert float(event["magnitude"]) == pytest.approx(magnitude, rel=1e-12)
     if begin < -1:
         assert total == pytest.approx(3.30e6, rel=0.01)
+
+
+def test_a_terminal_has_a_line_that_is_renewed_and_a_file_has_none(tmp_path: Path) -> None:
+    (tmp_path / "small.nml").write_text(SCENE)
+    leader, terminal = pty.openpty()
+    with os.fdopen(leader, "rb"), os.fdopen(terminal, "wb") as error:
+        command = [str(SOLVER), "run", "small.nml", "--out", "shown"]
+        done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=error)
+        assert done.returncode == 0
+        assert select.select([leader], [], [], 1.0)[0], "nothing is shown"
+        words = os.read(leader, 65536).decode()
+    assert words.count("\r") >= 2  # it is written, and taken away at the end
+    assert re.search(r"\r *[0-9]+ *%", words)
+    assert "\r" not in bare(tmp_path, "run", "small.nml", "--out", "told").stderr

@@ -36,6 +36,19 @@ prepare_developer() {
     prepare
 }
 
+# prepare_tests: see to what optional tests take, beside the rest: with WINGCRACK_ALL_TESTS=1 to all of
+# it, with CI=true to what is small, as far as it can be had. Tests whose needs are not met are skipped.
+prepare_tests() {
+    package_lists+=("$root/tools/system_packages_tests.txt" "$root/tools/system_packages_ranks.txt")
+    if [[ ${WINGCRACK_ALL_TESTS:-0} != 0 ]]; then
+        package_lists+=("$root/tools/system_packages_browser.txt")
+        requirement_lists+=("$root/requirements_browser.txt")
+        prepare
+    elif [[ ${CI:-} == true ]]; then
+        (prepare) || say 'going on without what optional tests take'
+    fi
+}
+
 # prepare_ranks: see to what takes MPI, beside the rest.
 prepare_ranks() {
     package_lists+=("$root/tools/system_packages_ranks.txt")
@@ -156,7 +169,7 @@ file_exists() {
 }
 
 install_packages() {
-    local entry
+    local entry names
     say 'these system packages are missing:'
     for entry in "${missing_packages[@]}"; do
         printf '  %-22s %s\n' "${entry%%|*}" "${entry#*|}" >&2
@@ -187,14 +200,21 @@ update_lists() { logged "${apt[@]}" update || fail_with_log 'apt-get update fail
 
 install_named() { logged "${apt[@]}" install --no-install-recommends "${names[@]}"; }
 
-# Fill names: package names with a wildcard become the newest name that apt knows.
+# Fill names: package names with a wildcard become the newest name that apt has a package of. It knows
+# more names than it has packages: of what others merely provide, or once depended on.
 name_packages() {
-    local entry package found
+    local entry package found name
     names=()
     for entry in "${missing_packages[@]}"; do
         package=${entry%%|*}
         if [[ $package == *'*' ]]; then
-            found=$(apt-cache pkgnames "${package%'*'}" | sort --version-sort | tail -n 1)
+            found=$(apt-cache pkgnames "${package%'*'}" | sort --version-sort --reverse |
+                while IFS= read -r name; do
+                    if [[ -n $(apt-cache show "$name" 2>/dev/null </dev/null) ]]; then
+                        printf '%s' "$name"
+                        break
+                    fi
+                done)
             if [[ -z $found ]]; then
                 printf 'apt offers no package %s\n' "$package" >>"$setup_log"
                 return 1

@@ -3,21 +3,24 @@
 
 run_all_tests() {
     begin_steps
+    begin_results
     lint
     # The builds end the run when they fail: there is nothing to test then.
     with_lock build debug all
     with_lock build release all
-    step 'CTest, debug build' ctest --preset debug -j "$processors"
-    step 'CTest, release build' ctest --preset release -j "$processors"
-    step 'pytest' run_pytest --numprocesses "$processors" --dist loadfile --durations 25
+    step 'CTest, debug build' run_ctest debug
+    step 'CTest, release build' run_ctest release
+    step 'pytest' run_pytest --junitxml "$results/pytest.xml" --numprocesses "$processors" --dist loadfile --durations 25
     # counts, which do not depend on what else the machine does
     step 'bench, the short form' run_quick_bench
+    step 'skipped tests' tell_skipped
     end_steps
 }
 
 # run_named_tests NAME...: the linters, CTests and pytests that one of the names is part of.
 run_named_tests() {
     begin_steps
+    begin_results
     lint "$@"
     run_named_ctests debug "$@"
     run_named_ctests release "$@"
@@ -25,6 +28,7 @@ run_named_tests() {
     if ((steps_tried == 0)); then
         fail 1 "no test has a name with '$(joined "' or '" "$@")' in it"
     fi
+    if compgen -G "$results/*.xml" >/dev/null; then step 'skipped tests' tell_skipped; fi
     end_steps
 }
 
@@ -37,16 +41,29 @@ run_named_ctests() {
         sed -n 's/^ *Test *#[0-9]*: //p')
     if ((${#tests[@]} == 0)); then return; fi
     with_lock compile "$preset" "${tests[@]}"
-    step "CTest, $preset build" \
-        ctest --preset "$preset" -j "$processors" --tests-regex "$pattern"
+    step "CTest, $preset build" run_ctest "$preset" --tests-regex "$pattern"
 }
 
 run_named_pytests() {
     local expression
     expression=$(joined ' or ' "$@")
     if run_pytest --collect-only -qq -k "$expression" >/dev/null; then
-        step 'pytest' run_pytest -k "$expression"
+        step 'pytest' run_pytest --junitxml "$results/pytest.xml" -k "$expression"
     fi
+}
+
+# What CTest and pytest say of each test, as files of JUnit's form.
+begin_results() {
+    results=$root/build/tests
+    rm -rf "$results"
+    mkdir -p "$results"
+}
+
+tell_skipped() { "$venv_python" -I "$root/tools/skipped.py" "$results"; }
+
+# run_ctest PRESET ARGUMENT...
+run_ctest() {
+    ctest --preset "$1" -j "$processors" --output-junit "$results/CTest, $1 build.xml" "${@:2}"
 }
 
 run_pytest() { "$venv_python" -P -m pytest "$@"; }

@@ -13,7 +13,7 @@ from matplotlib.collections import PolyCollection, TriMesh
 from synthetic_run import square
 from wingcrack_post import AbsentError, Run, read_run, style
 from wingcrack_post.fields import MatrixField, read_matrix
-from wingcrack_post.frames import extent, usual_limit
+from wingcrack_post.frames import Window, extent, usual_limit
 from wingcrack_post.history import development, intensities
 from wingcrack_post.load import abscissa, load_figure, moment_label
 from wingcrack_post.stress import MEAN_COLOURS, stress_maps
@@ -72,6 +72,21 @@ def test_singular_cells_do_not_set_the_colours() -> None:
     values = np.full(len(triangles), 2.0e6)
     values[np.argmin(np.abs(points[triangles].mean(axis=1) - 1.0).sum(axis=1))] = -733.0e6
     assert usual_limit(field, values, extent([field])) == 2.0e6
+
+
+def test_what_is_out_of_view_does_not_set_the_colours() -> None:
+    """Each quarter of the body has a value of its own."""
+    points, triangles = square(12)
+    x, y = points[triangles].mean(axis=1)[:, :2].T
+    values = np.where(y < 1.0, 0.0, -20.0) - np.where(x < 1.0, 1.0, 10.0)
+    field = MatrixField(points[:, :2], triangles, {})
+    limits = [
+        usual_limit(field, values, Window(left, left + 1.0, low, low + 1.0))
+        for low in (0.0, 1.0)
+        for left in (0.0, 1.0)
+    ]
+    assert limits == [1.0, 10.0, 21.0, 30.0]
+    assert usual_limit(field, values, Window(5.0, 6.0, 5.0, 6.0)) == 0.0
 
 
 def test_stress_maps_show_mean_and_shear(loaded: Run) -> None:

@@ -83,6 +83,30 @@ def test_zoom_holds_the_fracture_in_a_square_inside_the_body() -> None:
     assert zoom.ratio == pytest.approx(1.0, rel=1e-12)
 
 
+def test_zoom_in_the_far_corner_ends_there() -> None:
+    ends = np.array([[[1.9, 0.95], [2.0, 1.0]]])
+    zoom = zoom_window(Window(0.0, 2.0, 0.0, 1.0), [FractureField(ends, np.array([0]))])
+    assert zoom is not None
+    found = (zoom.x_min, zoom.x_max, zoom.y_min, zoom.y_max)
+    assert found == pytest.approx((1.86, 2.0, 0.86, 1.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("shift", [(0.0, -2000.0), (3000.0, 500.0)])
+def test_zoom_moves_with_the_body(shift: tuple[float, float]) -> None:
+    """In a body of 4 m x 2 m squares of 1.4 fractures, and none above two fifths of its height."""
+    x, y = shift
+    body = Window(x, x + 4.0, y, y + 2.0)
+    for size, is_zoomed in ((0.5, True), (0.79, True), (0.81, False)):
+        ends = np.array([[[x + 1.0, y + 1.0], [x + 1.0 + size, y + 1.0]]])
+        zoom = zoom_window(body, [FractureField(ends, np.array([0]))])
+        assert (zoom is not None) == is_zoomed
+        if zoom is not None:
+            found = (zoom.x_min - x, zoom.x_max - x, zoom.y_min - y, zoom.y_max - y)
+            left, low = 1.0 - 0.2 * size, 1.0 - 0.7 * size
+            wanted = (left, left + 1.4 * size, low, low + 1.4 * size)
+            assert found == pytest.approx(wanted, abs=1e-9)
+
+
 def test_large_fracture_needs_no_zoom() -> None:
     body = Window(0.0, 2.0, 0.0, 2.0)
     large = FractureField(np.array([[[0.5, 1.0], [1.5, 1.0]]]), np.array([0]))

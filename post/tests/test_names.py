@@ -16,7 +16,7 @@ from wingcrack_post import foremost as foremost_module
 from wingcrack_post.cli import main
 from wingcrack_post.foremost import MOST, foremost
 from wingcrack_post.growth import Growth
-from wingcrack_post.names import Names
+from wingcrack_post.names import Names, _candidates
 from wingcrack_post.scene import Scene, Well
 from wingcrack_post.table import FloatArray
 
@@ -114,3 +114,15 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
     capsys.readouterr()
     assert main(call) == 0
     assert "(unchanged)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0), (0.0, 1.0), (3.0, 4.0), (-3.0, 4.0)])
+def test_names_stand_on_one_side_whichever_way_it_is_drawn(
+    way: tuple[float, float],
+) -> None:
+    """Beside its middle: above it, and of an upright one to the right."""
+    line = np.array([[0.0, 0.0], way])
+    for drawn in (line, line[::-1]):
+        middle = list(_candidates(drawn, 1.0))[2] - drawn.mean(axis=0)
+        assert middle @ np.array(way) == pytest.approx(0.0, abs=1e-12)
+        assert middle[1] > 1e-9 or (abs(middle[1]) <= 1e-9 and middle[0] > 0.0)

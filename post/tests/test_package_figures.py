@@ -18,11 +18,13 @@ from matplotlib.image import imread
 
 import wingcrack
 from synthetic_run import (
+    GROWTH_STEP,
     LAST_WING,
     LENGTH,
     STEPS,
     fracture_cells,
     polyline,
+    square,
     times,
     well_pressure,
     wing_length,
@@ -149,6 +151,24 @@ def test_runs_in_one_figure(wet_run: Path, own_run: Path) -> None:
     ]
 
 
+def test_each_tip_has_its_lines_and_its_colour_in_the_legend(wet_run: Path) -> None:
+    axes = wingcrack.open(wet_run).plot_tips("k1")
+    legend = axes.get_legend()
+    assert legend is not None
+    words = [text.get_text() for text in legend.get_texts()]
+    colours = dict(zip(words, [line.get_color() for line in legend.get_lines()], strict=True))
+    assert words[2:] == ["lines: interaction integral", "circles: displacement correlation"]
+    steps = np.arange(STEPS)
+    for tip in (1, 2):
+        k1 = 0.02 * steps + np.where(steps > GROWTH_STEP, 0.35, 0.0) + 0.01 * tip  # [MPa m^1/2]
+        colour = colours[f"tip {tip} (flaw)"]
+        lines, circles = (one for one in axes.lines if one.get_markeredgecolor() == colour)
+        assert (circles.get_linestyle(), circles.get_marker()) == ("None", "o")
+        assert lines.get_ydata() == pytest.approx(k1)
+        assert circles.get_ydata() == pytest.approx(1.02 * k1)
+        assert lines.get_xdata() == pytest.approx(times() / 3600.0)
+
+
 def test_a_profile_shows_the_cells(wet_run: Path) -> None:
     axes = wingcrack.open(wet_run).plot_profile("jump_n_m", 1, times=[times()[-1]])
     cells = fracture_cells(STEPS - 1)
@@ -162,6 +182,25 @@ def test_a_map_has_its_colours_in_mpa(wet_run: Path) -> None:
     assert values is not None
     assert 6.8 <= values.min() < values.max() <= well_pressure(STEPS - 1) / 1e6
     assert "pore pressure [MPa]" in [other.get_ylabel() for other in axes.figure.axes]
+
+
+@pytest.mark.parametrize(
+    ("field", "label", "slope", "value"),
+    [
+        ("stress.mean", "mean in-plane stress [MPa]", 0.0, -15.0),  # of -20 and -10
+        ("stress.yy", "stress, yy [MPa]", 0.0, -10.0),
+        ("displacement.x", "displacement, x [mm]", -0.4, 0.0),  # by the strain
+    ],
+)
+def test_a_map_has_the_values_of_the_cells(
+    wet_run: Path, field: str, label: str, slope: float, value: float
+) -> None:
+    axes = wingcrack.open(wet_run).plot_map(field, times()[-1])
+    assert label in [other.get_ylabel() for other in axes.figure.axes]
+    points, triangles = square(12)
+    x = points[triangles].mean(axis=1)[:, 0]
+    drawn = axes.collections[0].get_array()
+    assert np.asarray(drawn) == pytest.approx(value + slope * x, rel=1e-6)
 
 
 def test_without_a_fluid(dry_run: Path) -> None:

@@ -102,6 +102,16 @@ def test_origin_stays_when_arc_length_already_does() -> None:
     assert np.allclose(arc_length(time, s, xy), s, atol=1e-15)
 
 
+@pytest.mark.parametrize("factor", [1.0, 0.001, 50.0])
+def test_origin_is_kept_between_centres(factor: float) -> None:
+    """A straight fracture of 0.6 in three cells; then with a wing of 0.2 in five of 0.16."""
+    time = np.array([0.0] * 3 + [1.0] * 5)
+    s = factor * np.array([0.1, 0.3, 0.5, 0.08, 0.24, 0.40, 0.56, 0.72])
+    x = s - factor * 0.2 * time
+    shifted = arc_length(time, s, np.column_stack((0.6 * x, 0.8 * x)))
+    assert shifted == pytest.approx(x, abs=1e-12 * factor)
+
+
 def test_origin_is_kept_on_another_mesh() -> None:
     # the same straight fracture 0 <= x <= 0.6, in three cells; then with a wing of 0.2, in four
     time = np.array([0.0] * 3 + [1.0] * 4)

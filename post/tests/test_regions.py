@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from wingcrack_post.regions import Region, draw_regions, region_label
+from wingcrack_post.regions import _LESS, _MORE, Region, draw_regions, read_region, region_label
 from wingcrack_post.scene import read_scene
 from wingcrack_post.units import METRE
 
@@ -60,6 +61,16 @@ def test_all_to_the_left_of_a_line(tmp_path: Path) -> None:
     assert inside.tolist() == [True, True, False, False]
 
 
+def test_a_half_plane_reaches_to_the_body_from_afar() -> None:
+    """Its line is given where the body's centre lies twice as far from the origin."""
+    body = np.array([[1000.0, 0.0], [1002.0, 0.0], [1002.0, 1.0], [1000.0, 1.0]])
+    line = {"x": [2002.0, 2003.0], "y": [0.5, 0.5], "permeability": [1.0e-19]}
+    half = read_region("h", "half_plane", line, body)
+    assert half is not None
+    inside = Polygon(half.corners).get_path().contains_points(body)
+    assert inside.tolist() == [False, False, True, True]
+
+
 def test_parabolas(tmp_path: Path) -> None:
     """Between x = 0.5 + y^2 and x = 0.8 + y^2 there is 0.3 m2; to the right of a line 1.5 m2."""
     between, right = regions(
@@ -95,6 +106,18 @@ def test_shades_tell_how_well_a_region_conducts() -> None:
     assert greys[0] > greys[1] > greys[2] == greys[3]
     assert not drawn(1.0e-17)[1].get_hatch()
     assert drawn(1.0e-19)[1].get_hatch()
+
+
+@pytest.mark.parametrize(("sign", "colours"), [(1.0, _MORE), (-1.0, _LESS)])
+@pytest.mark.parametrize("decades", [0.75, 1.5, 3.0, 5.0])
+def test_shades_lie_between_two_colours(
+    sign: float, colours: tuple[str, str], decades: float
+) -> None:
+    """In proportion to the decades, from the pale one to the strong one at three and beyond."""
+    pale, strong = (np.array(to_rgb(colour)) for colour in colours)
+    wanted = pale + min(decades / 3.0, 1.0) * (strong - pale)
+    found = drawn(10.0 ** (-18.0 + sign * decades))[1].get_facecolor()[:3]
+    assert found == pytest.approx(wanted, abs=0.5 / 255.0)
 
 
 def test_regions_end_at_the_body() -> None:

@@ -91,3 +91,22 @@ def test_fortran_double_precision_exponent(tmp_path: Path) -> None:
 def test_bad_number_is_located(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"scene\.nml: 'high' for toughness in &material is no"):
         read_scene(_scene(tmp_path, "&material toughness = high /"))
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "is_known"),
+    [
+        ("0.0, 4.0, 4.0", "0.0, 0.0, 3.0", True),
+        ("0.0, 4.0, 4.0", "0.0, 0.0", False),
+        ("0.0, 4.0", "0.0, 0.0", False),
+        ("0.0, 4.0", "0.0, 0.0, 3.0", False),
+    ],
+)
+def test_a_polygon_has_three_corners_and_each_both_coordinates(
+    tmp_path: Path, x: str, y: str, is_known: bool
+) -> None:
+    (tmp_path / "scene.nml").write_text(f"&domain shape = 'polygon', x = {x}, y = {y} /\n")
+    scene = read_scene(tmp_path / "scene.nml")
+    assert scene is not None
+    corners = None if scene.outline is None else scene.outline.tolist()
+    assert corners == ([[0, 0], [4, 0], [4, 3], [0, 0]] if is_known else None)

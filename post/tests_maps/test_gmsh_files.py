@@ -124,13 +124,8 @@ def test_what_lies_beside_a_mesh_is_not_executed(tmp_path: Path) -> None:
     assert not {"x", "y"} & {path.name for path in tmp_path.iterdir()}
 
 
-@needs_solver
-@pytest.mark.parametrize("version", [2.2, 4.1])
-@pytest.mark.parametrize("binary", [0, 1])
-@pytest.mark.parametrize("order", [1, 2])
-def test_meshes_of_all_formats_give_the_same_scene(
-    tmp_path: Path, version: float, binary: int, order: int
-) -> None:
+def write_mesh(path: Path, version: float, binary: int, order: int, parametric: int = 0) -> None:
+    """Let gmsh write the mesh of a rectangle with a fracture."""
     gmsh.initialize(["t"], readConfigFiles=False, interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     occ = gmsh.model.occ
@@ -145,15 +140,46 @@ def test_meshes_of_all_formats_give_the_same_scene(
     gmsh.model.mesh.setOrder(order)
     gmsh.option.setNumber("Mesh.MshFileVersion", version)
     gmsh.option.setNumber("Mesh.Binary", binary)
-    gmsh.write(str(tmp_path / "m.msh"))
+    gmsh.option.setNumber("Mesh.SaveParametric", parametric)
+    gmsh.write(str(path))
     gmsh.finalize()
 
+
+@needs_solver
+@pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.parametrize("binary", [0, 1])
+@pytest.mark.parametrize("order", [1, 2])
+def test_meshes_of_all_formats_give_the_same_scene(
+    tmp_path: Path, version: float, binary: int, order: int
+) -> None:
+    write_mesh(tmp_path / "m.msh", version, binary, order)
     status, scene = imported(tmp_path / "m.msh")
     assert status == 0
     found = fractures(scene)["the_fault"]
     ends = sorted(zip(found["x"], found["y"], strict=True))  # type: ignore[call-overload]
     assert ends == [(5.0, 5.0), (15.0, 12.0)]
     assert "&domain x_min = 0.0, x_max = 40.0, y_min = 0.0, y_max = 20.0 /" in scene.read_text()
+
+
+@pytest.mark.parametrize("binary", [0, 1])
+def test_places_on_curves_and_surfaces_are_left_aside(tmp_path: Path, binary: int) -> None:
+    """A mesh may give each node its parameters on its curve or surface, too."""
+    found = []
+    for parametric in (0, 1):
+        write_mesh(tmp_path / f"{parametric}.msh", 4.1, binary, 1, parametric)
+        found.append(read_map(tmp_path / f"{parametric}.msh", None))
+    sizes = [(tmp_path / f"{parametric}.msh").stat().st_size for parametric in (0, 1)]
+    assert sizes[0] < sizes[1]
+    for plain, other in zip(found[0].lines, found[1].lines, strict=True):
+        assert sorted(plain.points.tolist()) == sorted(other.points.tolist())
+    ends = sorted(map(tuple, found[1].lines[0].points.tolist()))
+    assert ends == [(5.0, 5.0), (15.0, 12.0)]
+    assert sorted(map(tuple, found[1].areas[0].points.tolist())) == [
+        (0.0, 0.0),
+        (0.0, 20.0),
+        (40.0, 0.0),
+        (40.0, 20.0),
+    ]
 
 
 RECTANGLES = """\
@@ -212,3 +238,47 @@ def test_a_geometry_that_is_none_is_refused(
     (tmp_path / "m.geo").write_text(RECTANGLES.replace(old, new))
     with pytest.raises(SceneError, match=re.escape(reason)):
         read_map(tmp_path / "m.geo", None)
+
+
+def mesh(nodes: list[tuple[float, float]], *elements: tuple[int, int, list[int]]) -> str:
+    """Give a mesh: elements as type, physical group and nodes, which count from 1."""
+    places = "".join(f"{k} {x} {y} 0\n" for k, (x, y) in enumerate(nodes, start=1))
+    rows = "".join(
+        f"{k} {kind} 2 {group} 1 {' '.join(map(str, corners))}\n"
+        for k, (kind, group, corners) in enumerate(elements, start=1)
+    )
+    return (
+        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(nodes)}\n{places}$EndNodes\n"
+        f"$Elements\n{len(elements)}\n{rows}$EndElements\n"
+    )
+
+
+def test_elements_of_no_group_and_points_are_no_map(tmp_path: Path) -> None:
+    nodes = [(0.0, 0.0), (10.0, 0.0), (10.0, 5.0)]
+    elements = [(1, 3, [1, 2]), (1, 0, [2, 3]), (15, 4, [3]), (15, 0, [1])]
+    (tmp_path / "m.msh").write_text(mesh(nodes, *elements))
+    found = read_map(tmp_path / "m.msh", None)
+    assert [(line.name, line.points.tolist()) for line in found.lines] == [
+        ("3", [[0.0, 0.0], [10.0, 0.0]])
+    ]
+    assert found.areas == []
+
+
+def test_a_body_of_two_pieces_is_refused(tmp_path: Path) -> None:
+    nodes = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (5.0, 0.0), (6.0, 0.0), (5.0, 1.0)]
+    (tmp_path / "m.msh").write_text(mesh(nodes, (2, 1, [1, 2, 3]), (2, 2, [4, 5, 6])))
+    with pytest.raises(SceneError, match="surfaces must be one piece, which is the body"):
+        read_map(tmp_path / "m.msh", None)
+
+
+def test_a_curve_on_a_slanted_rim_far_from_the_origin_is_a_side(tmp_path: Path) -> None:
+    """In UTM coordinates a node on the rim is off it by some 1e-10 m, for want of digits."""
+    corners = [(500000.1, 5400000.3), (501000.7, 5400333.9), (500400.2, 5400900.6)]
+    (x, y), (x_end, y_end) = corners[:2]
+    shares = [k / 7.0 for k in range(8)]
+    nodes = [(x + s * (x_end - x), y + s * (y_end - y)) for s in shares]
+    edges = [(1, 2 + k, [4 + k, 5 + k]) for k in range(7)]
+    (tmp_path / "m.msh").write_text(mesh([*corners, *nodes], (2, 1, [1, 2, 3]), *edges))
+    found = read_map(tmp_path / "m.msh", None)
+    assert found.lines == []
+    assert sum("lies on the rim: a side" in note.what for note in found.notes) == 7

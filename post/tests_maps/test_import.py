@@ -7,12 +7,14 @@ from pathlib import Path
 
 import f90nml
 import gmsh
+import numpy as np
 import pytest
 
 from map_calls import OUTCROP, area, feature, fractures, geojson, imported, needs_solver, rows
 from wingcrack_maps.cli import main
+from wingcrack_maps.features import Line, Map
 from wingcrack_maps.read import read_map
-from wingcrack_maps.units import in_degrees
+from wingcrack_maps.units import could_be_degrees, in_degrees
 
 pytestmark = needs_solver
 
@@ -146,6 +148,15 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize("text", ["friction", "frictoin=0.5", "x=1.0", "=0.5"])
+def test_what_is_set_must_be_an_entry(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
+) -> None:
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    assert imported(path, "--unit", "m", "--set", text)[0] == 2
+    assert f"--set {text}: it must be NAME=VALUE with a NAME of" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("name", "text", "reason"),
     [
@@ -155,6 +166,7 @@ def test_attributes_that_are_no_entry_are_told(tmp_path: Path) -> None:
         ("m.csv", "x1,y1,x2,y2\n0,0,1\n", "m.csv:2: the row has 3 values but must have 4"),
         ("m.csv", "x1,y1,x2,y2\n0,0,1,?\n", "m.csv:2: y2 is '?' but must be a number"),
         ("m.csv", "x1,y1,x2,y2\n0,0,1,inf\n", "m.csv:2: y2 is 'inf' but must be a number"),
+        ("m.csv", 'x1,y1,x2,y2\n0,0,1,"0,5"\n', "m.csv:2: y2 is '0,5' but must be a number"),
         ("m.csv", "x1,y1,x1,y2\n0,0,1,1\n", "the column 'x1' is given twice"),
         ("m.csv", "name,x,y\na,0,0\nb,1,1\na,2,2\n", "m.csv:4: 'a' goes on after 'b'"),
         ("m.csv", "name,x,y\na,0,0\n", "'a' has one vertex, but it takes two"),
@@ -224,6 +236,15 @@ def test_bad_features_are_refused(
     assert status == 2
     assert reason in capsys.readouterr().err
     assert not scene.exists()
+
+
+@pytest.mark.parametrize(
+    ("place", "answer"),
+    [((180.0, -90.0), True), ((-180.0, 90.5), False), ((180.5, 0.0), False)],
+)
+def test_numbers_that_could_be_degrees(place: tuple[float, float], answer: bool) -> None:
+    content = Map([Line("f1", np.array([(0.0, 0.0), place]))])
+    assert could_be_degrees(content) == answer
 
 
 def test_coordinate_systems_by_name() -> None:

@@ -55,6 +55,30 @@ def test_a_near_end_is_joined_or_cut_back() -> None:
     assert apart[1].points[-1].tolist() == pytest.approx([2.0, 0.101])
 
 
+@pytest.mark.parametrize("is_start", [True, False])
+@pytest.mark.parametrize(
+    ("other", "line"),
+    [
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(2, -3), (2, 5.95)]),  # crosses it elsewhere
+        ([(0, 0), (5, 0), (5, 3), (0, 3), (0, 6), (5, 6)], [(2, -3), (2, 5.95)]),  # and twice
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(2, 0), (2, 5.95)]),  # is joined to it
+        ([(0, 0), (5, 0), (5, 6), (0, 6)], [(1, 3), (3, 3), (3, 1), (2, 1), (2, 5.95)]),  # itself
+        ([(4, 6), (0, 6)], [(4, 3), (2.5, 5), (2, 5.95)]),  # arrives askew
+    ],
+)
+def test_nothing_but_the_end_is_cut_back(other: Places, line: Places, is_start: bool) -> None:
+    """The last segment rises towards y = 6 and is cut 1.01 distances below it."""
+    line = line[::-1] if is_start else line
+    repaired, done = repair(lines_of([other, line]), None, LIMITS, "gap")
+    (foot, top) = (line[1], line[0]) if is_start else line[-2:]
+    y = 6 - 1.01 * LIMITS.near
+    end = (foot[0] + (top[0] - foot[0]) * (y - foot[1]) / (top[1] - foot[1]), y)
+    wanted = [end, *line[1:]] if is_start else [*line[:-1], end]
+    assert repaired[1].points.ravel().tolist() == pytest.approx(np.ravel(wanted).tolist())
+    assert [one.kind for one in done] == ["near end"]
+    assert done[0].length_change == pytest.approx(-math.dist(end, top))
+
+
 def test_of_an_overlap_the_rest_goes_on_from_the_other_fracture() -> None:
     repaired, _ = repair(lines_of(CASES["overlap"]), None, LIMITS, "join")
     assert [line.points.tolist() for line in repaired] == [[[0, 0], [5, 0]], [[5, 0], [8, 0]]]
@@ -98,6 +122,17 @@ def test_faults_at_the_boundary(places: Places, kind: str) -> None:
     repaired, _ = repair(lines, body, LIMITS, "join")
     assert find_faults(repaired, body, LIMITS) == []
     assert all(body.buffer(1e-9).contains(LineString(line.points)) for line in repaired)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_leaves_the_body_is_found_at_its_end(way: int) -> None:
+    lines = lines_of([[(-18, 0), (17, 0)][::way], [(0, 5), (0, 14)][::way]])
+    first, second = find_faults(lines, box(-10, -10, 10, 10), LIMITS)
+    assert {first.kind, second.kind} == {"outside"}
+    assert first.place in {(-18.0, 0.0), (17.0, 0.0)}
+    assert first.size == pytest.approx(8.0 + 7.0, abs=1e-6)
+    assert second.size == pytest.approx(4.0, abs=1e-6)
+    assert second.place[1] == pytest.approx(10.0 if way == 1 else 14.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(8))

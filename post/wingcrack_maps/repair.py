@@ -226,15 +226,14 @@ class _Network:
         left = self._shape(i).difference(self._other(fault).buffer(1.01 * self.limits.near))
         if left.is_empty:
             return self._remove(fault)
-        pieces = list(left.geoms) if hasattr(left, "geoms") else [left]
-        piece = pieces[0] if not is_start else pieces[-1]
-        whole = self._shape(i).length
-        if len(pieces) > 1:  # it crosses the other one elsewhere: only the end goes
-            far = self._shape(i).project(Point(piece.coords[0] if is_start else piece.coords[-1]))
-            end = np.array(piece.coords[0] if is_start else piece.coords[-1])
-            self._set(i, self._until(i, float(far), end, is_start))
-        else:
-            self._set(i, shapely.get_coordinates(piece))
+        # Only the end goes, whatever else of the line meets the other one: the cut is at the first
+        # place, seen from the end, that is far enough from it.
+        shape = self._shape(i)
+        ends = [c for piece in shapely.get_parts(left) for c in (piece.coords[0], piece.coords[-1])]
+        places = [float(shape.project(Point(end))) for end in ends]
+        along = min(places) if is_start else max(places)
+        self._set(i, self._until(i, along, np.array(ends[places.index(along)]), is_start))
+        whole = shape.length
         return f"end cut back by {whole - self._whole([i]):.6g} m, which leaves a gap"
 
     def _target(self, fault: Fault) -> tuple[Points, str]:

@@ -324,6 +324,7 @@ contains
       type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk) :: nothing, x(5)
+      integer :: k
 
       call solver%factorize(matrices, error)
       call checks%fails_with(error, "analysed", "factors of nothing")
@@ -338,6 +339,18 @@ contains
       call solver%analyse(matrices%first_unknown, matrices%elements, error)
       call solver%factorize(matrices, error)
       call checks%fails_with(error, "singular", "a chain that floats")
+      ! Unknowns that have nothing to do with each other: whichever is eliminated last.
+      matrices%first_unknown = [1_ik, 2_ik, 3_ik, 4_ik]
+      matrices%elements%first = [1_ik, 2_ik, 3_ik, 4_ik]
+      matrices%elements%item = [1_ik, 2_ik, 3_ik]
+      matrices%first = [1_ik, 2_ik, 3_ik, 4_ik]
+      do k = 1, 3
+         matrices%entry = [2.0_rk, 3.0_rk, 5.0_rk]
+         matrices%entry(k) = -1.0_rk
+         call solver%analyse(matrices%first_unknown, matrices%elements, error)
+         call solver%factorize(matrices, error)
+         call checks%fails_with(error, "indefinite", "one negative spring of three")
+      end do
       nothing = 0.0_rk
       matrices = chain(5_ik, nothing/nothing, .true.)
       call solver%analyse(matrices%first_unknown, matrices%elements, error)

@@ -168,11 +168,12 @@ contains
       type(contact_t), intent(in) :: contact
       real(rk), parameter :: share = 2.0_rk/3.0_rk  ! of a middle node, with quarter points or not
       real(rk), parameter :: stiffness = 70.0e9_rk/0.1_rk
-      real(rk) :: jump(2), tau(2), normal(2), force(2, 6), traction(2, 2), worst, apart
+      real(rk) :: jump(2), tau(2), normal(2), force(2, 6), traction(2, 2), worst, apart, gap
       integer(ik) :: cell, element, k, side
 
       worst = 0.0_rk
       apart = 0.0_rk
+      gap = 0.0_rk
       do cell = 1, model%mesh%fracture%n_cells
          tau = model%mesh%face_tangent(:, cell)
          normal = [-tau(2), tau(1)]
@@ -186,6 +187,9 @@ contains
             end do
          end associate
          apart = max(apart, norm2(traction(:, 1) + traction(:, 2)))
+         ! beyond what the asperities make, which slip has lifted onto each other
+         gap = max(gap, abs(contact%apart(3, cell) - dot_product(normal, jump) &
+                            + law%dilation*abs(dot_product(tau, jump))))
          worst = max(worst, &
                      contact_residual(law, stiffness, &
                                       [dot_product(normal, traction(:, 1)), &
@@ -195,6 +199,7 @@ contains
       end do
       call checks%is_close(apart, 0.0_rk, 1.0e-2_rk, "network: equal and opposite tractions")
       call checks%is_close(worst, 0.0_rk, 1.0e-2_rk, "network: law fulfilled")
+      call checks%is_close(gap, 0.0_rk, 1.0e-12_rk, "network: how far faces are apart [m]")
    end subroutine check_law
 
    !> What acts on the nodes besides the loads is contact, equal and opposite; so nothing is left

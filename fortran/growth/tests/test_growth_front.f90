@@ -29,6 +29,7 @@ program test_growth_front
    call test_join()
    call test_path()
    call test_half_way()
+   call test_last_increments()
    call test_joins_ahead()
    call checks%finish()
 
@@ -135,6 +136,37 @@ contains
          call checks%is_true(.not. front%tip(1)%arrested, "it is on its way")
       end do
    end subroutine test_half_way
+
+   !> Growth is over at the given gain: the last increment ends there, and where less than 1.3 of
+   !! one are left, they are halved.
+   subroutine test_last_increments()
+      type(sample_t) :: front
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: wanted(4) = [0.4_rk, 1.2_rk, 2.0_rk, 2.5_rk]  ! increments
+      real(rk), parameter :: steps(3, 4) = reshape([0.4_rk, 0.0_rk, 0.0_rk, 0.6_rk, 0.6_rk, &
+                                                    0.0_rk, 1.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, &
+                                                    1.0_rk, 0.5_rk], [3, 4])
+      logical :: any_grew
+      integer :: i, k
+
+      do k = 1, size(wanted)
+         call start(front, .true.)
+         front%start = front%network
+         front%rules%stop_gain = wanted(k)*increment
+         front%tip%drive = growth_drive_t(intensity=2.0e6_rk, energy=40.0_rk)
+         call timers%begin()
+         do i = 1, count(steps(:, k) > 0.0_rk)
+            call checks%is_true(.not. any(front%has_gained()), "not yet")
+            call front%grow_by([increment, 0.0_rk], any_grew, timers, error)
+            call checks%no_error(error, "growth")
+            call checks%is_close(front%tip(1)%advance, steps(i, k)*increment, grains, &
+                                 "as far as it may")
+         end do
+         call checks%is_true(all(front%has_gained() .eqv. [.true., .false.]), "the first is there")
+         call is_at(front%tip(1)%xy, lines(:, 1, 1) - [wanted(k)*increment, 0.0_rk], "the gain")
+      end do
+   end subroutine test_last_increments
 
    !> A tip that joins what lies ahead has its direction found half way to that, by tries there, and
    !! then goes straight on: no target is captured from the side, and no leap is on a direction of

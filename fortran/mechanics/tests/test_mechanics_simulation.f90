@@ -18,6 +18,7 @@ program test_mechanics_simulation
    call check_tiny_onset()
    call check_growth()
    call check_patched_meshes()
+   call check_share_done()
    call checks%finish()
 
 contains
@@ -50,6 +51,31 @@ contains
       scene%load%to = 100.0_rk
       call resolve_defaults(scene)
    end function plate
+
+   !> Where growth ends the scene, it is done as far as the end that has grown most has come.
+   subroutine check_share_done()
+      type(mechanics_simulation_t) :: simulation
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: gains(2, 4) = reshape([0.0_rk, 0.0_rk, 0.3_rk, 0.0_rk, 0.3_rk, &
+                                                    0.4_rk, 0.2_rk, 0.1_rk], [2, 4])  ! [m]
+      real(rk) :: along(2)
+      integer :: k
+
+      call timers%begin()
+      call simulation%begin(plate("open", 1.0_rk), timers, error)
+      call checks%no_error(error, "share: begin")
+      if (allocated(error)) return
+      simulation%scene%growth%stop_gain = 0.5_rk
+      along = [cos(0.5236_rk), sin(0.5236_rk)]
+      do k = 1, size(gains, 2)
+         simulation%network%s_start = -gains(1, k)
+         simulation%network%xy(:, 1) = -(0.2_rk + gains(1, k))*along
+         simulation%network%xy(:, 2) = (0.2_rk + gains(2, k))*along
+         call checks%is_close(simulation%share_done(), maxval(gains(:, k))/0.5_rk, 1.0e-12_rk, &
+                              "share of the gain")
+      end do
+   end subroutine check_share_done
 
    !> K_eq is proportional to the factor: its onset follows from any other factor.
    subroutine check_onset(law, traction)

@@ -99,8 +99,8 @@ contains
 
    !> Tips that may not grow again, or whose faces do not move, are not judged.
    subroutine test_tips()
-      type(watch_t) :: watch
-      type(tip_t) :: tips(2)
+      type(watch_t) :: other, watch
+      type(tip_t) :: sheared(2), tips(2)
       type(text_t), allocatable :: list(:)
 
       tips%intensity%k1 = 1.0e6_rk
@@ -109,6 +109,23 @@ contains
       call watch%see_tips(tips, 1.0e6_rk, .true., "1 s")
       list = watch%sentences()
       call checks%is_true(size(list) == 0, "good tips")
+      ! By both methods the same shear, of either sign; then the other sign by correlation.
+      tips%intensity%k2 = [2.0e6_rk, -2.0e6_rk]
+      tips%intensity%k2_dc = tips%intensity%k2
+      call watch%see_tips(tips, 1.0e6_rk, .true., "1 s")
+      list = watch%sentences()
+      call checks%is_true(size(list) == 0, "good tips in shear")
+      sheared = tips
+      sheared%intensity%k1 = 1.5e6_rk
+      sheared%intensity%k1_dc = 1.5e6_rk
+      sheared(2)%intensity%k2_dc = 2.0e6_rk
+      call other%see_tips(sheared, 1.0e6_rk, .true., "1 s")
+      list = other%sentences()  ! 4 over hypot(1.5, 2)
+      call checks%is_true(size(list) == 1, "one bad tip in shear")
+      call checks%is_true(index(list(1)%text, " 1.6 above 0.1 at 1 s, (0, 0) m; ") > 0, &
+                          list(1)%text)
+      tips%intensity%k2 = 0.0_rk
+      tips%intensity%k2_dc = 0.0_rk
       tips(1)%intensity%k1_dc = 2.0e6_rk
       tips(1)%intensity%k2_error = 3.0e5_rk
       tips(1)%arrested = .true.

@@ -7,14 +7,15 @@ program test_simulation_rocks
    use mesh_types, only: network_t
    use scene_rock_places, only: rock_places_t
    use scene_types, only: scene_t
-   use simulation_rocks, only: interface_distance, keep_off, regions_of_other_rock, &
-                               relative_toughness
+   use simulation_rocks, only: has_other_toughness, interface_distance, keep_off, &
+                               regions_of_other_rock, relative_toughness
    implicit none(type, external)
    type(checks_t) :: checks
 
    call test_places()
    call test_interfaces()
    call test_toughness()
+   call test_other_toughness()
    call checks%finish()
 
 contains
@@ -55,6 +56,24 @@ contains
       call places%set(scene)
       call checks%is_true(places%region_at([1.2_rk, 0.7_rk]) == 0, "no regions")
    end subroutine test_places
+
+   !> A tip may have another toughness by a region, or by its fracture, or by both.
+   subroutine test_other_toughness()
+      type(scene_t) :: scene
+      logical :: by_region, by_fracture
+      integer :: k
+
+      do k = 0, 3
+         by_region = modulo(k, 2) == 1
+         by_fracture = k > 1
+         scene = square()
+         allocate (scene%fractures(2))
+         if (by_fracture) scene%fractures(2)%toughness = 2.0e6_rk
+         if (.not. by_region) deallocate (scene%regions)
+         call checks%is_true(has_other_toughness(scene) .eqv. (by_region .or. by_fracture), &
+                             "another toughness")
+      end do
+   end subroutine test_other_toughness
 
    !> Other toughness or permeability is no interface of elasticity; other stiffness is.
    subroutine test_interfaces()
