@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from wingcrack.command_line import main
 from wingcrack_post import unchanged
-from wingcrack_post.cli import main
 
 POST = Path(__file__).resolve().parents[1]
 ALL = ["probes", "view"]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from wingcrack.errors import AbsentError, RunError, SceneError
 from wingcrack.fields import Fields, read_fields
 from wingcrack.tables import column, frame
-from wingcrack_post.arguments import DEFAULT_FORMATS
+from wingcrack_post.choices import DEFAULT_FORMATS
 from wingcrack_post.fields import Snapshot, read_series
 from wingcrack_post.table import FloatArray, Table, read_table
 

@@ -1,8 +1,7 @@
-"""Command line: ``python -m wingcrack_bench [NAME ...]``."""
+"""`wingcrack bench`: measurements of speed, judged by what is stored."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import sys
@@ -10,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, replace
 from pathlib import Path
+from types import SimpleNamespace
 
-from wingcrack_bench.arguments import parse
 from wingcrack_bench.baseline import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
@@ -41,9 +40,8 @@ from wingcrack_verify.environment import machine, revision
 from wingcrack_verify.errors import CaseError
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    given = parse(arguments)
+def bench(given: SimpleNamespace) -> int:
+    """Do what is asked for; give the exit status."""
     known, kinds = read_benchmarks()
     measured: list[Measurement] = []
     failed: list[str] = []
@@ -78,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _measured(benchmark: Benchmark, given: argparse.Namespace) -> Measurement:
+def _measured(benchmark: Benchmark, given: SimpleNamespace) -> Measurement:
     """Run a scene as often as is asked for."""
     print(f"measuring {benchmark.name}: {benchmark.title}", file=sys.stderr)
     repetitions = 1 if given.quick and given.against is None else given.repeat
@@ -86,7 +84,7 @@ def _measured(benchmark: Benchmark, given: argparse.Namespace) -> Measurement:
 
 
 def _counted(
-    measured: Sequence[Measurement], known: Mapping[str, Benchmark], given: argparse.Namespace
+    measured: Sequence[Measurement], known: Mapping[str, Benchmark], given: SimpleNamespace
 ) -> list[Measurement]:
     """Count instructions where that is asked for; several at a time, as they do not mind."""
     insists = given.instructions or given.store

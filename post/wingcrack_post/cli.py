@@ -1,16 +1,15 @@
-"""Command line: ``python -m wingcrack_post plot DIR``."""
+"""`wingcrack plot`: the figures of runs."""
 
 from __future__ import annotations
 
 import gc
 import logging
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from wingcrack_post.arguments import parse
 from wingcrack_post.errors import RunError
 
 if TYPE_CHECKING:
@@ -25,9 +24,8 @@ class _Choices:
     quiet: bool
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status: 0 done, 2 bad input, 3 lacking library."""
-    given = parse(arguments)
+def plot(given: SimpleNamespace) -> int:
+    """Draw what is asked for; give the exit status: 0 done, 2 bad input, 3 lacking library."""
     choices = _Choices(given.times, given.only, given.format, given.quiet)
     status = 0
     for directory in given.directories:

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
-from wingcrack_study.arguments import CLUSTERS
+from wingcrack_post.choices import CLUSTERS
 from wingcrack_verify.errors import CaseError, EnvironmentLacksError
 from wingcrack_verify.fields import Fields
 

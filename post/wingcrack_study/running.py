@@ -19,8 +19,7 @@ from typing import Any
 from wingcrack_runner.outcome import Outcome, read_outcome
 from wingcrack_runner.pool import Pool
 from wingcrack_runner.task import ONE_THREAD, Task, copy_tables, tables_of
-from wingcrack_study import remote
-from wingcrack_study.arguments import TOP
+from wingcrack_study import TOP, remote
 from wingcrack_study.cluster import Cluster, connect
 from wingcrack_study.study import Study, StudyRun
 from wingcrack_verify.errors import CaseError, EnvironmentLacksError

@@ -1,13 +1,11 @@
-"""Command line: ``python -m wingcrack_verify [CASE ...]``."""
+"""`wingcrack verify`: the verification cases and their report."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
-from collections.abc import Sequence
+from types import SimpleNamespace
 
-from wingcrack_verify.arguments import parse
 from wingcrack_verify.errors import CaseError, EnvironmentLacksError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
@@ -15,9 +13,8 @@ from wingcrack_verify.report import Report, make_report
 from wingcrack_verify.suite import Suite, judge_suite, read_suite
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    given = parse(arguments)
+def verify(given: SimpleNamespace) -> int:
+    """Do what is asked for; give the exit status."""
     try:
         suite = read_suite(given.cases, given.names, given.quick)
     except CaseError as reason:
@@ -34,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
-def _verify(suite: Suite, runner: Runner, given: argparse.Namespace) -> int:
+def _verify(suite: Suite, runner: Runner, given: SimpleNamespace) -> int:
     begin = time.perf_counter()
     progress = _Progress(len(suite.jobs))
     outcomes = runner.run_all(suite.jobs, progress)
