@@ -23,7 +23,6 @@ from wingcrack_bench.baseline import (
 from wingcrack_bench.catalogue import TOP, Benchmark, read_benchmarks
 from wingcrack_bench.growth import Exponent, exponents
 from wingcrack_bench.measure import (
-    EnvironmentLacksError,
     Measurement,
     RunFailedError,
     count,
@@ -36,6 +35,7 @@ from wingcrack_bench.table import (
     as_table,
     instructions_ratio,
 )
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_verify.environment import machine, revision
 from wingcrack_verify.errors import CaseError
 

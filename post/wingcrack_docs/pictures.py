@@ -40,7 +40,7 @@ def make_pictures() -> None:
     ------
     PicturesError
         If a scene does not reach its end, or has no place in the gallery.
-    SolverLackingError
+    EnvironmentLacksError
         If there is no solver.
     """
     scenes = {

@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from types import SimpleNamespace
 
-from wingcrack_scenes.errors import SceneError, SolverLackingError
+from wingcrack_post.errors import EnvironmentLacksError
+from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.new import new_scene
 
 
@@ -21,7 +22,7 @@ def new(given: SimpleNamespace) -> int:
     except SceneError as reason:
         print(f"wingcrack new: {reason}", file=sys.stderr)
         return 2
-    except SolverLackingError as reason:
+    except EnvironmentLacksError as reason:
         print(f"wingcrack new: {reason}", file=sys.stderr)
         return 3
     print(f"{given.out} is written; ./wingcrack run {given.out} runs it.")

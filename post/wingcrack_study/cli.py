@@ -13,6 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
 from wingcrack_study.cluster import Cluster
@@ -27,7 +28,7 @@ from wingcrack_study.table import (
     write_statistics,
     write_text,
 )
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 
 _ENDED_BY = {signal.SIGINT: 130, signal.SIGTERM: 143}
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from wingcrack_post.choices import CLUSTERS
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_post.errors import EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
 
 # Module and class of each kind, and what must be installed for it.

@@ -6,7 +6,8 @@ import sys
 import time
 from types import SimpleNamespace
 
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_post.errors import EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
 from wingcrack_verify.report import Report, make_report
