@@ -191,6 +191,39 @@ def test_help_wins_over_what_else_is_said(tmp_path: Path, arguments: list[str]) 
     assert "./wingcrack run" in done.stdout
 
 
+@pytest.mark.parametrize("words", [["help", "run"], ["help"], ["help", "network"]])
+def test_help_is_a_word_too(tmp_path: Path, words: list[str]) -> None:
+    said = [call(tmp_path, *words), call(tmp_path, *words[1:], "--help")]
+    assert said[0].stdout == said[1].stdout
+    assert [done.returncode for done in said] == [0, 0]
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("wingcrack pl", "plain,plot"),
+        ("wingcrack run --th", "plain,--threads"),
+        ("wingcrack import map.csv --unit k", "plain,km"),
+        ("wingcrack run in", "file,in"),
+    ],
+)
+def test_the_shell_can_complete_words(tmp_path: Path, words: str, offered: str) -> None:
+    done = subprocess.run(
+        [LAUNCHER],
+        cwd=tmp_path,
+        env={
+            **os.environ,
+            "_WINGCRACK_COMPLETE": "bash_complete",
+            "COMP_WORDS": words,
+            "COMP_CWORD": str(words.count(" ")),
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout.split()) == (0, [offered])
+
+
 def test_works_through_a_symbolic_link(tmp_path: Path) -> None:
     link = tmp_path / "wc"
     link.symlink_to(LAUNCHER)

@@ -22,7 +22,8 @@ if TYPE_CHECKING or _HAS_CLICK:
 else:
     from wingcrack.command_line import without_click as way
 
-Choice, Group, Reader, UsageError = way.Choice, way.Group, way.Reader, way.UsageError
+Choice, Place, Reader, UsageError = way.Choice, way.Place, way.Reader, way.UsageError
+Group = way.Group
 argument, option = way.argument, way.option
 _Judge = Callable[[SimpleNamespace], None]
 

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 from wingcrack.command_line.call import TOP, load
 from wingcrack.command_line.declaring import (
+    Place,
     Reader,
     UsageError,
     argument,
@@ -38,13 +39,13 @@ earlier call is not run again.
 @argument("names", nargs=-1, required=False, metavar="[CASE...]")
 @option("--quick", is_flag=True, help="only the quick cases")
 @option("--jobs", type=Reader(whole(1, 64)), default=2, metavar="N", help="runs at a time")
-@option("--cases", type=Reader(absolute), default=TOP / "verification", show_default=False,
+@option("--cases", type=Place(absolute), default=TOP / "verification", show_default=False,
         metavar="DIR", help="where the cases are")  # fmt: skip
-@option("--build", type=Reader(absolute), default=_RELEASE, show_default=False,
+@option("--build", type=Place(absolute), default=_RELEASE, show_default=False,
         metavar="DIR", help="where the solver was built")  # fmt: skip
-@option("--cache", type=Reader(absolute), default=TOP / "build" / "verification",
+@option("--cache", type=Place(absolute), default=TOP / "build" / "verification",
         show_default=False, metavar="DIR", help="where the files of the runs are kept")  # fmt: skip
-@option("--report", type=Reader(absolute), default=TOP / "verification" / "report",
+@option("--report", type=Place(absolute), default=TOP / "verification" / "report",
         show_default=False, metavar="DIR", help="where the report goes")  # fmt: skip
 def verify(given: SimpleNamespace) -> None:
     """Verification cases: errors, orders, run times, stability."""
@@ -94,14 +95,14 @@ there.""",
 @option("--store", is_flag=True, help="keep the counts to compare with")
 @option(
     "--against",
-    type=Reader(Path),
+    type=Place(),
     metavar="SOLVER",
     help="another build of the solver to pair with",
 )
-@option("--out", type=Reader(Path), default=Path("out/bench"), metavar="DIR", help="for bench.json")
+@option("--out", type=Place(), default=Path("out/bench"), metavar="DIR", help="for bench.json")
 @option(
     "--solver",
-    type=Reader(Path),
+    type=Place(),
     default=_RELEASE / "fortran" / "app" / "wingcrack-solver",
     show_default=False,
     metavar="SOLVER",
@@ -109,7 +110,7 @@ there.""",
 )
 @option(
     "--baseline",
-    type=Reader(Path),
+    type=Place(),
     default=TOP / "tools" / "bench_baseline.json",
     show_default=False,
     metavar="FILE",
@@ -151,7 +152,7 @@ again) and writes docs/gallery.md and docs/pictures, which are kept with the sou
 @option("--port", type=Reader(port), default=8000, metavar="N", help="of --serve")
 @option("--no-fortran", is_flag=True, help="without the Fortran modules")
 @option("--pictures", is_flag=True, help="make gallery and pictures anew, no site")
-@option("--out", type=Reader(Path), metavar="DIR", help="where the site goes (default: build/site)")
+@option("--out", type=Place(), metavar="DIR", help="where the site goes (default: build/site)")
 def docs(given: SimpleNamespace) -> None:
     """Build the documentation as a site."""
     if given.pictures and (given.serve or given.out):

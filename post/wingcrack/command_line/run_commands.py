@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from wingcrack.command_line.call import TOP
 from wingcrack.command_line.declaring import (
     Choice,
+    Place,
     Reader,
     UsageError,
     argument,
@@ -55,7 +56,7 @@ A figure whose files are there and would come out the same is not drawn again.
 """,
     example="./wingcrack plot out/wing_crack --times 0.5h,20h,40h --only maps,fractures\n",
 )
-@argument("directories", metavar="DIR...", nargs=-1, required=False, type=Reader(Path))
+@argument("directories", metavar="DIR...", nargs=-1, required=False, type=Place())
 @option(
     "--times",
     type=Reader(parse_times),
@@ -97,7 +98,7 @@ reaches the page, and it asks no other. Ctrl-C ends it.
 ./wingcrack view out/onset --port 8040 --no-browser    # then: ssh -L 8040:localhost:8040 HOST
 """,
 )
-@argument("directory", metavar="DIR", required=False, type=Reader(Path))
+@argument("directory", metavar="DIR", required=False, type=Place())
 @option(
     "--port",
     type=Reader(port),
@@ -136,7 +137,7 @@ was done until then.""",
 ./wingcrack study inputs/studies/monte_carlo.toml --jobs 4 --out out/chance
 """,
 )
-@argument("study", metavar="STUDY.toml", type=Reader(Path))
+@argument("study", metavar="STUDY.toml", type=Place())
 @option(
     "--jobs",
     type=Reader(whole(1, 1024)),
@@ -144,7 +145,7 @@ was done until then.""",
     help="runs at a time, or workers of the cluster (default: the cores at hand,"
     f" {len(os.sched_getaffinity(0))})",
 )
-@option("--out", type=Reader(Path), metavar="DIR", help="for the results (default: out/STUDY)")
+@option("--out", type=Place(), metavar="DIR", help="for the results (default: out/STUDY)")
 @option("--quick", is_flag=True, help="the short form that the study's file tells in [quick]")
 @option(
     "--cluster",
@@ -156,7 +157,7 @@ was done until then.""",
 @option("--check", is_flag=True, help="read the study and check all its scenes, run nothing")
 @option(
     "--build",
-    type=Reader(absolute),
+    type=Place(absolute),
     default=TOP / "build" / "release",
     show_default=False,
     metavar="DIR",

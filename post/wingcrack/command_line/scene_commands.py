@@ -11,6 +11,7 @@ from typing import Any
 from wingcrack.command_line import values
 from wingcrack.command_line.declaring import (
     Choice,
+    Place,
     Reader,
     UsageError,
     argument,
@@ -28,7 +29,7 @@ KINDS = {
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
 UNITS = ("m", "km", "ft", "cm", "mm")
 _OVERWRITE = option("--overwrite", is_flag=True, help="replace files that are there")
-_PATH, _LENGTH = Reader(Path), Reader(values.length)
+_PATH, _LENGTH = Place(), Reader(values.length)
 
 
 @command(

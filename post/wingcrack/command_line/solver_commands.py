@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wingcrack.command_line.call import RefusedError
-from wingcrack.command_line.declaring import Reader, UsageError, argument, command, option
+from wingcrack.command_line.declaring import Place, Reader, UsageError, argument, command, option
 from wingcrack.command_line.values import whole
 
 _COUNT = Reader(whole(1, 9999))
@@ -24,8 +24,13 @@ interrupted by SIGINT and SIGTERM (the last good state is on disk).""",
 ./wingcrack run inputs/paper_c/onset.nml --out /tmp/onset --no-plot
 """,
 )
-@argument("scene", metavar="SCENE.nml", required=False)
-@option("--out", metavar="DIR", help="where the results go (default: out/NAME of the scene)")
+@argument("scene", metavar="SCENE.nml", required=False, type=Place(str))
+@option(
+    "--out",
+    type=Place(str),
+    metavar="DIR",
+    help="where the results go (default: out/NAME of the scene)",
+)
 @option("--threads", type=_COUNT, default=1, metavar="N", help="for windows side by side and loops")
 @option(
     "--ranks",
@@ -54,7 +59,7 @@ def run(given: SimpleNamespace) -> None:
     statuses="0 good; 1 the words cannot be written; 2 the scene is refused, or bad usage.",
     example="./wingcrack check inputs/paper_c/onset.nml\n",
 )
-@argument("scene", metavar="SCENE.nml", required=False)
+@argument("scene", metavar="SCENE.nml", required=False, type=Place(str))
 def check(given: SimpleNamespace) -> None:
     """Read and validate a scene without running it."""
     _judge_scene(given)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import click
@@ -12,7 +14,17 @@ from click.shell_completion import CompletionItem
 from wingcrack.command_line.call import Call, is_here, load
 from wingcrack_post import __version__
 
-__all__ = ["Choice", "Command", "Group", "Reader", "UsageError", "argument", "command", "option"]
+__all__ = [
+    "Choice",
+    "Command",
+    "Group",
+    "Place",
+    "Reader",
+    "UsageError",
+    "argument",
+    "command",
+    "option",
+]
 
 _SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100, "show_default": True}
 
@@ -33,6 +45,13 @@ class Reader(click.ParamType[Any]):
             return self._read(value)
         except ValueError as reason:
             self.fail(str(reason), param, ctx)
+
+
+class Place(Reader):
+    """A file or a folder."""
+
+    def __init__(self, read: Callable[[str], Any] = Path) -> None:
+        super().__init__(read)
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
@@ -83,5 +102,7 @@ class Group(_AsWritten, click.Group):
 
     def understand(self, words: list[str]) -> Call | None:
         """Give what the words ask for, or None where that was help."""
-        asked = self.main(words, "./wingcrack", "_WINGCRACK_COMPLETE", standalone_mode=False)
+        asking = "_WINGCRACK_COMPLETE"  # set where a shell asks how words could be completed
+        called = "wingcrack" if asking in os.environ else "./wingcrack"
+        asked = self.main(words, called, asking, standalone_mode=False)
         return asked if isinstance(asked, Call) else None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
 from wingcrack.command_line.call import Call, is_here, load
@@ -34,6 +35,13 @@ class Reader:
             return self._read(text)
         except ValueError as reason:
             raise argparse.ArgumentTypeError(str(reason)) from None
+
+
+class Place(Reader):
+    """A file or a folder."""
+
+    def __init__(self, read: Callable[[str], Any] = Path) -> None:
+        super().__init__(read)
 
 
 class Choice(tuple[str, ...]):
