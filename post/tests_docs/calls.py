@@ -119,4 +119,4 @@ def understand_other(words: list[str]) -> None:
         assert "wingcrack" in " ".join(rest) or rest[0] == "run"
     else:
         known = (".venv/bin/python", ".venv/bin/pip", "python3", "/opt/wingcrack/venv/bin/pip")
-        assert program in known or program == "export", f"what is {program}?"
+        assert program in known or program in ("export", "eval"), f"what is {program}?"
