@@ -55,7 +55,7 @@ def test_what_was_left_out_is_told_again(
 def test_it_takes_no_library_to_see_that_nothing_changed(drawn_run: Path) -> None:
     code = (
         "import sys\n"
-        "from wingcrack_post.cli import main\n"
+        "from wingcrack.command_line import main\n"
         "assert main(['plot', sys.argv[1], '--only', 'probes,view', '--quiet']) == 0\n"
         "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
     )

@@ -17,8 +17,8 @@ _UNDERSTAND = """\
 import json, sys
 if sys.argv[1] == "without":
     sys.modules["click"] = None
-from wingcrack.command_line import declaring, understand
-assert declaring.way.__name__.endswith(f"{sys.argv[1]}_click")
+from wingcrack.command_line import understand, way
+assert way.__name__.endswith(f"{sys.argv[1]}_click")
 call = understand(sys.argv[2:])
 if call is not None:
     print(call.does, json.dumps(vars(call.given), default=str, sort_keys=True))

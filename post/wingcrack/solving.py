@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import FrameType, SimpleNamespace
 
-from wingcrack.command_line.call import TOP
+from wingcrack.command_line.declaring import TOP
 from wingcrack.command_line.solver_commands import judge_place
 
 _PROGRAMS = TOP / "build" / "release" / "fortran" / "app"

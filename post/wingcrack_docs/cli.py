@@ -40,15 +40,11 @@ def docs(given: SimpleNamespace) -> int:
 def _pictures() -> int:
     from wingcrack_docs.errors import PicturesError
     from wingcrack_docs.pictures import make_pictures
-    from wingcrack_post.errors import EnvironmentLacksError
 
     try:
         make_pictures()
     except PicturesError as reason:
         print(f"wingcrack docs: {reason}", file=sys.stderr)
         return 1
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack docs: {reason}", file=sys.stderr)
-        return 3
     print("docs/gallery.md and docs/pictures are written", flush=True)
     return 0

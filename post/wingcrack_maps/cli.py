@@ -23,7 +23,6 @@ from wingcrack_maps.repair import Repair, repair
 from wingcrack_maps.report import Report, file_texts, terminal_text
 from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_size, scene_text
 from wingcrack_maps.units import shift
-from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.parameters import groups
 from wingcrack_scenes.solver import check
@@ -38,9 +37,6 @@ def make_scene(given: SimpleNamespace) -> int:
     except SceneError as reason:
         print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
         return 2
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
-        return 3
     except KeyboardInterrupt:
         print(f"wingcrack {given.command}: interrupted; nothing was written", file=sys.stderr)
         return 130

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from types import SimpleNamespace
 
-from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.new import new_scene
 
@@ -22,8 +21,5 @@ def new(given: SimpleNamespace) -> int:
     except SceneError as reason:
         print(f"wingcrack new: {reason}", file=sys.stderr)
         return 2
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack new: {reason}", file=sys.stderr)
-        return 3
     print(f"{given.out} is written; ./wingcrack run {given.out} runs it.")
     return 0

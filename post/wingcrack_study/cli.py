@@ -13,7 +13,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
 from wingcrack_study.cluster import Cluster
@@ -48,8 +47,6 @@ def study(given: SimpleNamespace) -> int:
             return _study(given)
     except CaseError as reason:
         return _say(str(reason), 2)
-    except EnvironmentLacksError as reason:
-        return _say(str(reason), 3)
     except OSError as reason:
         place = f"{reason.filename}: " if reason.filename else ""
         return _say(f"{place}{reason.strerror or reason}", 1)

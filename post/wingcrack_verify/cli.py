@@ -6,7 +6,6 @@ import sys
 import time
 from types import SimpleNamespace
 
-from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
@@ -24,9 +23,6 @@ def verify(given: SimpleNamespace) -> int:
     runner = Runner(Programs(given.build, given.cases / "programs"), given.cache, given.jobs)
     try:
         return _verify(suite, runner, given)
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack verify: {reason}", file=sys.stderr)
-        return 3
     except KeyboardInterrupt:
         print("wingcrack verify: interrupted; what is done is kept", file=sys.stderr)
         return 130

@@ -6,8 +6,15 @@ import re
 import sys
 from collections.abc import Sequence
 
-from wingcrack.command_line.call import Call, RefusedError
-from wingcrack.command_line.declaring import Group, UsageError
+from wingcrack.command_line.declaring import Call, RefusedError, UsageError
+from wingcrack_post.errors import EnvironmentLacksError
+
+try:
+    from wingcrack.command_line import with_click as way
+except ImportError as lacking:
+    if lacking.name != "click":
+        raise
+    from wingcrack.command_line import without_click as way  # type: ignore[no-redef]
 
 __all__ = ["main", "understand"]
 
@@ -22,31 +29,19 @@ Exit status: 0 done; 1 the run or a test failed; 2 bad input or usage (nothing w
 example:
   ./wingcrack run inputs/paper_c/wing_crack.nml
 """
-# Each command is imported when it is named; they stand in the order of the help.
-_GROUP = Group(
-    {
-        name: f"wingcrack.command_line.{place}"
-        for name, place in {
-            "run": "solver_commands:run",
-            "check": "solver_commands:check",
-            "plot": "run_commands:plot",
-            "view": "run_commands:view",
-            "study": "run_commands:study",
-            "new": "scene_commands:new",
-            "import": "scene_commands:import_map",
-            "network": "scene_commands:network",
-            "verify": "developer_commands:verify",
-            "bench": "developer_commands:bench",
-            "test": "developer_commands:test",
-            "build": "developer_commands:build",
-            "format": "developer_commands:format_sources",
-            "lint": "developer_commands:lint",
-            "docs": "developer_commands:docs",
-        }.items()
-    },
-    _TITLE,
-    _EPILOG,
-)
+# Modules with the names of what is declared in them; each is imported when a command is named.
+_MODULES = {
+    "solver_commands": ("run", "check"),
+    "run_commands": ("plot", "view", "study"),
+    "scene_commands": ("new", "import", "network"),
+    "developer_commands": ("verify", "bench", "test", "build", "format", "lint", "docs"),
+}
+_NAMED = {"import": "import_map", "format": "format_sources"}
+_PLACES = {
+    name: f"wingcrack.command_line.{module}:{_NAMED.get(name, name)}"
+    for module, names in _MODULES.items()
+    for name in names
+}
 
 
 def understand(words: Sequence[str]) -> Call | None:
@@ -61,12 +56,12 @@ def understand(words: Sequence[str]) -> Call | None:
     if not {"-h", "--help"}.isdisjoint(words[1:]):
         words = [name, "--help"]  # help wins over what else is said
     try:
-        return _GROUP.understand(list(words))
+        return way.understand(list(words), _PLACES, _TITLE, _EPILOG)
     except RefusedError as reason:
         said = f"wingcrack: {reason}"
     except UsageError as reason:
-        named = f"wingcrack {name}" if name in _GROUP.places else "wingcrack"
-        message = " ".join(reason.format_message().split()).rstrip(".")
+        named = f"wingcrack {name}" if name in _PLACES else "wingcrack"
+        message = " ".join(str(reason).split()).rstrip(".")
         message = re.sub(r"\. (D.*\?)$", r" (\1)", message)  # a guess at what was meant
         said = f"{named}: {message[:1].lower()}{message[1:]}; ./{named} --help says more"
     print(said, file=sys.stderr)
@@ -75,5 +70,10 @@ def understand(words: Sequence[str]) -> Call | None:
 
 def main(words: Sequence[str] | None = None) -> int:
     """Do what the words ask for and return the exit status."""
-    call = understand(sys.argv[1:] if words is None else words)
-    return call.do() if call is not None else 0
+    words = sys.argv[1:] if words is None else words
+    call = understand(words)
+    try:
+        return call.do() if call is not None else 0
+    except EnvironmentLacksError as reason:
+        print(f"wingcrack {words[0]}: {reason}", file=sys.stderr)
+        return 3

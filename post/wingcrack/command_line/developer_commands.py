@@ -5,24 +5,28 @@ from __future__ import annotations
 from pathlib import Path
 from types import SimpleNamespace
 
-from wingcrack.command_line.call import TOP, load
-from wingcrack.command_line.declaring import (
-    Place,
-    Reader,
-    UsageError,
-    argument,
-    command,
-    option,
-)
+from wingcrack.command_line.declaring import TOP, Parameter, UsageError, command, flag, load
 from wingcrack.command_line.values import absolute, port, whole
 
 _RELEASE = TOP / "build" / "release"
-_BY_LAUNCHER = ""
+_NAMES = Parameter("names", "[NAME...]", many=True)
 
 
 @command(
     "verify",
     "wingcrack_verify.cli:verify",
+    Parameter("names", "[CASE...]", many=True),
+    flag("--quick", "only the quick cases"),
+    Parameter("--jobs", "N", "runs at a time (2)", whole(1, 64), 2),
+    *(
+        Parameter(name, "DIR", help, absolute, TOP / path)
+        for name, path, help in (  # noqa: A001
+            ("--cases", "verification", "where the cases are"),
+            ("--build", "build/release", "where the solver was built"),
+            ("--cache", "build/verification", "where the files of the runs are kept"),
+            ("--report", "verification/report", "where the report goes"),
+        )
+    ),
     about="""\
 Runs the verification cases, measures their errors and writes verification/report/ with index.html,
 report.json and, where Chromium or Chrome is installed, report.pdf. What has not changed since an
@@ -36,17 +40,6 @@ earlier call is not run again.
 ./wingcrack verify onset_c1 stability
 """,
 )
-@argument("names", nargs=-1, required=False, metavar="[CASE...]")
-@option("--quick", is_flag=True, help="only the quick cases")
-@option("--jobs", type=Reader(whole(1, 64)), default=2, metavar="N", help="runs at a time")
-@option("--cases", type=Place(absolute), default=TOP / "verification", show_default=False,
-        metavar="DIR", help="where the cases are")  # fmt: skip
-@option("--build", type=Place(absolute), default=_RELEASE, show_default=False,
-        metavar="DIR", help="where the solver was built")  # fmt: skip
-@option("--cache", type=Place(absolute), default=TOP / "build" / "verification",
-        show_default=False, metavar="DIR", help="where the files of the runs are kept")  # fmt: skip
-@option("--report", type=Place(absolute), default=TOP / "verification" / "report",
-        show_default=False, metavar="DIR", help="where the report goes")  # fmt: skip
 def verify(given: SimpleNamespace) -> None:
     """Verification cases: errors, orders, run times, stability."""
     there = load("wingcrack_verify.folders:case_folders")(given.cases)
@@ -61,6 +54,23 @@ def verify(given: SimpleNamespace) -> None:
 @command(
     "bench",
     "wingcrack_bench.cli:bench",
+    _NAMES,
+    Parameter("--repeat", "N", "runs of each but the longest; the median counts (3)", whole(1), 3),
+    flag("--quick", "the short form, for CI"),
+    flag("--instructions", "count instructions too"),
+    flag("--store", "keep the counts to compare with"),
+    Parameter("--against", "SOLVER", "another build of the solver to pair with", Path),
+    Parameter("--out", "DIR", "for bench.json (default: out/bench)", Path, Path("out/bench")),
+    Parameter(
+        "--solver",
+        "SOLVER",
+        "the solver that is measured",
+        Path,
+        _RELEASE / "fortran" / "app" / "wingcrack-solver",
+    ),
+    Parameter(
+        "--baseline", "FILE", "the stored counts", Path, TOP / "tools" / "bench_baseline.json"
+    ),
     about="""\
 Measures the CPU time of scenes on one thread: median and spread of several runs, phases, the first
 and the further steps, memory, and how cost grows with size; prints tables and writes bench.json.
@@ -81,40 +91,6 @@ there.""",
 ./wingcrack bench b4 b6 --repeat 5
 ./wingcrack bench c1 --against /tmp/before/wingcrack-solver
 """,
-)
-@argument("names", nargs=-1, required=False, metavar="[NAME...]")
-@option(
-    "--repeat",
-    type=Reader(whole(1)),
-    default=3,
-    metavar="N",
-    help="runs of each but the longest; the median counts",
-)
-@option("--quick", is_flag=True, help="the short form, for CI")
-@option("--instructions", is_flag=True, help="count instructions too")
-@option("--store", is_flag=True, help="keep the counts to compare with")
-@option(
-    "--against",
-    type=Place(),
-    metavar="SOLVER",
-    help="another build of the solver to pair with",
-)
-@option("--out", type=Place(), default=Path("out/bench"), metavar="DIR", help="for bench.json")
-@option(
-    "--solver",
-    type=Place(),
-    default=_RELEASE / "fortran" / "app" / "wingcrack-solver",
-    show_default=False,
-    metavar="SOLVER",
-    help="the solver that is measured",
-)
-@option(
-    "--baseline",
-    type=Place(),
-    default=TOP / "tools" / "bench_baseline.json",
-    show_default=False,
-    metavar="FILE",
-    help="the stored counts",
 )
 def bench(given: SimpleNamespace) -> None:
     """Measure how long scenes take, and where the time goes."""
@@ -139,6 +115,11 @@ def bench(given: SimpleNamespace) -> None:
 @command(
     "docs",
     "wingcrack_docs.cli:docs",
+    flag("--serve", "show it to this machine's browsers until ctrl-C"),
+    Parameter("--port", "N", "of --serve (default: 8000)", port, 8000),
+    flag("--no-fortran", "without the Fortran modules"),
+    flag("--pictures", "make gallery and pictures anew, no site"),
+    Parameter("--out", "DIR", "where the site goes (default: build/site)", Path),
     about="""\
 The site is in build/site; it asks no other machine for anything. Pages of the Fortran modules are
 made by FORD, and made again only when a module has changed.
@@ -148,11 +129,6 @@ again) and writes docs/gallery.md and docs/pictures, which are kept with the sou
 """,
     example="./wingcrack docs --serve --no-fortran\n",
 )
-@option("--serve", is_flag=True, help="show it to this machine's browsers until ctrl-C")
-@option("--port", type=Reader(port), default=8000, metavar="N", help="of --serve")
-@option("--no-fortran", is_flag=True, help="without the Fortran modules")
-@option("--pictures", is_flag=True, help="make gallery and pictures anew, no site")
-@option("--out", type=Place(), metavar="DIR", help="where the site goes (default: build/site)")
 def docs(given: SimpleNamespace) -> None:
     """Build the documentation as a site."""
     if given.pictures and (given.serve or given.out):
@@ -166,7 +142,8 @@ def docs(given: SimpleNamespace) -> None:
 
 @command(
     "test",
-    _BY_LAUNCHER,
+    "",
+    _NAMES,
     about="""\
 Checks formats and linters, then builds and runs all tests: CTest on the debug build (bounds and
 initialisation checked), CTest on the release build, pytest. With names, only the linters, CTests
@@ -179,24 +156,19 @@ errors.
 ./wingcrack test test_scene_faults command_line
 """,
 )
-@argument("names", nargs=-1, required=False, metavar="[NAME...]")
 def test(given: SimpleNamespace) -> None:
     """Run all tests and linters, or those with a NAME in theirs."""
 
 
 @command(
     "build",
-    _BY_LAUNCHER,
+    "",
+    flag("--debug", "in build/debug: bounds, pointers and initialisation are checked at run time"),
     about="""\
 Builds the program, the verification programs and all tests in build/release, and shows what the
 compilers say.
 """,
     example="./wingcrack build --debug\n",
-)
-@option(
-    "--debug",
-    is_flag=True,
-    help="in build/debug: bounds, pointers and initialisation are checked at run time",
 )
 def build(given: SimpleNamespace) -> None:
     """Build everything and show the compilers' warnings."""
@@ -204,7 +176,7 @@ def build(given: SimpleNamespace) -> None:
 
 @command(
     "format",
-    _BY_LAUNCHER,
+    "",
     about="Fortran with fprettify, C++ with clang-format, Python with ruff.\n",
     example="./wingcrack format\n",
 )
@@ -214,7 +186,7 @@ def format_sources(given: SimpleNamespace) -> None:
 
 @command(
     "lint",
-    _BY_LAUNCHER,
+    "",
     about="""\
 shellcheck, fprettify, the arrows between rooms, fortitude, clang-format, clang-tidy, ruff, mypy.
 Changes nothing. One alone: ./wingcrack test mypy

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from wingcrack.command_line import main, understand
-from wingcrack.command_line.call import TOP, RefusedError
+from wingcrack.command_line.declaring import TOP, RefusedError
 
 _BROKEN_PIPE = 141  # as of a program that SIGPIPE has ended
 

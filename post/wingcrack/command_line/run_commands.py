@@ -6,33 +6,42 @@ import os
 from pathlib import Path
 from types import SimpleNamespace
 
-from wingcrack.command_line.call import TOP
-from wingcrack.command_line.declaring import (
-    Choice,
-    Place,
-    Reader,
-    UsageError,
-    argument,
-    command,
-    option,
-)
+from wingcrack.command_line.declaring import TOP, Parameter, UsageError, choice, command, flag
 from wingcrack.command_line.values import absolute, each_of, port, whole
 from wingcrack_post.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
 from wingcrack_post.durations import parse_times
 
-_FORMAT = option(
+_FORMATS = Parameter(
     "--format",
-    type=Reader(each_of(FORMATS)),
-    default=DEFAULT_FORMATS,
-    show_default=False,
-    metavar="FORMAT,...",
-    help="of the figures: png, pdf, or png,pdf (default: png)",
+    "FORMAT,...",
+    "of the figures: png, pdf, or png,pdf (default: png)",
+    each_of(FORMATS),
+    DEFAULT_FORMATS,
 )
 
 
 @command(
     "plot",
     "wingcrack_post.cli:plot",
+    Parameter("directories", "DIR...", read=Path, many=True),
+    Parameter(
+        "--times",
+        "T,...",
+        "times of maps and profiles: seconds, or with the unit s, min, h or d; the nearest"
+        " written times are drawn (default: the first, the start of growth, the highest"
+        " well pressure, equally spaced fracture lengths, the last; no short steps after growth)",
+        parse_times,
+        (),
+    ),
+    Parameter(
+        "--only",
+        "GROUP,...",
+        f"draw these groups: {', '.join(GROUPS)}, or {ALL}",
+        each_of((*GROUPS, ALL)),
+        (),
+    ),
+    _FORMATS,
+    flag("--quiet", "print nothing but errors"),
     about="""\
 Without --only, the figures in which something happens are drawn, and those that were drawn before:
 network and stress intensities where tips grow, maps, profiles, lengths and states where a fracture
@@ -56,27 +65,6 @@ A figure whose files are there and would come out the same is not drawn again.
 """,
     example="./wingcrack plot out/wing_crack --times 0.5h,20h,40h --only maps,fractures\n",
 )
-@argument("directories", metavar="DIR...", nargs=-1, required=False, type=Place())
-@option(
-    "--times",
-    type=Reader(parse_times),
-    default=(),
-    show_default=False,
-    metavar="T,...",
-    help="times of maps and profiles: seconds, or with the unit s, min, h or d; the nearest"
-    " written times are drawn (default: the first, the start of growth, the highest"
-    " well pressure, equally spaced fracture lengths, the last; no short steps after growth)",
-)
-@option(
-    "--only",
-    type=Reader(each_of((*GROUPS, ALL))),
-    default=(),
-    show_default=False,
-    metavar="GROUP,...",
-    help=f"draw these groups: {', '.join(GROUPS)}, or {ALL}",
-)
-@_FORMAT
-@option("--quiet", is_flag=True, help="print nothing but errors")
 def plot(given: SimpleNamespace) -> None:
     """Draw the figures of finished or running runs into DIR/figures."""
     if not given.directories:
@@ -88,6 +76,9 @@ def plot(given: SimpleNamespace) -> None:
 @command(
     "view",
     "wingcrack_view.cli:view",
+    Parameter("directory", "DIR", read=Path),
+    Parameter("--port", "N", "port of the page (default: a free one)", port, 0),
+    flag("--no-browser", "only print the address, open no browser"),
     about="""\
 The page shows a field of the rock in every written state, the fractures by state, the wells, and
 the history beside them. While a run goes on, new states appear by themselves. Only this machine
@@ -98,16 +89,6 @@ reaches the page, and it asks no other. Ctrl-C ends it.
 ./wingcrack view out/onset --port 8040 --no-browser    # then: ssh -L 8040:localhost:8040 HOST
 """,
 )
-@argument("directory", metavar="DIR", required=False, type=Place())
-@option(
-    "--port",
-    type=Reader(port),
-    default=0,
-    show_default="a free one",
-    metavar="N",
-    help="port of the page",
-)
-@option("--no-browser", is_flag=True, help="only print the address, open no browser")
 def view(given: SimpleNamespace) -> None:
     """Show a finished or running run in the browser."""
     if given.directory is None:
@@ -123,6 +104,25 @@ def _judge_folder(directory: Path) -> None:
 @command(
     "study",
     "wingcrack_study.cli:study",
+    Parameter("study", "STUDY.toml", read=Path, required=True),
+    Parameter(
+        "--jobs",
+        "N",
+        "runs at a time, or workers of the cluster (default: the cores at hand,"
+        f" {len(os.sched_getaffinity(0))})",
+        whole(1, 1024),
+    ),
+    Parameter("--out", "DIR", "where the results go (default: out/STUDY)", Path),
+    flag("--quick", "the short form that the study's file tells in [quick]"),
+    choice(
+        "--cluster",
+        CLUSTERS,
+        "how the runs are spread: none (processes of this call), or by Dask on this machine"
+        " (local) or others (default: as the study's file says, else none)",
+    ),
+    _FORMATS,
+    flag("--check", "read the study and check all its scenes, run nothing"),
+    Parameter("--build", "DIR", "where the solver was built", absolute, TOP / "build" / "release"),
     about="""\
 Runs a scene many times, as the study's file says (docs/studies.md), and writes table.csv,
 table.parquet, statistics.csv, study.json and figures/ into the folder. A call that was ended, even
@@ -136,32 +136,6 @@ was done until then.""",
 ./wingcrack study inputs/studies/d3_rate.toml --quick
 ./wingcrack study inputs/studies/monte_carlo.toml --jobs 4 --out out/chance
 """,
-)
-@argument("study", metavar="STUDY.toml", type=Place())
-@option(
-    "--jobs",
-    type=Reader(whole(1, 1024)),
-    metavar="N",
-    help="runs at a time, or workers of the cluster (default: the cores at hand,"
-    f" {len(os.sched_getaffinity(0))})",
-)
-@option("--out", type=Place(), metavar="DIR", help="for the results (default: out/STUDY)")
-@option("--quick", is_flag=True, help="the short form that the study's file tells in [quick]")
-@option(
-    "--cluster",
-    type=Choice(CLUSTERS),
-    help="how the runs are spread: none (processes of this call), or by Dask on this machine"
-    " (local) or others (default: as the study's file says, else none)",
-)
-@_FORMAT
-@option("--check", is_flag=True, help="read the study and check all its scenes, run nothing")
-@option(
-    "--build",
-    type=Place(absolute),
-    default=TOP / "build" / "release",
-    show_default=False,
-    metavar="DIR",
-    help="where the solver was built",
 )
 def study(given: SimpleNamespace) -> None:
     """Run a scene many times as a file says, for a table and figures."""

@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 from wingcrack.command_line import values
-from wingcrack.command_line.declaring import (
-    Choice,
-    Place,
-    Reader,
-    UsageError,
-    argument,
-    command,
-    option,
-)
+from wingcrack.command_line.declaring import Parameter, UsageError, choice, command, flag
 
 KINDS = {
     "injection": "fluid into one fracture, which slips; stress intensity factors",
@@ -28,13 +18,48 @@ KINDS = {
 }
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
 UNITS = ("m", "km", "ft", "cm", "mm")
-_OVERWRITE = option("--overwrite", is_flag=True, help="replace files that are there")
-_PATH, _LENGTH = Place(), Reader(values.length)
+_OVERWRITE = flag("--overwrite", "replace files that are there")
+_COMMON = (  # of what makes scenes of fractures
+    Parameter("--scene", "BASE.nml", "scene that the fractures are added to", Path),
+    Parameter(
+        "--set",
+        "NAME=VALUE",
+        "entry of all fractures that do not say it, as friction=0.7",
+        many=True,
+    ),
+    Parameter("--cell", "SIZE", "cells at the fractures [m]", values.length),
+    Parameter("--margin", "D", "room around the fractures in the body [m]", values.length),
+    Parameter("--repair", "D", "repair what is nearer than this [m]", values.length),
+    Parameter(
+        "--near",
+        "D",
+        "list what is nearer than this [m] (default: D of --repair, or a fortieth of the median"
+        " length)",
+        values.length,
+    ),
+    Parameter(
+        "--angle",
+        "DEGREES",
+        "least angle between two fractures (default: 5; the solver needs 3)",
+        values.angle,
+        5.0,
+    ),
+    choice(
+        "--ends",
+        ("join", "gap"),
+        "repair of near ends: move them to a joint, or cut them back (default: join)",
+        "join",
+    ),
+    _OVERWRITE,
+)
 
 
 @command(
     "new",
     "wingcrack_scenes.cli:new",
+    Parameter("kind", "[KIND]", default="injection"),
+    Parameter("--out", "FILE", "the file to write (default: KIND.nml)", Path),
+    _OVERWRITE,
     about="kinds:\n"
     + "".join(f"  {kind:<11}{words}\n" for kind, words in KINDS.items())
     + "\nThe file is a whole scene with a comment on every name; it runs in seconds as it is.\n",
@@ -43,9 +68,6 @@ _PATH, _LENGTH = Place(), Reader(values.length)
 ./wingcrack run /tmp/mine.nml --out /tmp/mine
 """,
 )
-@argument("kind", metavar="[KIND]", required=False, default="injection")
-@option("--out", type=_PATH, metavar="FILE", help="the file to write (default: KIND.nml)")
-@_OVERWRITE
 def new(given: SimpleNamespace) -> None:
     """Write a commented scene to start from (KIND: injection)."""
     if given.kind not in KINDS:
@@ -54,64 +76,21 @@ def new(given: SimpleNamespace) -> None:
     _judge_out(given, is_new=True, also=())
 
 
-def _common(needs_out: bool) -> Callable[[Any], Any]:
-    """Options of what makes scenes of fractures."""
-    options = (
-        option(
-            "--out",
-            type=_PATH,
-            metavar="SCENE.nml",
-            required=needs_out,
-            help="the scene to write" + ("" if needs_out else " (default: MAP.nml)"),
-        ),
-        option(
-            "--scene", type=_PATH, metavar="BASE.nml", help="scene that the fractures are added to"
-        ),
-        option(
-            "--set",
-            multiple=True,
-            metavar="NAME=VALUE",
-            help="entry of all fractures that do not say it, as friction=0.7",
-        ),
-        option("--cell", type=_LENGTH, metavar="SIZE", help="cells at the fractures [m]"),
-        option(
-            "--margin", type=_LENGTH, metavar="D", help="room around the fractures in the body [m]"
-        ),
-        option("--repair", type=_LENGTH, metavar="D", help="repair what is nearer than this [m]"),
-        option(
-            "--near",
-            type=_LENGTH,
-            metavar="D",
-            help="list what is nearer than this [m] (default: D of --repair, or a fortieth of the"
-            " median length)",
-        ),
-        option(
-            "--angle",
-            type=Reader(values.angle),
-            default=5.0,
-            metavar="DEGREES",
-            help="least angle between two fractures; the solver needs 3",
-        ),
-        option(
-            "--ends",
-            type=Choice(("join", "gap")),
-            default="join",
-            help="repair of near ends: move them to a joint, or cut them back",
-        ),
-        _OVERWRITE,
-    )
-
-    def add(function: Any) -> Any:
-        for one in reversed(options):
-            function = one(function)
-        return function
-
-    return add
-
-
 @command(
     "import",
     "wingcrack_maps.cli:make_scene",
+    Parameter("map", "MAP", read=Path, required=True),
+    choice("--unit", UNITS, "unit of the map's coordinates"),
+    Parameter(
+        "--origin",
+        "X,Y",
+        "place of the map [m] that becomes (0, 0): X,Y, or centre or corner of the map",
+        values.origin,
+    ),
+    choice("--polygons", ("boundary", "region"), "what polygons are that do not say it"),
+    Parameter("--region", "REGION:NAME=VALUE", "entry of a region, as marl:young=5e9", many=True),
+    Parameter("--out", "SCENE.nml", "the scene to write (default: MAP.nml)", Path),
+    *_COMMON,
     about="""\
 The file's ending says what it is:
   .geojson .json  GeoJSON: lines are fractures; polygons by their property kind, boundary or region
@@ -132,26 +111,6 @@ The scene is written once `check` accepts it; otherwise nothing is, and the reas
 ./wingcrack run /tmp/outcrop.nml
 """,
 )
-@argument("map", metavar="MAP", type=_PATH)
-@option("--unit", type=Choice(UNITS), help="unit of the map's coordinates")
-@option(
-    "--origin",
-    type=Reader(values.origin),
-    metavar="X,Y",
-    help="place of the map [m] that becomes (0, 0): X,Y, or centre or corner of the map",
-)
-@option(
-    "--polygons",
-    type=Choice(("boundary", "region")),
-    help="what polygons are that do not say it",
-)
-@option(
-    "--region",
-    multiple=True,
-    metavar="REGION:NAME=VALUE",
-    help="entry of a region, as marl:young=5e9",
-)
-@_common(needs_out=False)
 def import_map(given: SimpleNamespace) -> None:
     """Make a scene of a fracture map, or add its fractures to one."""
     if given.map.is_dir():
@@ -170,6 +129,23 @@ def import_map(given: SimpleNamespace) -> None:
 @command(
     "network",
     "wingcrack_maps.cli:make_scene",
+    Parameter("--box", "X0,Y0,X1,Y1", "[m]", values.box, required=True),
+    Parameter("--density", "LAW", "how many", values.density, many=True, required=True),
+    Parameter("--length", "LAW", "how long [m]", values.lengths, many=True, required=True),
+    Parameter(
+        "--orientation", "LAW", "how they lie", values.orientations, many=True, required=True
+    ),
+    Parameter(
+        "--distance",
+        "D",
+        "least distance of two fractures [m], which then do not cross (default: none kept)",
+        values.length,
+        0.0,
+    ),
+    flag("--crossings", "fractures may cross, and only ends keep --distance from other fractures"),
+    Parameter("--seed", "N", "of the random numbers (default: 1)", values.whole(0), 1),
+    Parameter("--out", "SCENE.nml", "the scene to write", Path, required=True),
+    *_COMMON,
     about="""\
 Centres lie in the box, uniformly; fractures may reach beyond it, and the body has room around
 them. --density, --length and --orientation may be given several times: the k-th of each makes the
@@ -187,34 +163,6 @@ its place is drawn anew, so that the laws hold and only the places are no longer
     --orientation vonmises:30,10 --distance 1 --seed 7 --out /tmp/random.nml
 """,
 )
-@option("--box", required=True, type=Reader(values.box), metavar="X0,Y0,X1,Y1", help="[m]")
-@option(
-    "--density", required=True, multiple=True, type=Reader(values.density), metavar="LAW",
-    help="how many fractures",
-)  # fmt: skip
-@option(
-    "--length", required=True, multiple=True, type=Reader(values.lengths), metavar="LAW",
-    help="how long they are [m]",
-)  # fmt: skip
-@option(
-    "--orientation", required=True, multiple=True, type=Reader(values.orientations),
-    metavar="LAW", help="how they lie [degrees]",
-)  # fmt: skip
-@option(
-    "--distance",
-    type=_LENGTH,
-    default=0.0,
-    show_default="none kept",
-    metavar="D",
-    help="least distance of two fractures [m], which then do not cross",
-)
-@option(
-    "--crossings",
-    is_flag=True,
-    help="fractures may cross, and only ends keep --distance from other fractures",
-)
-@option("--seed", type=Reader(values.whole(0)), default=1, help="of the random numbers")
-@_common(needs_out=True)
 def network(given: SimpleNamespace) -> None:
     """Make a scene of a random fracture network, or add one to a scene."""
     if len({len(given.density), len(given.length), len(given.orientation)}) > 1:

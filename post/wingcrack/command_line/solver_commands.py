@@ -6,43 +6,35 @@ import os
 from pathlib import Path
 from types import SimpleNamespace
 
-from wingcrack.command_line.call import RefusedError
-from wingcrack.command_line.declaring import Place, Reader, UsageError, argument, command, option
-from wingcrack.command_line.values import whole
+from wingcrack.command_line.declaring import Parameter, RefusedError, UsageError, command, flag
+from wingcrack.command_line.values import place, whole
 
-_COUNT = Reader(whole(1, 9999))
+_SCENE = Parameter("scene", "SCENE.nml", read=place)
 
 
 @command(
     "run",
     "wingcrack.solving:run",
+    _SCENE,
+    Parameter("--out", "DIR", "for the results (default: out/NAME of the scene)", place),
+    Parameter("--threads", "N", "for windows side by side and loops (1)", whole(1, 9999), 1),
+    Parameter(
+        "--ranks",
+        "N",
+        "processes that share the matrices of a large body with a fluid, from 10,000 cells on (1);"
+        " the first call with more than one installs MPI, MUMPS for it and builds a second program"
+        " (docs/scale.md)",
+        whole(1, 9999),
+        1,
+    ),
+    flag("--quiet", "no progress on the terminal"),
+    flag("--no-plot", "no figures"),
     statuses="""\
 0 done; 1 the run failed (the reason is the last line on stderr and in run.json);
 2 bad input or usage (nothing is written); 3 the environment lacks something; 130 and 143
 interrupted by SIGINT and SIGTERM (the last good state is on disk).""",
-    example="""\
-./wingcrack run inputs/paper_c/onset.nml --out /tmp/onset --no-plot
-""",
+    example="./wingcrack run inputs/paper_c/onset.nml --out /tmp/onset --no-plot\n",
 )
-@argument("scene", metavar="SCENE.nml", required=False, type=Place(str))
-@option(
-    "--out",
-    type=Place(str),
-    metavar="DIR",
-    help="where the results go (default: out/NAME of the scene)",
-)
-@option("--threads", type=_COUNT, default=1, metavar="N", help="for windows side by side and loops")
-@option(
-    "--ranks",
-    type=_COUNT,
-    default=1,
-    metavar="N",
-    help="processes that share the matrices of a large body with a fluid, from 10,000 cells on;"
-    " the first call with more than one installs MPI, MUMPS for it and builds a second program"
-    " (docs/scale.md)",
-)
-@option("--quiet", is_flag=True, help="no progress on the terminal")
-@option("--no-plot", is_flag=True, help="no figures")
 def run(given: SimpleNamespace) -> None:
     """Run a scene and draw its figures."""
     if given.out == "":
@@ -55,11 +47,11 @@ def run(given: SimpleNamespace) -> None:
 @command(
     "check",
     "wingcrack.solving:check",
+    _SCENE,
     about="Prints what the scene has, what it leaves out and its estimated size. Writes nothing.\n",
     statuses="0 good; 1 the words cannot be written; 2 the scene is refused, or bad usage.",
     example="./wingcrack check inputs/paper_c/onset.nml\n",
 )
-@argument("scene", metavar="SCENE.nml", required=False, type=Place(str))
 def check(given: SimpleNamespace) -> None:
     """Read and validate a scene without running it."""
     _judge_scene(given)

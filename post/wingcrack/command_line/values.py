@@ -47,6 +47,11 @@ def each_of(names: Sequence[str]) -> Callable[[str], tuple[str, ...]]:
     return read
 
 
+def place(text: str) -> str:
+    """A file or folder as it is given."""
+    return text
+
+
 def absolute(text: str) -> Path:
     """A place that stays the same for programs that run in folders of their own."""
     return Path(text).resolve()

@@ -1,41 +1,83 @@
-"""Commands by Click, with the ends of their help as they are written."""
+"""Words understood by Click."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import click
-from click import Choice, UsageError, argument, option
 from click.shell_completion import CompletionItem
 
-from wingcrack.command_line.call import Call, is_here, load
+from wingcrack.command_line.declaring import Call, Command, Parameter, UsageError, load
+from wingcrack.command_line.values import absolute, place
 from wingcrack_post import __version__
 
-__all__ = [
-    "Choice",
-    "Command",
-    "Group",
-    "Place",
-    "Reader",
-    "UsageError",
-    "argument",
-    "command",
-    "option",
-]
-
-_SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100, "show_default": True}
+_SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+_ASKING = "_WINGCRACK_COMPLETE"  # set where a shell asks how words could be completed
 
 
-class Reader(click.ParamType[Any]):
-    """A value that a function reads from text, or refuses by a ValueError."""
+def understand(words: list[str], places: Mapping[str, str], title: str, epilog: str) -> Call | None:
+    """Give what the words ask for, or None where that was help."""
+    called = "wingcrack" if _ASKING in os.environ else "./wingcrack"
+    group = _Group(places, help=title, epilog=epilog, context_settings=_SETTINGS)
+    try:
+        asked = group.main(words, called, _ASKING, standalone_mode=False)
+    except click.UsageError as reason:
+        raise UsageError(reason.format_message()) from None
+    return asked if isinstance(asked, Call) else None
 
+
+class _AsWritten(click.Command):
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        formatter.write(f"\n{self.epilog}")
+
+
+class _Group(_AsWritten, click.Group):
+    """Commands by name, each with its place, from where it is imported when it is named."""
+
+    def __init__(self, places: Mapping[str, str], **words: Any) -> None:
+        super().__init__(no_args_is_help=False, **words)
+        self._places = places
+        click.version_option(__version__, message="wingcrack %(version)s")(self)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self._places:
+            return None
+        declared: Command = load(self._places[cmd_name])
+        if not declared.is_here:
+            return None
+        return _AsWritten(
+            cmd_name,
+            params=[_parameter(one) for one in declared.parameters],
+            callback=declared.call,
+            help=declared.title,
+            epilog=declared.epilog,
+            context_settings=_SETTINGS,
+        )
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return [name for name in self._places if self.get_command(ctx, name)]
+
+
+def _parameter(one: Parameter) -> click.Parameter:
+    kind = click.Choice(one.choices) if one.choices else _Value(one)
+    words: dict[str, Any] = {"required": one.required, "metavar": one.metavar or None}
+    if one.default is not None:
+        words["default"] = one.default
+    if not one.name.startswith("--"):
+        return click.Argument([one.name], type=kind, nargs=-1 if one.many else 1, **words)
+    if one.is_flag:
+        return click.Option([one.name], is_flag=True, help=one.help, **words)
+    return click.Option([one.name], type=kind, multiple=one.many, help=one.help, **words)
+
+
+class _Value(click.ParamType[Any]):
     name = "value"
 
-    def __init__(self, read: Callable[[str], Any]) -> None:
-        self._read = read
+    def __init__(self, one: Parameter) -> None:
+        self._read = one.read
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Read what was given as text; a default is taken as it is."""
@@ -46,63 +88,9 @@ class Reader(click.ParamType[Any]):
         except ValueError as reason:
             self.fail(str(reason), param, ctx)
 
-
-class Place(Reader):
-    """A file or a folder."""
-
-    def __init__(self, read: Callable[[str], Any] = Path) -> None:
-        super().__init__(read)
-
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """Let the shell offer files."""
-        return [CompletionItem(incomplete, type="file")]
-
-
-class _AsWritten(click.Command):
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write it line by line."""
-        formatter.write(f"\n{self.epilog}")
-
-
-class Command(_AsWritten):
-    """A command that tells what does it."""
-
-    does = ""
-
-
-def command(name: str, callback: Callable[..., Call], does: str, epilog: str) -> Command:
-    """Make a command of a callback with its arguments and options."""
-    made = click.command(name, Command, epilog=epilog, context_settings=_SETTINGS)(callback)
-    made.does = does
-    return made
-
-
-class Group(_AsWritten, click.Group):
-    """Commands by name, each with its place, from where it is imported when it is named."""
-
-    def __init__(self, places: Mapping[str, str], title: str, epilog: str) -> None:
-        super().__init__(
-            help=title, epilog=epilog, context_settings=_SETTINGS, no_args_is_help=False
-        )
-        click.version_option(__version__, message="wingcrack %(version)s")(self)
-        self.places = places
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command, if what does it is here."""
-        if cmd_name not in self.places:
-            return None
-        found: Command = load(self.places[cmd_name])
-        return found if is_here(found.does) else None
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Those that are here, in the order of the help."""
-        return [name for name in self.places if self.get_command(ctx, name)]
-
-    def understand(self, words: list[str]) -> Call | None:
-        """Give what the words ask for, or None where that was help."""
-        asking = "_WINGCRACK_COMPLETE"  # set where a shell asks how words could be completed
-        called = "wingcrack" if asking in os.environ else "./wingcrack"
-        asked = self.main(words, called, asking, standalone_mode=False)
-        return asked if isinstance(asked, Call) else None
+        """Let the shell offer files where one is meant."""
+        is_place = self._read in (Path, absolute, place)
+        return [CompletionItem(incomplete, type="file")] if is_place else []
