@@ -114,7 +114,8 @@ def _call(
         else:
             process.send_signal(sent[number])
 
-    before = {number: signal.signal(number, forward) for number in sent}
+    heeded = [number for number in sent if signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, forward) for number in heeded}
     try:
         process = subprocess.Popen(
             words,

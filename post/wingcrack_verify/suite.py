@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack_verify import case_folders
 from wingcrack_verify.case import Case, Run, read_case
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome
-from wingcrack_verify.folders import case_folders
 from wingcrack_verify.groups import UNREADABLE
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of
 from wingcrack_verify.stability import (

@@ -93,7 +93,7 @@ class Command:
         """Whether what does it is installed: not everywhere are all packages, and the tools."""
         if not self.does:
             return (TOP / "tools" / "lint.sh").is_file()
-        return find_spec(self.does.partition(".")[0]) is not None
+        return find_spec(self.does.partition(":")[0].rpartition(".")[0]) is not None
 
     def call(self, **values: Any) -> Call:
         """Judge the values together; give what they ask for."""

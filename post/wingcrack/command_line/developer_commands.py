@@ -6,9 +6,9 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wingcrack.command_line.declaring import TOP, Parameter, UsageError, command, flag, load
-from wingcrack.command_line.values import absolute, port, whole
+from wingcrack.command_line.values import absolute, whole
 
-_RELEASE = TOP / "build" / "release"
+_SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 _NAMES = Parameter("names", "[NAME...]", many=True)
 
 
@@ -42,7 +42,7 @@ earlier call is not run again.
 )
 def verify(given: SimpleNamespace) -> None:
     """Verification cases: errors, orders, run times, stability."""
-    there = load("wingcrack_verify.folders:case_folders")(given.cases)
+    there = load("wingcrack_verify:case_folders")(given.cases)
     for name in given.names:
         if name not in there:
             known = ", ".join(sorted(there)) or "none"
@@ -61,13 +61,7 @@ def verify(given: SimpleNamespace) -> None:
     flag("--store", "keep the counts to compare with"),
     Parameter("--against", "SOLVER", "another build of the solver to pair with", Path),
     Parameter("--out", "DIR", "for bench.json (default: out/bench)", Path, Path("out/bench")),
-    Parameter(
-        "--solver",
-        "SOLVER",
-        "the solver that is measured",
-        Path,
-        _RELEASE / "fortran" / "app" / "wingcrack-solver",
-    ),
+    Parameter("--solver", "SOLVER", "the solver that is measured", Path, _SOLVER),
     Parameter(
         "--baseline", "FILE", "the stored counts", Path, TOP / "tools" / "bench_baseline.json"
     ),
@@ -116,7 +110,7 @@ def bench(given: SimpleNamespace) -> None:
     "docs",
     "wingcrack_docs.cli:docs",
     flag("--serve", "show it to this machine's browsers until ctrl-C"),
-    Parameter("--port", "N", "of --serve (default: 8000)", port, 8000),
+    Parameter("--port", "N", "of --serve (default: 8000)", whole(1, 65535), 8000),
     flag("--no-fortran", "without the Fortran modules"),
     flag("--pictures", "make gallery and pictures anew, no site"),
     Parameter("--out", "DIR", "where the site goes (default: build/site)", Path),

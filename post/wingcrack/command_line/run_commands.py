@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wingcrack.command_line.declaring import TOP, Parameter, UsageError, choice, command, flag
-from wingcrack.command_line.values import absolute, each_of, port, whole
+from wingcrack.command_line.values import absolute, each_of, whole
 from wingcrack_post.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
 from wingcrack_post.durations import parse_times
 
@@ -77,7 +77,7 @@ def plot(given: SimpleNamespace) -> None:
     "view",
     "wingcrack_view.cli:view",
     Parameter("directory", "DIR", read=Path),
-    Parameter("--port", "N", "port of the page (default: a free one)", port, 0),
+    Parameter("--port", "N", "port of the page (default: a free one)", whole(1, 65535), 0),
     flag("--no-browser", "only print the address, open no browser"),
     about="""\
 The page shows a field of the rock in every written state, the fractures by state, the wells, and

@@ -26,14 +26,6 @@ def whole(least: int, most: int | None = None) -> Callable[[str], int]:
     return read
 
 
-def port(text: str) -> int:
-    """Number of a port."""
-    try:
-        return whole(1, 65535)(text)
-    except ValueError:
-        raise ValueError(f"'{text}' is no port, a whole number from 1 to 65535") from None
-
-
 def each_of(names: Sequence[str]) -> Callable[[str], tuple[str, ...]]:
     """Names out of several, with commas."""
 

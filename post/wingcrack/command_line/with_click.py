@@ -73,7 +73,7 @@ def _parameter(one: Parameter) -> click.Parameter:
     return click.Option([one.name], type=kind, multiple=one.many, help=one.help, **words)
 
 
-class _Value(click.ParamType[Any]):
+class _Value(click.ParamType):  # type: ignore[type-arg]  # which older ones do not take
     name = "value"
 
     def __init__(self, one: Parameter) -> None:
