@@ -159,8 +159,8 @@ def test_the_site_is_shown_to_this_machine_only(
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (["--port", "0"], "'0' is no number from 1 to 65535"),
-        (["--port", "x"], "'x' is no number from 1 to 65535"),
+        (["--port", "0"], "'0' is no whole number from 1 to 65535"),
+        (["--port", "x"], "'x' is no whole number from 1 to 65535"),
         (["--pictures", "--serve"], "do not go with it"),
         (["--nothing"], "no such option '--nothing'"),
         (["--out", __file__], "it is no folder"),

@@ -163,7 +163,7 @@ class Results:
         return found
 
     @property
-    def scene_file(self) -> Path:
+    def _scene_file(self) -> Path:
         """The file of the scene as understood, every default written out.
 
         Raises
@@ -251,6 +251,6 @@ class Results:
 
     def _named(self) -> str:
         try:
-            return str(SceneFile.read(self.scene_file)["scene.name"])
+            return str(SceneFile.read(self._scene_file)["scene.name"])
         except (AbsentError, SceneError):
             return self.directory.resolve().name

@@ -72,7 +72,7 @@ class Run(Results):
         AbsentError
             If the run has written none.
         """
-        return Scene.read(self.scene_file)
+        return Scene.read(self._scene_file)
 
     # Figures
 
@@ -275,13 +275,13 @@ class Scene(SceneFile):
         if threads < 1:
             raise SceneError(f"threads must be at least 1, not {threads}")
         with tempfile.TemporaryDirectory() as folder:
-            file = self.aside(folder)
+            file = self._file(folder)
             words = [str(solver()), "run", str(file), "--out", str(out)]
             status, said = _supervised([*words, "--quiet"] if quiet else words, threads)
             if status == _BAD_INPUT:
-                raise SceneError(self.reason(said, file))
+                raise SceneError(self._said(said, file))
             if status != 0:
-                reason = self.reason(said, file).splitlines()[-1]
+                reason = self._said(said, file).splitlines()[-1]
                 raise RunFailedError(reason, Path(out), status)
         return open_run(out)
 

@@ -156,21 +156,19 @@ class SceneFile:
             If it is refused, with the reason. Lines count in what `text` gives.
         """
         with tempfile.TemporaryDirectory() as folder:
-            file = self.aside(folder)
+            file = self._file(folder)
             done = subprocess.run(
                 [solver(), "check", file], capture_output=True, text=True, check=False
             )
             if done.returncode != 0:
-                raise SceneError(self.reason(done.stderr, file))
+                raise SceneError(self._said(done.stderr, file))
             return done.stdout
 
-    def aside(self, folder: str) -> Path:
-        """Write it into another folder, for the solver."""
+    def _file(self, folder: str) -> Path:
         stem = self.path.stem or "scene"
         return self.write(Path(folder) / f"{stem}.nml")
 
-    def reason(self, text: str, file: Path) -> str:
-        """What the solver said of the file that lies aside."""
+    def _said(self, text: str, file: Path) -> str:
         said = text.strip() or "the solver gave no reason"
         return said.replace(str(file), str(self.path))
 
