@@ -22,7 +22,7 @@ endif()
 configure_file(cmake/installed/build.sh.in ${PROJECT_BINARY_DIR}/installed/build.sh @ONLY)
 install(PROGRAMS wingcrack DESTINATION ${home})
 install(
-  FILES cmake/installed/setup.sh ${PROJECT_BINARY_DIR}/installed/build.sh tools/programs.sh tools/start.py
+  FILES cmake/installed/setup.sh ${PROJECT_BINARY_DIR}/installed/build.sh tools/start.py
   DESTINATION ${home}/tools
 )
 install(

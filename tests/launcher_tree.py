@@ -47,6 +47,7 @@ if [[ $1 == ranks ]]; then
     grep -q '^# no fluid' "$2" && { echo 'it has no fluid' >&2; exit 2; }
     exit 0
 fi
+[[ $1 == run ]] && mkdir -p "$4"
 printf 'solver %s\\n' "$*"
 printf 'threads %s\\n' "$OPENBLAS_NUM_THREADS"
 if [[ $OMP_NUM_THREADS != "$OPENBLAS_NUM_THREADS" ]]; then
@@ -59,6 +60,13 @@ _POST = """\
 import os
 import sys
 
+
+def do(given):
+    print("post", *sys.argv[1:])
+    return int(os.environ.get("POST_STATUS", "0"))
+
+
+plot = view = study = verify = bench = new = make_scene = do
 module = os.environ.get("POST_IMPORTS")
 if module:
     __import__(module)
@@ -67,8 +75,6 @@ if os.environ.get("POST_WAITS_FOR"):
     pathlib.Path("post started").touch()
     while not os.path.exists(os.environ["POST_WAITS_FOR"]):
         time.sleep(0.02)
-print("post", *sys.argv[1:])
-sys.exit(int(os.environ.get("POST_STATUS", "0")))
 """
 
 PACKAGES = """\
@@ -165,7 +171,8 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
-    # The real packages understand their arguments; what they do with them is replaced.
+    # The real command line understands the arguments; what is done with them is replaced.
+    shutil.copytree(TOP / "post" / "wingcrack", root / "post" / "wingcrack")
     for package in (
         "wingcrack_post",
         "wingcrack_view",
@@ -176,7 +183,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
         "wingcrack_maps",
     ):
         shutil.copytree(TOP / "post" / package, root / "post" / package)
-        (root / "post" / package / "__main__.py").write_text(_POST)
+        (root / "post" / package / "cli.py").write_text(_POST)
     place = folder / "place"
     place.mkdir()
     return Tree(root, place)

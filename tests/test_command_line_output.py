@@ -10,20 +10,11 @@ from pathlib import Path
 import pytest
 
 START = Path(__file__).resolve().parent.parent / "tools" / "start.py"
-CALLS = {
-    "wingcrack_post": ["plot", "--help"],
-    "wingcrack_view": ["--help"],
-    "wingcrack_study": ["--help"],
-    "wingcrack_scenes": ["new", "--help"],
-    "wingcrack_maps": ["import", "--help"],
-    "wingcrack_verify": ["--help"],
-    "wingcrack_bench": ["--help"],
-    "wingcrack_docs": ["--help"],
-}
+COMMANDS = ("run", "plot", "view", "study", "new", "import", "verify", "bench", "docs")
 
 
 def start(place: Path, *arguments: str | bytes, out: int, error: int) -> tuple[int, str]:
-    """Give exit status and stderr of a package that is started as the launcher does it."""
+    """Give exit status and stderr of a command that is started as the launcher does it."""
     done = subprocess.run(
         [sys.executable, "-I", START, *arguments],
         cwd=place,
@@ -43,24 +34,24 @@ def unread_pipe() -> int:
     return writing
 
 
-@pytest.mark.parametrize("package", CALLS)
-def test_a_pipe_that_nobody_reads_ends_a_call_quietly(tmp_path: Path, package: str) -> None:
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_pipe_that_nobody_reads_ends_a_call_quietly(tmp_path: Path, command: str) -> None:
     out = unread_pipe()
-    called = start(tmp_path, package, *CALLS[package], out=out, error=subprocess.PIPE)
+    called = start(tmp_path, command, "--help", out=out, error=subprocess.PIPE)
     os.close(out)
     assert called == (141, "")
 
 
 def test_an_error_that_nobody_reads_ends_a_call_quietly(tmp_path: Path) -> None:
     error = unread_pipe()
-    called = start(tmp_path, "wingcrack_view", "nowhere", out=subprocess.DEVNULL, error=error)
+    called = start(tmp_path, "view", "nowhere", out=subprocess.DEVNULL, error=error)
     os.close(error)
     assert called == (141, "")
 
 
 def test_a_full_disk_is_told(tmp_path: Path) -> None:
     with Path("/dev/full").open("wb") as full:
-        arguments = ["wingcrack_maps", "import", "--help"]
+        arguments = ["import", "--help"]
         status, said = start(tmp_path, *arguments, out=full.fileno(), error=subprocess.PIPE)
     reason = "wingcrack: the output cannot be written: No space left on device\n"
     assert (status, said) == (1, reason)
@@ -69,7 +60,7 @@ def test_a_full_disk_is_told(tmp_path: Path) -> None:
 def test_an_argument_that_is_no_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / os.fsdecode(b"\xff.csv")).write_text("x1,y1,x2,y2\n0,0,1,1\n")
     before = sorted(tmp_path.iterdir())
-    arguments = ("wingcrack_maps", "import", b"\xff.csv")
+    arguments = ("import", b"\xff.csv")
     status, said = start(tmp_path, *arguments, out=subprocess.DEVNULL, error=subprocess.PIPE)
     assert (status, said) == (2, "wingcrack: the argument '\\udcff.csv' is not UTF-8 text\n")
     assert sorted(tmp_path.iterdir()) == before

@@ -158,9 +158,11 @@ def test_a_library_that_is_gone_is_named(own_tree: Tree) -> None:
 
 
 def test_fonts_are_listed_beside_the_environment(ready_tree: Tree) -> None:
-    package = ready_tree.root / "post" / "wingcrack_post" / "__main__.py"
+    package = ready_tree.root / "post" / "wingcrack_post" / "cli.py"
     stand_in = package.read_text()
-    package.write_text("import os\nprint(os.environ['MPLCONFIGDIR'])\n")
+    package.write_text(
+        "import os\ndef plot(_given):\n    print(os.environ['MPLCONFIGDIR'])\n    return 0\n"
+    )
     try:
         done = ready_tree.call("plot", ".", MPLCONFIGDIR="/somewhere/stale")
     finally:

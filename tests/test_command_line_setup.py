@@ -317,7 +317,7 @@ def test_packages_are_added_while_others_are_in_use(own_tree: Tree, tmp_path: Pa
     with drawing(own_tree):
         variables = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(tmp_path)}
         done = own_tree.call("study", "s.toml", **variables)
-        assert (done.returncode, done.stdout) == (0, "post s.toml\n"), done.stderr
+        assert (done.returncode, done.stdout) == (0, "post study s.toml\n"), done.stderr
         assert "waiting" not in done.stderr
 
 

@@ -8,6 +8,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from fnmatch import fnmatch
+from graphlib import TopologicalSorter
 from importlib.metadata import packages_distributions
 from typing import Any
 
@@ -90,6 +91,26 @@ def test_requirements_hold_all_that_is_imported() -> None:
     lines = [line for path in lists for line in path.read_text("utf-8").splitlines()]
     foreign = {name: path for name, path in imported(OWN).items() if name not in OWN}
     assert undeclared(foreign, lines) == {}
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    modules = {
+        ".".join(path.relative_to(POST).with_suffix("").parts): path
+        for path in POST.glob("wingcrack*/**/*.py")
+        if path.name != "__init__.py"
+    }
+    graph = {
+        name: [
+            found
+            for node in ast.walk(ast.parse(path.read_text("utf-8")))
+            if isinstance(node, ast.ImportFrom)
+            for found in (node.module, *(f"{node.module}.{one.name}" for one in node.names))
+            if found in modules
+        ]
+        for name, path in modules.items()
+    }
+    assert sum(map(len, graph.values())) > 300
+    TopologicalSorter(graph).prepare()  # or CycleError, which names them
 
 
 def test_an_import_that_is_not_declared_is_found() -> None:

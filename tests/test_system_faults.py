@@ -279,4 +279,4 @@ def test_a_description_that_cannot_be_written_is_a_failure(tmp_path: Path) -> No
             check=False,
         )
     assert done.returncode == 1
-    assert "the disk may be full" in done.stderr
+    assert "the output cannot be written: No space left on device" in done.stderr

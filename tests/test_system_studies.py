@@ -37,7 +37,7 @@ take = "last"
 
 def study(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "wingcrack_study", *arguments, "--build", SOLVER.parents[2]],
+        [sys.executable, "-m", "wingcrack", "study", *arguments, "--build", SOLVER.parents[2]],
         env=os.environ | {"PYTHONPATH": str(TOP / "post")},
         stdin=subprocess.DEVNULL,
         capture_output=True,

@@ -24,6 +24,7 @@ prepare() {
     if ((${#missing_packages[@]} == 0)) && python_is_ready; then
         if [[ -z $target ]] || build_is_current release "$target"; then return; fi
     fi
+    understand
     with_lock set_up
     if [[ -n $target ]]; then with_lock build release "$target"; fi
 }
@@ -109,8 +110,9 @@ users_of() {
         for file in "$process"/fd/*; do
             if [[ ! $file -ef $1 ]]; then continue; fi
             mapfile -d '' -t words <"$process/cmdline"
-            if [[ ${words[1]:-} == */wingcrack ]]; then
-                calls+="; wingcrack ${words[*]:2} (process ${process##*/})"
+            if [[ ${words[1]:-} == */wingcrack ]]; then words=(- "${words[@]}"); fi
+            if [[ ${words[2]:-} == */wingcrack || ${words[2]:-} == */tools/start.py ]]; then
+                calls+="; wingcrack ${words[*]:3} (process ${process##*/})"
             else
                 others+="; ${words[*]} (process ${process##*/})"
             fi

@@ -69,7 +69,7 @@ run_ctest() {
 run_pytest() { "$venv_python" -P -m pytest "$@"; }
 
 run_quick_bench() {
-    "$venv_python" -I "$root/tools/start.py" wingcrack_bench --quick --out "$root/build/bench"
+    "$venv_python" -I "$root/tools/start.py" bench --quick --out "$root/build/bench"
 }
 
 # joined SEPARATOR WORD...

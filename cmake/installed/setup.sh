@@ -8,10 +8,11 @@ readonly venv=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/wingcrack
 readonly venv_python=${WINGCRACK_PYTHON:-$(command -v python3)}
 readonly share=$root/../../share/wingcrack
 
-needed_modules=(matplotlib numpy pandas)
+needed_modules=(click matplotlib numpy pandas)
 needed_list=requirements.txt
 
 case ${1:-} in
+    run | check) needed_modules=() ;; # and figures say themselves what they lack
     verify | bench | test | build | format | lint | docs)
         fail "$exit_usage" "$1 needs the folder of the sources; installed are run, check, plot," \
             'view, new, import, network and study'

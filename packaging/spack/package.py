@@ -28,6 +28,7 @@ class Wingcrack(CMakePackage):
     depends_on("py-numpy@2:", type="run")
     depends_on("py-matplotlib@3.9:", type="run")
     depends_on("py-pandas", type="run")
+    depends_on("py-click@8.1:", type="run")
     depends_on("py-f90nml", type="run")
 
     generator("ninja")

@@ -25,9 +25,9 @@ import pytest
 
 import wingcrack
 from synthetic_run import HOUR, STEPS, fracture_cells, times, well_pressure
+from wingcrack.command_line import main
 from wingcrack.fields import read_fields
 from wingcrack_view import content
-from wingcrack_view.cli import main
 from wingcrack_view.content import Content
 from wingcrack_view.server import serve
 
@@ -297,7 +297,7 @@ def test_a_damaged_file_is_named_until_it_is_whole_again(own_run: Path) -> None:
 
 def test_ctrl_c_ends_it_with_its_status(wet_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with subprocess.Popen(
-        [sys.executable, "-m", "wingcrack_view", str(wet_run), "--no-browser"],
+        [sys.executable, "-m", "wingcrack", "view", str(wet_run), "--no-browser"],
         cwd=POST,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -313,7 +313,7 @@ def test_ctrl_c_ends_it_with_its_status(wet_run: Path, capsys: pytest.CaptureFix
         )
         assert found is not None, line
         assert Page(int(found[1])).get("/")[0] == 200
-        assert main([str(wet_run), "--port", found[1], "--no-browser"]) == 2
+        assert main(["view", str(wet_run), "--port", found[1], "--no-browser"]) == 2
         why = capsys.readouterr().err
         assert f"port {found[1]} cannot be had (Address already in use)" in why
         process.send_signal(signal.SIGINT)
@@ -335,7 +335,7 @@ def test_a_folder_without_what_it_shows_is_refused(
 ) -> None:
     for path in list(own_run.glob(take)):
         path.unlink()
-    assert main([str(own_run)]) == 2
+    assert main(["view", str(own_run)]) == 2
     out, error = capsys.readouterr()
     assert out == ""
     assert error.startswith("wingcrack view: ")
@@ -352,7 +352,7 @@ def test_a_browser_opens_where_there_is_a_display(
     monkeypatch.setattr("wingcrack_view.server.serve", lambda *_: _Ended())
     monkeypatch.setenv("DISPLAY", display)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    assert main([str(wet_run)]) == 0
+    assert main(["view", str(wet_run)]) == 0
     assert addresses == opened
 
 

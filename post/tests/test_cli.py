@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 from matplotlib.image import imread
 
+from wingcrack.command_line import main
 from wingcrack_post import style
-from wingcrack_post.cli import main
 from wingcrack_post.figures import Outcome
 from wingcrack_post.read import Run
 
@@ -222,15 +222,15 @@ def test_missing_directory() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "the following arguments are required: plot"),
-        (["plot"], "the following arguments are required: DIR"),
+        ([], "missing command"),
+        (["plot"], "plot needs the directory of a run"),
         (
             ["plot", "d", "--only", "map"],
             "'map' is none of summary, story, network, maps, fractures, tips, wells, probes, view,",
         ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),
-        (["plot", "d", "--color"], "unrecognized arguments: --color"),
+        (["plot", "d", "--color"], "no such option '--color'"),
     ],
 )
 def test_wrong_use_is_one_sentence_and_status_2(
@@ -252,7 +252,7 @@ def test_help_has_an_example() -> None:
 
 def test_figure_libraries_are_loaded_only_when_needed() -> None:
     code = (
-        "import sys, wingcrack_post, wingcrack_post.cli\n"
+        "import sys, wingcrack.command_line, wingcrack_post.cli\n"
         "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
         "import wingcrack_post.figures\n"
         "assert not {'pyvista', 'vtk', 'matplotlib.pyplot'} & set(sys.modules)\n"
@@ -265,7 +265,7 @@ def test_figure_libraries_are_loaded_only_when_needed() -> None:
 
 def _called(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "wingcrack_post", *arguments],
+        [sys.executable, "-m", "wingcrack", *arguments],
         cwd=POST,
         capture_output=True,
         text=True,

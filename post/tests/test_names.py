@@ -11,9 +11,9 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from wingcrack.command_line import main
 from wingcrack_post import figures, profiles
 from wingcrack_post import foremost as foremost_module
-from wingcrack_post.cli import main
 from wingcrack_post.foremost import MOST, foremost
 from wingcrack_post.growth import Growth
 from wingcrack_post.names import Names, _candidates

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from synthetic_run import LENGTH, STEPS, polyline, times, wing_length
+from wingcrack.command_line import main
 from wingcrack_post import AbsentError, read_run
-from wingcrack_post.cli import main
 from wingcrack_post.story import story
 
 TITLES = [

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from wingcrack.command_line import main
 from wingcrack_post import read_run
-from wingcrack_post.cli import main
 from wingcrack_post.facts import gather_facts
 from wingcrack_post.loading import read_loading
 from wingcrack_post.page import write_page

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from wingcrack.command_line import main
 from wingcrack_post import unchanged
-from wingcrack_post.cli import main
 
 POST = Path(__file__).resolve().parents[1]
 ALL = ["probes", "view"]
@@ -55,7 +55,7 @@ def test_what_was_left_out_is_told_again(
 def test_it_takes_no_library_to_see_that_nothing_changed(drawn_run: Path) -> None:
     code = (
         "import sys\n"
-        "from wingcrack_post.cli import main\n"
+        "from wingcrack.command_line import main\n"
         "assert main(['plot', sys.argv[1], '--only', 'probes,view', '--quiet']) == 0\n"
         "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
     )

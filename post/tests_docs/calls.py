@@ -6,10 +6,10 @@ import os
 import re
 import subprocess
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 from documents import TOP
+from wingcrack import command_line
 from wingcrack_scenes.solver import SOLVER
 
 # What stands for something of the reader's own, and what is put in its place.
@@ -25,17 +25,6 @@ STAND_INS = {
     "FILE": "named.nml",
     "N": "2",
     "OTHER_SOLVER": str(SOLVER),
-}
-PACKAGES = {
-    "plot": ("wingcrack_post", True),
-    "view": ("wingcrack_view", False),
-    "study": ("wingcrack_study", False),
-    "new": ("wingcrack_scenes", True),
-    "import": ("wingcrack_maps", True),
-    "network": ("wingcrack_maps", True),
-    "verify": ("wingcrack_verify", False),
-    "bench": ("wingcrack_bench", False),
-    "docs": ("wingcrack_docs", False),
 }
 # Runs that take a second or two; of other scenes only what they say is checked.
 CHEAP = ("mine.nml",)
@@ -94,16 +83,14 @@ def _without_value(words: list[str], option: str) -> list[str]:
 def understand(words: list[str]) -> None:
     """Fail unless the launcher understands a call, which is not made; from the folder it is for."""
     command, *rest = words
-    assert re.search(rf"^  \./wingcrack {command}\b", help_of(), re.MULTILINE), command
-    if command in PACKAGES:
-        package, named = PACKAGES[command]
-        arguments = [command, *rest] if named else rest
-        if command in ("new", "import", "network"):
-            arguments.append("--overwrite")  # pages make the same files
-        import_module(f"{package}.arguments").parse(arguments)
-        return
-    for option in (word for word in rest if word.startswith("-")):
-        assert option.partition("=")[0] in help_of(command), f"{command} has no {option}"
+    assert re.search(rf"^  {command}\b", help_of(), re.MULTILINE), command
+    if command == "run" and rest:
+        for option in (word for word in rest if word.startswith("-")):
+            assert option.partition("=")[0] in help_of(command), f"{command} has no {option}"
+    elif rest or command not in ("run", "check"):
+        # pages make the same files
+        overwrite = ["--overwrite"] if command in ("new", "import", "network") else []
+        command_line.understand([*words, *overwrite])
     if command == "test":
         for name in rest:
             assert name in _names_of_tests(), f"no test has '{name}' in its name"
@@ -132,4 +119,4 @@ def understand_other(words: list[str]) -> None:
         assert "wingcrack" in " ".join(rest) or rest[0] == "run"
     else:
         known = (".venv/bin/python", ".venv/bin/pip", "python3", "/opt/wingcrack/venv/bin/pip")
-        assert program in known or program == "export", f"what is {program}?"
+        assert program in known or program in ("export", "eval"), f"what is {program}?"

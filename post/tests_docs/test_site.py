@@ -12,7 +12,8 @@ from urllib.parse import unquote
 
 import pytest
 
-from wingcrack_docs import arguments, cli, fortran, site
+from wingcrack.command_line import main, understand
+from wingcrack_docs import fortran, site
 from wingcrack_docs.errors import PagesError, SiteError
 from wingcrack_docs.links import is_elsewhere
 from wingcrack_docs.places import DOCS, SITE
@@ -104,7 +105,7 @@ def test_a_warning_of_mkdocs_is_a_failure(
     monkeypatch.setattr(site, "CONFIGURATION", tmp_path / "mkdocs.yml")
     with pytest.raises(SiteError, match="1 warnings in strict mode"):
         site.build_site(tmp_path / "out", fortran=False)
-    assert cli.main(["--no-fortran", "--out", str(tmp_path / "out")]) == 1
+    assert main(["docs", "--no-fortran", "--out", str(tmp_path / "out")]) == 1
     assert "wingcrack docs: the site was not built" in capsys.readouterr().err
 
 
@@ -158,10 +159,10 @@ def test_the_site_is_shown_to_this_machine_only(
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (["--port", "0"], "'0' is no number from 1 to 65535"),
-        (["--port", "x"], "'x' is no number from 1 to 65535"),
+        (["--port", "0"], "'0' is no whole number from 1 to 65535"),
+        (["--port", "x"], "'x' is no whole number from 1 to 65535"),
         (["--pictures", "--serve"], "do not go with it"),
-        (["--nothing"], "unrecognized arguments: --nothing"),
+        (["--nothing"], "no such option '--nothing'"),
         (["--out", __file__], "it is no folder"),
     ],
 )
@@ -169,7 +170,7 @@ def test_what_is_not_understood_is_refused(
     words: list[str], reason: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
-        arguments.parse(words)
+        understand(["docs", *words])
     assert ended.value.code == 2
     assert reason in capsys.readouterr().err
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import f90nml
 import pytest
 
-from wingcrack_maps.cli import main
+from wingcrack.command_line import main
 from wingcrack_scenes.solver import SOLVER
 
 TOP = Path(__file__).resolve().parents[2]

@@ -112,7 +112,7 @@ def test_what_lies_beside_a_mesh_is_not_executed(tmp_path: Path) -> None:
     (tmp_path / "m.msh").write_text(MESH)
     (tmp_path / "m.msh.opt").write_text("CreateDir 'x';\nSystemCall 'touch y';\n")
     done = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "wingcrack_maps", "import", "m.msh"],
+        [sys.executable, "-X", "importtime", "-m", "wingcrack", "import", "m.msh"],
         cwd=tmp_path,
         env={"PYTHONPATH": str(POST)},
         capture_output=True,

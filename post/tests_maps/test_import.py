@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from map_calls import OUTCROP, area, feature, fractures, geojson, imported, needs_solver, rows
-from wingcrack_maps.cli import main
+from wingcrack.command_line import main
 from wingcrack_maps.features import Line, Map
 from wingcrack_maps.read import read_map
 from wingcrack_maps.units import could_be_degrees, in_degrees

@@ -28,7 +28,7 @@ def test_a_signal_ends_an_import_and_nothing_is_written(
     rows = [f"{x},{y},{x + 3.0},{y + 3.01}" for x in range(60) for y in range(40)]
     (tmp_path / "m.csv").write_text("x1,y1,x2,y2\n" + "\n".join(rows) + "\n")
     process = subprocess.Popen(
-        [sys.executable, "-m", "wingcrack_maps", "import", "m.csv", "--repair", "0.5"],
+        [sys.executable, "-m", "wingcrack", "import", "m.csv", "--repair", "0.5"],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(TOP / "post")},
         stdout=subprocess.DEVNULL,

@@ -9,8 +9,8 @@ import f90nml
 import pytest
 
 from map_calls import TOP, needs_solver
-from wingcrack_scenes.arguments import KINDS
-from wingcrack_scenes.cli import main
+from wingcrack.command_line import main
+from wingcrack.command_line.scene_commands import KINDS
 from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.namelist import Value, group_text
 from wingcrack_scenes.new import KINDS as FOLDER

@@ -11,7 +11,7 @@ import shapely
 from shapely.geometry import LineString
 
 from map_calls import fractures, needs_solver, rows
-from wingcrack_maps.cli import main
+from wingcrack.command_line import main
 from wingcrack_maps.random_network import Set, draw_angles, draw_lengths, random_network
 from wingcrack_scenes.errors import SceneError
 

@@ -131,8 +131,8 @@ class SmallStudy:
 
     def command(self, *arguments: str) -> list[str]:
         """Words of a call."""
-        call = [sys.executable, "-m", "wingcrack_study", str(self.file), "--out", str(self.out)]
-        return [*call, "--build", str(self.folder / "build"), *arguments]
+        call = [sys.executable, "-m", "wingcrack", "study", str(self.file)]
+        return [*call, "--out", str(self.out), "--build", str(self.folder / "build"), *arguments]
 
     def start(self, *arguments: str) -> subprocess.Popen[str]:
         """Start a call."""

@@ -84,7 +84,7 @@ def test_an_interrupted_call_goes_on_where_it_stopped(tmp_path: Path) -> None:
     case = small_case(tmp_path, "absolute")
     (case.case / "check.toml").write_text(case.toml)
     case.ends_with("fine", f"touch {tmp_path}/started; exec sleep 60")
-    command = [sys.executable, "-m", "wingcrack_verify", "--jobs", "1"]
+    command = [sys.executable, "-m", "wingcrack", "verify", "--jobs", "1"]
     for name, folder in (("cases", "verification"), ("build", "build"), ("cache", "cache")):
         command += [f"--{name}", str(tmp_path / folder)]
     command += ["--report", str(tmp_path / "report")]

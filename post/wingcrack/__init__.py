@@ -28,9 +28,8 @@ if TYPE_CHECKING:
     from wingcrack.comparison import compare
     from wingcrack.fields import Fields
     from wingcrack.parameter_table import Parameter, parameters
-    from wingcrack.run import Run
+    from wingcrack.run import Run, Scene
     from wingcrack.run import open_run as open  # noqa: A004
-    from wingcrack.scenes import Scene
 
 __all__ = [
     "AbsentError",
@@ -51,7 +50,7 @@ _PLACES = {
     "Fields": ("fields", "Fields"),
     "Parameter": ("parameter_table", "Parameter"),
     "Run": ("run", "Run"),
-    "Scene": ("scenes", "Scene"),
+    "Scene": ("run", "Scene"),
     "compare": ("comparison", "compare"),
     "open": ("run", "open_run"),
     "parameters": ("parameter_table", "parameters"),

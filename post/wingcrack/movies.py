@@ -14,7 +14,7 @@ from wingcrack.errors import EnvironmentLacksError, RunError
 from wingcrack.pictures import Picture
 
 if TYPE_CHECKING:
-    from wingcrack.run import Run
+    from wingcrack.results import Results
 
 _Image: TypeAlias = npt.NDArray[np.uint8]
 _Writer: TypeAlias = Callable[[Path, Iterator[_Image], Picture, float], None]
@@ -24,7 +24,7 @@ _FASTEST = 50.0  # [1/s]: what players of GIF know
 
 
 def write_movie(
-    run: Run,
+    run: Results,
     path: Path,
     field: str | None,
     frames_per_second: float,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pyvista
 
     from wingcrack.fields import Fields
-    from wingcrack.run import Run
+    from wingcrack.results import Results
 
 _EGL = "libEGL.so.1"
 _WIDTH = 5.0  # [pixel] of a fracture
@@ -48,7 +48,7 @@ class Picture:
 
     Parameters
     ----------
-    run : Run
+    run : Results
     field : str or None
         As for `Run.plot_map`; None: pressure, without a fluid the mean stress.
     off_screen : bool
@@ -58,7 +58,7 @@ class Picture:
     """
 
     def __init__(
-        self, run: Run, field: str | None, *, off_screen: bool, size: tuple[int, int]
+        self, run: Results, field: str | None, *, off_screen: bool, size: tuple[int, int]
     ) -> None:
         last = run.fields()
         self._run = run
@@ -175,7 +175,7 @@ class Picture:
         self.plotter.reset_camera_clipping_range()
 
 
-def build_scene(run: Run, field: str | None, time: float | None) -> pyvista.Plotter:
+def build_scene(run: Results, field: str | None, time: float | None) -> pyvista.Plotter:
     """Scene of a state, with a slider for the others where there is a display."""
     off_screen = not _has_display()
     picture = Picture(run, field, off_screen=off_screen, size=(960, 720))

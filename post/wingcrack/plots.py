@@ -37,7 +37,7 @@ from wingcrack_post.units import Unit, displacement_unit, length_unit, stress_un
 from wingcrack_post.wells import MOST_WELLS, draw_well_flow, draw_well_pressure, well_rows
 
 if TYPE_CHECKING:
-    from wingcrack.run import Run
+    from wingcrack.results import Results
 
 _MOST_ENTRIES = 8  # of a legend within the axes
 
@@ -52,7 +52,7 @@ def new_axes(ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_history(run: Run, column: str | None, ax: Axes | None, **look: Any) -> Axes:
+def plot_history(run: Results, column: str | None, ax: Axes | None, **look: Any) -> Axes:
     """Draw a column of the history."""
     name = column or default_column(run)
     values = _numbers(run, name)
@@ -63,13 +63,13 @@ def plot_history(run: Run, column: str | None, ax: Axes | None, **look: Any) -> 
     return axes
 
 
-def default_column(run: Run) -> str:
+def default_column(run: Results) -> str:
     """What a run is about: the pressure of its first well, else the length of its fractures."""
     columns = list(pressure_columns(run.table("history")).values())
     return columns[0] if columns else "fracture_length_m"
 
 
-def draw_history(axes: Axes, run: Run, column: str, unit: Unit, **look: Any) -> None:
+def draw_history(axes: Axes, run: Results, column: str, unit: Unit, **look: Any) -> None:
     """Draw a column against time, or load, in a given unit."""
     values = _numbers(run, column)
     time, below = abscissa(run.files, run.moments)
@@ -89,7 +89,7 @@ def fitting_unit(column: str, *values: FloatArray) -> Unit:
     return Unit(name, 1.0)
 
 
-def _numbers(run: Run, column: str) -> FloatArray:
+def _numbers(run: Results, column: str) -> FloatArray:
     values = run.column(column)
     if values.size == 0:
         raise AbsentError(f"{run.directory}: history.csv has no rows yet")
@@ -99,7 +99,7 @@ def _numbers(run: Run, column: str) -> FloatArray:
 
 
 @style.styled
-def plot_tips(run: Run, quantity: str, ax: Axes | None) -> Axes:
+def plot_tips(run: Results, quantity: str, ax: Axes | None) -> Axes:
     """Draw a stress intensity factor of every tip."""
     _choose("quantity", quantity, INTENSITIES)
     needed(run.files.tips, "tips.csv", "stress intensity factors")
@@ -109,7 +109,7 @@ def plot_tips(run: Run, quantity: str, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_network(run: Run, colour: str, ax: Axes | None) -> Axes:
+def plot_network(run: Results, colour: str, ax: Axes | None) -> Axes:
     """Draw the network at the end."""
     _choose("colour", colour, ("growth", "state"))
     files = run.files
@@ -127,7 +127,7 @@ def plot_network(run: Run, colour: str, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_map(run: Run, field: str, time: float | None, ax: Axes | None, *, close: bool) -> Axes:
+def plot_map(run: Results, field: str, time: float | None, ax: Axes | None, *, close: bool) -> Axes:
     """Draw a field of the rock, with the fractures by state."""
     found = run.fields(time)
     look = colouring([found], field)
@@ -156,7 +156,7 @@ def plot_map(run: Run, field: str, time: float | None, ax: Axes | None, *, close
 
 @style.styled
 def plot_profile(
-    run: Run, column: str, fracture: str | int, times: Sequence[float], ax: Axes | None
+    run: Results, column: str, fracture: str | int, times: Sequence[float], ax: Axes | None
 ) -> Axes:
     """Draw a column of fractures.csv along a fracture."""
     table = needed(run.files.fractures, "fractures.csv", "the state along fractures")
@@ -173,7 +173,7 @@ def plot_profile(
 
 
 @style.styled
-def plot_wells(run: Run, quantity: str, ax: Axes | None) -> Axes:
+def plot_wells(run: Results, quantity: str, ax: Axes | None) -> Axes:
     """Draw pressure or flow of each well."""
     draws: dict[str, tuple[Callable[..., None], str]] = {
         "pressure": (draw_well_pressure, "pressure [MPa]"),
@@ -195,7 +195,7 @@ def plot_wells(run: Run, quantity: str, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_states(run: Run, ax: Axes | None) -> Axes:
+def plot_states(run: Results, ax: Axes | None) -> Axes:
     """Draw how many fracture cells stick, slip and are open."""
     files = run.files
     axes = new_axes(ax)
@@ -204,7 +204,7 @@ def plot_states(run: Run, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_load(run: Run, ax: Axes | None) -> Axes:
+def plot_load(run: Results, ax: Axes | None) -> Axes:
     """Draw the load factor against length."""
     files = run.files
     if not files.history.has("load_factor"):
@@ -215,7 +215,7 @@ def plot_load(run: Run, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_equilibrium(run: Run, against: str, ax: Axes | None) -> Axes:
+def plot_equilibrium(run: Results, against: str, ax: Axes | None) -> Axes:
     """Draw the equilibrium path of length control."""
     _choose("against", against, AGAINST)
     axes = new_axes(ax)

@@ -1,33 +1,29 @@
-"""A run's folder: its tables, fields, network and figures."""
+"""Scenes that are run, and runs with their figures."""
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import tempfile
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy.typing as npt
-
-from wingcrack.errors import AbsentError, RunError, SceneError
-from wingcrack.fields import Fields, read_fields
-from wingcrack.tables import column, frame
-from wingcrack_post.arguments import DEFAULT_FORMATS
-from wingcrack_post.fields import Snapshot, read_series
-from wingcrack_post.table import FloatArray, Table, read_table
+from wingcrack.errors import RunError, RunFailedError, SceneError
+from wingcrack.parameter_table import solver
+from wingcrack.results import Results
+from wingcrack.scenes import SceneFile
+from wingcrack_post.choices import DEFAULT_FORMATS
 
 if TYPE_CHECKING:
-    import pandas
     import pyvista
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from wingcrack.scenes import Scene
-    from wingcrack_post.equilibrium import EquilibriumPath
-    from wingcrack_post.read import Run as Files
-
-_TABLES = ("history", "tips", "fractures", "probes", "wells", "events", "slip_events")
 _SIGNS = ("run.json", "history.csv", "scene.nml")  # files that only a run's folder has
+_BAD_INPUT = 2
 
 
 def open_run(directory: str | Path) -> Run:
@@ -57,7 +53,7 @@ def open_run(directory: str | Path) -> Run:
     return Run(folder)
 
 
-class Run:
+class Run(Results):
     """What a run has written; files are read when they are asked for, once until `refresh`.
 
     All values are SI. Frames tell the units of their columns in ``.attrs["units"]``.
@@ -66,136 +62,6 @@ class Run:
     ----------
     directory : Path
     """
-
-    def __init__(self, directory: Path) -> None:
-        self.directory = directory
-
-    def __repr__(self) -> str:
-        """Folder and status."""
-        return f"<wingcrack.Run {str(self.directory)!r}: {self.status}>"
-
-    def refresh(self) -> Run:
-        """Forget what was read: a run that goes on has more by now. Gives the run itself."""
-        for name in [name for name in vars(self) if name != "directory"]:
-            del vars(self)[name]
-        return self
-
-    # What happened
-
-    @cached_property
-    def record(self) -> dict[str, Any]:
-        """Contents of run.json; empty until the run has ended."""
-        return self._json("run.json") or {}
-
-    @property
-    def name(self) -> str:
-        """Name of the scene."""
-        return str(self.record.get("scene") or self._named())
-
-    @property
-    def status(self) -> str:
-        """'finished', 'stopped', 'failed', or 'running' until run.json is there.
-
-        A run that was killed from outside leaves no run.json, and 'running' for good.
-        """
-        return str(self.record.get("status", "running"))
-
-    @property
-    def reason(self) -> str:
-        """Why the run ended; empty while it goes on."""
-        return str(self.record.get("reason", ""))
-
-    @property
-    def warnings(self) -> list[str]:
-        """What the user should know."""
-        return [str(text) for text in self.record.get("warnings", [])]
-
-    # Tables
-
-    @cached_property
-    def history(self) -> pandas.DataFrame:
-        """A row per accepted step."""
-        return self._frame("history")
-
-    @cached_property
-    def tips(self) -> pandas.DataFrame:
-        """A row per tip and step: stress intensity factors, place, advance."""
-        return self._frame("tips")
-
-    @cached_property
-    def fractures(self) -> pandas.DataFrame:
-        """A row per fracture cell and written state: opening, slip, tractions, pressure, state."""
-        return self._frame("fractures")
-
-    @cached_property
-    def probes(self) -> pandas.DataFrame:
-        """Pressure, displacement and stress at the probe points."""
-        return self._frame("probes")
-
-    @cached_property
-    def wells(self) -> pandas.DataFrame:
-        """Stage, rate, pressure, volume and injectivity of each well."""
-        return self._frame("wells")
-
-    @cached_property
-    def events(self) -> pandas.DataFrame:
-        """Slip, opening, growth, joints, with their moments and places."""
-        return self._frame("events")
-
-    @cached_property
-    def slip_events(self) -> pandas.DataFrame:
-        """A row per event of slip: time, place, area, moment, stress drop, magnitude."""
-        return self._frame("slip_events")
-
-    def column(self, name: str, table: str = "history") -> npt.NDArray[Any]:
-        """Column of a table as a numpy array, without pandas.
-
-        Parameters
-        ----------
-        name : str
-            With its unit, as ``well_pressure_pa``.
-        table : str
-            history, tips, fractures, probes, wells, events or slip_events.
-
-        Raises
-        ------
-        AbsentError
-            If the run has no such table.
-        RunError
-            If the table has no such column, or is damaged.
-        """
-        return column(self.table(table), name)
-
-    def table(self, name: str) -> Table:
-        """Table as it stands in its file; see `column` and the properties for more comfort."""
-        if name not in _TABLES:
-            raise RunError(f"there is no table '{name}'; a run has {', '.join(_TABLES)}")
-        key = f"_{name}_table"
-        if key not in vars(self):
-            vars(self)[key] = self._read_table(name)
-        found: Table = vars(self)[key]
-        return found
-
-    @property
-    def moments(self) -> FloatArray:
-        """Time [s], or without a fluid the load factor [-], of each row of the history."""
-        return self.table("history").moments()
-
-    # Network, scene, fields
-
-    @cached_property
-    def network(self) -> dict[str, Any]:
-        """Contents of network.json: fractures, tips and joints at the end and by step.
-
-        Raises
-        ------
-        AbsentError
-            If it is not written yet.
-        """
-        found = self._json("network.json")
-        if found is None:
-            raise AbsentError(f"{self.directory} has no network.json yet")
-        return found
 
     @cached_property
     def scene(self) -> Scene:
@@ -206,34 +72,7 @@ class Run:
         AbsentError
             If the run has written none.
         """
-        from wingcrack.scenes import Scene
-
-        path = self.directory / "scene.nml"
-        if not path.is_file():
-            raise AbsentError(f"{self.directory} has no scene.nml")
-        return Scene.read(path)
-
-    @property
-    def field_moments(self) -> list[float]:
-        """Moments of the states whose fields are written [s], or their load factors [-]."""
-        return [snapshot.time_s for snapshot in self._matrix]
-
-    def fields(self, time: float | None = None) -> Fields:
-        """Fields of rock and fractures in the written state nearest to a time, or the last one.
-
-        Parameters
-        ----------
-        time : float or None
-            Time [s], or without a fluid the load factor [-].
-
-        Raises
-        ------
-        AbsentError
-            If no state is written.
-        RunError
-            If a file is missing or cut off.
-        """
-        return read_fields(self.directory, self._matrix, self._fracture_series, time)
+        return Scene.read(self._scene_file)
 
     # Figures
 
@@ -347,19 +186,6 @@ class Run:
 
         return plots.plot_load(self, ax)
 
-    @cached_property
-    def equilibrium(self) -> EquilibriumPath:
-        """The equilibrium path of length control, its unstable branches, the energy they release.
-
-        Raises
-        ------
-        AbsentError
-            If growth does not control the load, or nothing has grown.
-        """
-        from wingcrack_post.equilibrium import equilibrium_path
-
-        return equilibrium_path(self.files)
-
     def plot_equilibrium(self, against: str = "length", ax: Axes | None = None) -> Axes:
         """Draw the load factor of length control against 'length', 'opening' or 'conjugate'.
 
@@ -406,46 +232,76 @@ class Run:
 
         return write_movie(self, Path(path), field, frames_per_second, size, progress=progress)
 
-    # Inside
 
-    @cached_property
-    def files(self) -> Files:
-        """The same folder as the drawing code of wingcrack_post takes it.
+class Scene(SceneFile):
+    """A scene file in memory; nothing is known here that the solver's own table does not tell.
+
+    Entries have addresses: ``group.name``, or in groups that are repeated ``group.item.name``,
+    where an item is its number from 1 or its name.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where it came from, or how it would be called: the stem names a scene without a name, and
+        tables that it mentions lie beside it.
+
+    Examples
+    --------
+    >>> scene = wingcrack.Scene.read("inputs/paper_c/onset.nml")  # doctest: +SKIP
+    >>> scene["fracture.f1.friction"] = 0.4  # doctest: +SKIP
+    >>> print(scene.check())  # doctest: +SKIP
+    >>> run = scene.run("out/weaker")  # doctest: +SKIP
+    """
+
+    def run(self, out: str | Path, *, threads: int = 1, quiet: bool = True) -> Run:
+        """Run the scene to its end.
+
+        Parameters
+        ----------
+        out : str or Path
+            Folder for the results.
+        threads : int
+            For windows side by side and loops.
+        quiet : bool
+            No progress on the terminal.
 
         Raises
         ------
-        RunError
-            If no step has been accepted yet, or a file is damaged.
+        SceneError
+            If the scene is refused; nothing is written then.
+        RunFailedError
+            If the run does not reach its end; its `directory` holds the last good state.
         """
-        from wingcrack_post.read import read_run
+        if threads < 1:
+            raise SceneError(f"threads must be at least 1, not {threads}")
+        with tempfile.TemporaryDirectory() as folder:
+            file = self._file(folder)
+            words = [str(solver()), "run", str(file), "--out", str(out)]
+            status, said = _supervised([*words, "--quiet"] if quiet else words, threads)
+            if status == _BAD_INPUT:
+                raise SceneError(self._said(said, file))
+            if status != 0:
+                reason = self._said(said, file).splitlines()[-1]
+                raise RunFailedError(reason, Path(out), status)
+        return open_run(out)
 
-        return read_run(self.directory)
 
-    @cached_property
-    def _matrix(self) -> tuple[Snapshot, ...]:
-        return read_series(self.directory / "matrix.pvd")
-
-    @cached_property
-    def _fracture_series(self) -> tuple[Snapshot, ...]:
-        return read_series(self.directory / "fractures.pvd")
-
-    def _frame(self, name: str) -> pandas.DataFrame:
-        return frame(self.table(name))
-
-    def _read_table(self, name: str) -> Table:
-        path = self.directory / f"{name}.csv"
-        if not path.exists():
-            why = f": {self.reason}" if self.status == "failed" and self.reason else ""
-            raise AbsentError(f"{self.directory} has no {path.name} (run {self.status}{why})")
-        return read_table(path)
-
-    def _json(self, name: str) -> dict[str, Any] | None:
-        from wingcrack_post.read import optional_json
-
-        return optional_json(self.directory / name)
-
-    def _named(self) -> str:
+def _supervised(words: list[str], threads: int) -> tuple[int, str]:
+    """Exit status and last words of the solver; an interrupt reaches it, and is waited for."""
+    count = str(threads)
+    surroundings = {
+        **os.environ,
+        "OPENBLAS_NUM_THREADS": count,
+        "OMP_NUM_THREADS": count,
+        "OMP_WAIT_POLICY": "passive",
+    }
+    with subprocess.Popen(
+        words, env=surroundings, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL
+    ) as process:
         try:
-            return str(self.scene["scene.name"])
-        except (AbsentError, SceneError):
-            return self.directory.resolve().name
+            _, said = process.communicate()
+        except KeyboardInterrupt:
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            raise
+    return process.returncode, said

@@ -1,49 +1,31 @@
-"""Scenes that are read, changed, checked and run from Python."""
+"""Scene files that are read, changed, checked and written."""
 
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import tempfile
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, Self, TypeAlias
 
 import f90nml
 import numpy as np
 
-from wingcrack.errors import RunFailedError, SceneError
+from wingcrack.errors import SceneError
 from wingcrack.parameter_table import Parameter, parameter, solver
 from wingcrack_post.text_files import namelist_groups, read_text
 
-if TYPE_CHECKING:
-    from wingcrack.run import Run
-
 _Groups: TypeAlias = dict[str, list[Any]]
 
-_BAD_INPUT = 2
 
-
-class Scene:
-    """A scene file in memory; nothing is known here that the solver's own table does not tell.
-
-    Entries have addresses: ``group.name``, or in groups that are repeated ``group.item.name``,
-    where an item is its number from 1 or its name.
+class SceneFile:
+    """A scene file in memory: what `wingcrack.Scene` is, but for running it.
 
     Parameters
     ----------
     path : str or Path
-        Where it came from, or how it would be called: the stem names a scene without a name, and
-        tables that it mentions lie beside it.
-
-    Examples
-    --------
-    >>> scene = wingcrack.Scene.read("inputs/paper_c/onset.nml")  # doctest: +SKIP
-    >>> scene["fracture.f1.friction"] = 0.4  # doctest: +SKIP
-    >>> print(scene.check())  # doctest: +SKIP
-    >>> run = scene.run("out/weaker")  # doctest: +SKIP
     """
 
     def __init__(self, path: str | Path = "scene.nml") -> None:
@@ -51,7 +33,7 @@ class Scene:
         self._groups: _Groups = {}
 
     @classmethod
-    def read(cls, path: str | Path) -> Scene:
+    def read(cls, path: str | Path) -> Self:
         """Read a scene file.
 
         Raises
@@ -182,40 +164,6 @@ class Scene:
                 raise SceneError(self._said(done.stderr, file))
             return done.stdout
 
-    def run(self, out: str | Path, *, threads: int = 1, quiet: bool = True) -> Run:
-        """Run the scene to its end.
-
-        Parameters
-        ----------
-        out : str or Path
-            Folder for the results.
-        threads : int
-            For windows side by side and loops.
-        quiet : bool
-            No progress on the terminal.
-
-        Raises
-        ------
-        SceneError
-            If the scene is refused; nothing is written then.
-        RunFailedError
-            If the run does not reach its end; its `directory` holds the last good state.
-        """
-        from wingcrack.run import open_run
-
-        if threads < 1:
-            raise SceneError(f"threads must be at least 1, not {threads}")
-        with tempfile.TemporaryDirectory() as folder:
-            file = self._file(folder)
-            words = [str(solver()), "run", str(file), "--out", str(out)]
-            status, said = _supervised([*words, "--quiet"] if quiet else words, threads)
-            if status == _BAD_INPUT:
-                raise SceneError(self._said(said, file))
-            if status != 0:
-                reason = self._said(said, file).splitlines()[-1]
-                raise RunFailedError(reason, Path(out), status)
-        return open_run(out)
-
     def _file(self, folder: str) -> Path:
         stem = self.path.stem or "scene"
         return self.write(Path(folder) / f"{stem}.nml")
@@ -294,24 +242,3 @@ def _single(given: Any, known: Parameter, where: str) -> Any:
     if "whole" in known.kind and int(given) != given:
         raise SceneError(f"{where} takes a {known.kind}, not {value!r}")
     return int(given) if "whole" in known.kind else value
-
-
-def _supervised(words: list[str], threads: int) -> tuple[int, str]:
-    """Exit status and last words of the solver; an interrupt reaches it, and is waited for."""
-    count = str(threads)
-    surroundings = {
-        **os.environ,
-        "OPENBLAS_NUM_THREADS": count,
-        "OMP_NUM_THREADS": count,
-        "OMP_WAIT_POLICY": "passive",
-    }
-    with subprocess.Popen(
-        words, env=surroundings, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL
-    ) as process:
-        try:
-            _, said = process.communicate()
-        except KeyboardInterrupt:
-            process.send_signal(signal.SIGINT)
-            process.communicate()
-            raise
-    return process.returncode, said

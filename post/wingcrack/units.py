@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+FARTHEST = 1.0e8  # of places and lengths [m]: farther than the earth is wide
+
 # Ends of column names and their units; longer ends come first. A test holds them against
 # docs/output.md, which the solver writes.
 _ENDS = (

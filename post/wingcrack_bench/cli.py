@@ -1,8 +1,7 @@
-"""Command line: ``python -m wingcrack_bench [NAME ...]``."""
+"""`wingcrack bench`: measurements of speed, judged by what is stored."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import sys
@@ -10,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, replace
 from pathlib import Path
+from types import SimpleNamespace
 
-from wingcrack_bench.arguments import parse
 from wingcrack_bench.baseline import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
@@ -24,7 +23,6 @@ from wingcrack_bench.baseline import (
 from wingcrack_bench.catalogue import TOP, Benchmark, read_benchmarks
 from wingcrack_bench.growth import Exponent, exponents
 from wingcrack_bench.measure import (
-    EnvironmentLacksError,
     Measurement,
     RunFailedError,
     count,
@@ -37,13 +35,13 @@ from wingcrack_bench.table import (
     as_table,
     instructions_ratio,
 )
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_verify.environment import machine, revision
 from wingcrack_verify.errors import CaseError
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    given = parse(arguments)
+def bench(given: SimpleNamespace) -> int:
+    """Do what is asked for; give the exit status."""
     known, kinds = read_benchmarks()
     measured: list[Measurement] = []
     failed: list[str] = []
@@ -56,9 +54,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 failed.append(name)
         if measured:
             measured = _counted(measured, known, given)
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack bench: {reason}", file=sys.stderr)
-        return 3
     except KeyboardInterrupt:
         print("wingcrack bench: interrupted; nothing was written", file=sys.stderr)
         return 130
@@ -78,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _measured(benchmark: Benchmark, given: argparse.Namespace) -> Measurement:
+def _measured(benchmark: Benchmark, given: SimpleNamespace) -> Measurement:
     """Run a scene as often as is asked for."""
     print(f"measuring {benchmark.name}: {benchmark.title}", file=sys.stderr)
     repetitions = 1 if given.quick and given.against is None else given.repeat
@@ -86,7 +81,7 @@ def _measured(benchmark: Benchmark, given: argparse.Namespace) -> Measurement:
 
 
 def _counted(
-    measured: Sequence[Measurement], known: Mapping[str, Benchmark], given: argparse.Namespace
+    measured: Sequence[Measurement], known: Mapping[str, Benchmark], given: SimpleNamespace
 ) -> list[Measurement]:
     """Count instructions where that is asked for; several at a time, as they do not mind."""
     insists = given.instructions or given.store

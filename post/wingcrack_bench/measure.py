@@ -16,6 +16,7 @@ from pathlib import Path
 
 from wingcrack_bench.catalogue import Benchmark
 from wingcrack_bench.scenes import write_scene
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_post.text_files import read_json
 from wingcrack_runner.task import ONE_THREAD
 
@@ -25,10 +26,6 @@ _COUNTED = {**ONE_THREAD, "OPENBLAS_CORETYPE": "Haswell"}
 
 class RunFailedError(Exception):
     """A run did not end well; the message is its reason."""
-
-
-class EnvironmentLacksError(Exception):
-    """Something that was asked for takes a program that is not there."""
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,16 @@
-"""Command line: ``python -m wingcrack_docs``."""
+"""`wingcrack docs`: the site, or its pictures."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from types import SimpleNamespace
 
-from wingcrack_docs.arguments import parse
 from wingcrack_docs.places import SITE
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status: 0 done, 1 failed, 3 something lacks."""
-    given = parse(arguments)
+def docs(given: SimpleNamespace) -> int:
+    """Make what is asked for; give the exit status: 0 done, 1 failed, 3 something lacks."""
     if given.pictures:
         return _pictures()
     from wingcrack_docs.errors import PagesError, SiteError
@@ -42,15 +40,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _pictures() -> int:
     from wingcrack_docs.errors import PicturesError
     from wingcrack_docs.pictures import make_pictures
-    from wingcrack_scenes.errors import SolverLackingError
 
     try:
         make_pictures()
     except PicturesError as reason:
         print(f"wingcrack docs: {reason}", file=sys.stderr)
         return 1
-    except SolverLackingError as reason:
-        print(f"wingcrack docs: {reason}", file=sys.stderr)
-        return 3
     print("docs/gallery.md and docs/pictures are written", flush=True)
     return 0

@@ -40,7 +40,7 @@ def make_pictures() -> None:
     ------
     PicturesError
         If a scene does not reach its end, or has no place in the gallery.
-    SolverLackingError
+    EnvironmentLacksError
         If there is no solver.
     """
     scenes = {
@@ -64,13 +64,13 @@ def make_pictures() -> None:
 
 def _map_scene() -> str:
     """Text of the scene that the tutorial makes of the map."""
-    from wingcrack_maps.cli import main as import_map
+    from wingcrack.command_line import main
 
     _RUNS.mkdir(parents=True, exist_ok=True)
     file = _RUNS / "outcrop.nml"
     words = ["import", str(_MAP), "--unit", "m", "--repair", "0.1", "--overwrite"]
     with redirect_stdout(StringIO()) as said:
-        status = import_map([*words, "--out", str(file)])
+        status = main([*words, "--out", str(file)])
     if status != 0:
         raise PicturesError(f"{_MAP.name} was not imported: {said.getvalue().strip()}")
     return file.read_text("utf-8")

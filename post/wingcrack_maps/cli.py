@@ -1,19 +1,17 @@
-"""Command line: ``python -m wingcrack_maps import MAP`` and ``... network``."""
+"""`wingcrack import` and `wingcrack network`: scenes of fractures."""
 
 from __future__ import annotations
 
-import argparse
 import os
 import signal
 import sys
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NoReturn
 
 from shapely.geometry import Polygon
 
-from wingcrack_maps.arguments import parse
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
 from wingcrack_maps.entries import complete, entry_values, give_names, set_regions, setting
@@ -25,14 +23,13 @@ from wingcrack_maps.repair import Repair, repair
 from wingcrack_maps.report import Report, file_texts, terminal_text
 from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_size, scene_text
 from wingcrack_maps.units import shift
-from wingcrack_scenes.errors import SceneError, SolverLackingError
+from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.parameters import groups
 from wingcrack_scenes.solver import check
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status: 0 done, 2 bad input, 3 lacking solver."""
-    given = parse(arguments)
+def make_scene(given: SimpleNamespace) -> int:
+    """Write the scene; give the exit status: 0 done, 2 bad input, 3 lacking solver."""
     signal.signal(signal.SIGTERM, _end)
     try:
         content, path = _content(given)
@@ -40,9 +37,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SceneError as reason:
         print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
         return 2
-    except SolverLackingError as reason:
-        print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
-        return 3
     except KeyboardInterrupt:
         print(f"wingcrack {given.command}: interrupted; nothing was written", file=sys.stderr)
         return 130
@@ -66,7 +60,7 @@ def _tell(done: int, left: int) -> None:
             print(file=sys.stderr)
 
 
-def _content(given: argparse.Namespace) -> tuple[Map, str]:
+def _content(given: SimpleNamespace) -> tuple[Map, str]:
     """Give what there is to be written, and where it comes from."""
     if given.command == "network":
         laws = zip(given.density, given.length, given.orientation, strict=True)
@@ -80,7 +74,7 @@ def _content(given: argparse.Namespace) -> tuple[Map, str]:
     return content, str(given.map)
 
 
-def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
+def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     """Examine, repair, write; give what is told of it."""
     base = read_base(given.scene)
     if not content.lines:
@@ -126,7 +120,7 @@ def _make(given: argparse.Namespace, content: Map, path: str) -> Report:
     return report
 
 
-def _add_entries(given: argparse.Namespace, content: Map, path: str, base: Base | None) -> None:
+def _add_entries(given: SimpleNamespace, content: Map, path: str, base: Base | None) -> None:
     """Let attributes of the fractures be entries of their groups, with what goes for all."""
     group = groups()["fracture"]
     asked = dict(setting(text, group) for text in given.set)
@@ -142,7 +136,7 @@ def _add_entries(given: argparse.Namespace, content: Map, path: str, base: Base 
         line.attributes = dict(entries)
 
 
-def _body(given: argparse.Namespace, content: Map, base: Base | None) -> Polygon | None:
+def _body(given: SimpleNamespace, content: Map, base: Base | None) -> Polygon | None:
     outline = boundary_of(content)
     if base is not None and "domain" in base.groups:
         if outline is not None:
@@ -155,7 +149,7 @@ def _body(given: argparse.Namespace, content: Map, base: Base | None) -> Polygon
     return rectangle_around(content.lines, given.margin)
 
 
-def _limits(given: argparse.Namespace, content: Map) -> Limits:
+def _limits(given: SimpleNamespace, content: Map) -> Limits:
     lengths = sorted(line.length for line in content.lines if line.length > 0.0)
     if not lengths:
         raise SceneError("no fracture has a length: each lies at one place")
@@ -166,7 +160,7 @@ def _limits(given: argparse.Namespace, content: Map) -> Limits:
 
 
 def _network(
-    given: argparse.Namespace, content: Map, path: str, body: Polygon | None, base: Base | None
+    given: SimpleNamespace, content: Map, path: str, body: Polygon | None, base: Base | None
 ) -> Network:
     regions = [area for area in content.areas if area.role == "region"]
     region_values = entry_values("region", regions, content, path)
@@ -185,7 +179,7 @@ def _network(
     return Network(content.lines, line_values, regions, region_values, body, cell)  # type: ignore[arg-type]
 
 
-def _heading(given: argparse.Namespace, path: str) -> str:
+def _heading(given: SimpleNamespace, path: str) -> str:
     if given.command == "network":
         return f"Fractures drawn by wingcrack network with seed {given.seed}."
     words = "as they are" if given.repair is None else f"repaired within {given.repair:g} m"

@@ -12,7 +12,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 
-from wingcrack_maps.arguments import FARTHEST
+from wingcrack.units import FARTHEST
 from wingcrack_maps.features import Line, Map
 from wingcrack_scenes.errors import SceneError
 

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from wingcrack_maps.arguments import FARTHEST
+from wingcrack.units import FARTHEST
 from wingcrack_maps.features import Map, Points
 from wingcrack_scenes.errors import SceneError
 

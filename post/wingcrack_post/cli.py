@@ -1,41 +1,29 @@
-"""Command line: ``python -m wingcrack_post plot DIR``."""
+"""`wingcrack plot`: the figures of runs."""
 
 from __future__ import annotations
 
 import gc
 import logging
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from wingcrack_post.arguments import parse
 from wingcrack_post.errors import RunError
 
 if TYPE_CHECKING:
     from wingcrack_post.figures import Outcome
 
 
-@dataclass(frozen=True)
-class _Choices:
-    times_s: tuple[float, ...]
-    only: tuple[str, ...]
-    formats: tuple[str, ...]
-    quiet: bool
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status: 0 done, 2 bad input, 3 lacking library."""
-    given = parse(arguments)
-    choices = _Choices(given.times, given.only, given.format, given.quiet)
+def plot(given: SimpleNamespace) -> int:
+    """Draw what is asked for; give the exit status: 0 done, 2 bad input, 3 lacking library."""
     status = 0
     for directory in given.directories:
-        status = max(status, _plot(directory, choices))
+        status = max(status, _plot(directory, given))
     return status
 
 
-def _plot(directory: Path, choices: _Choices) -> int:
+def _plot(directory: Path, given: SimpleNamespace) -> int:
     """Draw the chosen figures of one run and return its exit status."""
     # late, so that --help and mistakes in the call answer at once
     from wingcrack_post.figures import draw_figures
@@ -46,11 +34,11 @@ def _plot(directory: Path, choices: _Choices) -> int:
     drawn = False
     try:
         gc.disable()  # a tenth of the time; `draw_figures` tidies up where there are many
-        for outcome in draw_figures(directory, choices.only, choices.formats, choices.times_s):
+        for outcome in draw_figures(directory, given.only, given.format, given.times):
             drawn = drawn or bool(outcome.files)
             if outcome.reason:
                 left_out.append(outcome)
-            if not choices.quiet:
+            if not given.quiet:
                 _report(outcome)
     except RunError as reason:
         print(f"wingcrack plot: {reason}", file=sys.stderr)

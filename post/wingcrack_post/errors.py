@@ -10,4 +10,4 @@ class AbsentError(Exception):
 
 
 class EnvironmentLacksError(Exception):
-    """The machine lacks something that a figure needs, such as a library."""
+    """The machine lacks something that is needed: a library, the solver, another program."""

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wingcrack_post.arguments import ALL, DEFAULT_FORMATS
+from wingcrack_post.choices import ALL, DEFAULT_FORMATS
 from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack_post.read import Run, read_run
 from wingcrack_post.states import grows, slips_or_opens

@@ -3,7 +3,3 @@
 
 class SceneError(Exception):
     """Bad input: nothing is written, status 2."""
-
-
-class SolverLackingError(Exception):
-    """The solver cannot be started: status 3."""

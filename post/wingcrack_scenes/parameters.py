@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
-from wingcrack_scenes.errors import SolverLackingError
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_scenes.solver import description
 
 _GROUP = re.compile(r"## &(\w+)( \(repeated\))?")
@@ -50,7 +50,7 @@ def groups() -> dict[str, Group]:
     """Give all groups by name, in the order of the table."""
     found = parse(description())
     if "fracture" not in found:
-        raise SolverLackingError("the solver's description of its input has no group &fracture")
+        raise EnvironmentLacksError("the solver's description of its input has no group &fracture")
     return found
 
 

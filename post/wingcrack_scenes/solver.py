@@ -7,7 +7,7 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-from wingcrack_scenes.errors import SolverLackingError
+from wingcrack_post.errors import EnvironmentLacksError
 
 SOLVER = (
     Path(__file__).resolve().parents[2] / "build" / "release" / "fortran" / "app"
@@ -19,7 +19,7 @@ def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
     Raises
     ------
-    SolverLackingError
+    EnvironmentLacksError
         If it is not there or cannot be started.
     """
     threads = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -33,7 +33,7 @@ def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
             check=False,
         )
     except OSError as reason:
-        raise SolverLackingError(
+        raise EnvironmentLacksError(
             f"the solver {SOLVER} cannot be started ({reason.strerror}); ./wingcrack build makes it"
         ) from None
 
@@ -43,7 +43,7 @@ def description() -> str:
     """Give the page that describes the scene file, as the solver writes it."""
     done = call("--describe-input")
     if done.returncode != 0:
-        raise SolverLackingError(f"the solver cannot describe its input: {done.stderr.strip()}")
+        raise EnvironmentLacksError(f"the solver cannot describe its input: {done.stderr.strip()}")
     return done.stdout
 
 

@@ -1,8 +1,7 @@
-"""Command line: ``python -m wingcrack_study STUDY.toml``."""
+"""`wingcrack study`: many runs of a scene, a table of them and figures."""
 
 from __future__ import annotations
 
-import argparse
 import fcntl
 import json
 import os
@@ -11,11 +10,11 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.task import Task
-from wingcrack_study.arguments import parse
 from wingcrack_study.cluster import Cluster
 from wingcrack_study.outputs import UnreadableError, judge_run
 from wingcrack_study.running import Clock, check_scenes, done_before, run_tasks, tasks_of
@@ -28,7 +27,7 @@ from wingcrack_study.table import (
     write_statistics,
     write_text,
 )
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 
 _ENDED_BY = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
@@ -41,16 +40,13 @@ class _Ended(BaseException):
         self.status = _ENDED_BY[signal.Signals(number)]
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    given = parse(arguments)
+def study(given: SimpleNamespace) -> int:
+    """Do what is asked for; give the exit status."""
     try:
         with _signals():
             return _study(given)
     except CaseError as reason:
         return _say(str(reason), 2)
-    except EnvironmentLacksError as reason:
-        return _say(str(reason), 3)
     except OSError as reason:
         place = f"{reason.filename}: " if reason.filename else ""
         return _say(f"{place}{reason.strerror or reason}", 1)
@@ -63,7 +59,7 @@ def _say(text: str, status: int) -> int:
     return status
 
 
-def _study(given: argparse.Namespace) -> int:
+def _study(given: SimpleNamespace) -> int:
     clock = Clock()
     study = read_study(given.study, given.quick)
     kind = given.cluster or study.cluster.kind
@@ -86,7 +82,7 @@ def _run(
     tasks: Mapping[int, Task],
     cluster: Cluster,
     workers: int,
-    given: argparse.Namespace,
+    given: SimpleNamespace,
     clock: Clock,
 ) -> int:
     """Run what is not done, then write table and figures, whatever has ended the runs."""
@@ -161,7 +157,7 @@ class _Ledger:
 def _finish(
     study: Study,
     ledger: _Ledger,
-    given: argparse.Namespace,
+    given: SimpleNamespace,
     cluster: Cluster,
     clock: Clock,
     end: tuple[int, str],
@@ -228,7 +224,7 @@ def _tell(table: StudyTable, notes: Sequence[str]) -> None:
 def _write_record(
     study: Study,
     ledger: _Ledger,
-    given: argparse.Namespace,
+    given: SimpleNamespace,
     cluster: Cluster,
     clock: Clock,
     ended: int,

@@ -9,8 +9,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
-from wingcrack_study.arguments import CLUSTERS
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_post.choices import CLUSTERS
+from wingcrack_post.errors import EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.fields import Fields
 
 # Module and class of each kind, and what must be installed for it.

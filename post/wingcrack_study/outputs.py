@@ -12,7 +12,7 @@ from typing import Any
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import read_table
 from wingcrack_post.text_files import read_json
-from wingcrack_study.arguments import TOP
+from wingcrack_study import TOP
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.paths import COLUMNS, NETWORK
 from wingcrack_verify.selection import Selection, Values, names_of, select

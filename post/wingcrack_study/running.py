@@ -16,14 +16,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_runner.outcome import Outcome, read_outcome
 from wingcrack_runner.pool import Pool
 from wingcrack_runner.task import ONE_THREAD, Task, copy_tables, tables_of
-from wingcrack_study import remote
-from wingcrack_study.arguments import TOP
+from wingcrack_study import TOP, remote
 from wingcrack_study.cluster import Cluster, connect
 from wingcrack_study.study import Study, StudyRun
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import scene_hash
 
 SOLVER = Path("fortran") / "app" / "wingcrack-solver"

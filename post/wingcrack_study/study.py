@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from wingcrack_post.text_files import is_file
-from wingcrack_study.arguments import TOP
+from wingcrack_study import TOP
 from wingcrack_study.cluster import Cluster, read_cluster
 from wingcrack_study.distributions import SAMPLE, read_draws
 from wingcrack_study.outputs import judge_selection

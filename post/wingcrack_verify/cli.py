@@ -1,23 +1,20 @@
-"""Command line: ``python -m wingcrack_verify [CASE ...]``."""
+"""`wingcrack verify`: the verification cases and their report."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
-from collections.abc import Sequence
+from types import SimpleNamespace
 
-from wingcrack_verify.arguments import parse
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
 from wingcrack_verify.report import Report, make_report
 from wingcrack_verify.suite import Suite, judge_suite, read_suite
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status."""
-    given = parse(arguments)
+def verify(given: SimpleNamespace) -> int:
+    """Do what is asked for; give the exit status."""
     try:
         suite = read_suite(given.cases, given.names, given.quick)
     except CaseError as reason:
@@ -26,15 +23,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     runner = Runner(Programs(given.build, given.cases / "programs"), given.cache, given.jobs)
     try:
         return _verify(suite, runner, given)
-    except EnvironmentLacksError as reason:
-        print(f"wingcrack verify: {reason}", file=sys.stderr)
-        return 3
     except KeyboardInterrupt:
         print("wingcrack verify: interrupted; what is done is kept", file=sys.stderr)
         return 130
 
 
-def _verify(suite: Suite, runner: Runner, given: argparse.Namespace) -> int:
+def _verify(suite: Suite, runner: Runner, given: SimpleNamespace) -> int:
     begin = time.perf_counter()
     progress = _Progress(len(suite.jobs))
     outcomes = runner.run_all(suite.jobs, progress)

@@ -3,7 +3,3 @@
 
 class CaseError(Exception):
     """A case is wrong in itself: a key, metric, column or row that is not there, a NaN."""
-
-
-class EnvironmentLacksError(Exception):
-    """The machine lacks something: the solver or a program is not built."""

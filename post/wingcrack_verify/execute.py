@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from wingcrack_post.errors import EnvironmentLacksError
 from wingcrack_runner.outcome import Outcome
 from wingcrack_runner.pool import Pool
 from wingcrack_runner.task import Task, hash_of, tables_of
 from wingcrack_verify.contents import Run
-from wingcrack_verify.errors import CaseError, EnvironmentLacksError
+from wingcrack_verify.errors import CaseError
 from wingcrack_verify.scene import scene_text
 
 __all__ = ["Job", "Outcome", "Programs", "Runner", "scene_hash"]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from wingcrack_verify.arguments import case_folders
+from wingcrack_verify import case_folders
 from wingcrack_verify.case import read_case
 from wingcrack_verify.contents import Case, Run
 from wingcrack_verify.errors import CaseError

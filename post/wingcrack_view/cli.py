@@ -1,22 +1,19 @@
-"""Command line: ``python -m wingcrack_view DIR``."""
+"""`wingcrack view`: a run in the browser."""
 
 from __future__ import annotations
 
 import os
 import sys
 import webbrowser
-from collections.abc import Sequence
 from http.server import ThreadingHTTPServer
 from pathlib import Path
-
-from wingcrack_view.arguments import parse
+from types import SimpleNamespace
 
 _INTERRUPTED = 130
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def view(given: SimpleNamespace) -> int:
     """Serve the page until it is interrupted; 130 then, 2 where there is nothing to show."""
-    given = parse(arguments)
     try:
         return _show(given.directory, given.port, browser=not given.no_browser)
     except KeyboardInterrupt:

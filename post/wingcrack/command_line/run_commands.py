@@ -1,0 +1,150 @@
+"""What is made of runs: plot, view and study."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from types import SimpleNamespace
+
+from wingcrack.command_line.declaring import TOP, Parameter, UsageError, choice, command, flag
+from wingcrack.command_line.values import absolute, each_of, whole
+from wingcrack_post.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
+from wingcrack_post.durations import parse_times
+
+_FORMATS = Parameter(
+    "--format",
+    "FORMAT,...",
+    "of the figures: png, pdf, or png,pdf (default: png)",
+    each_of(FORMATS),
+    DEFAULT_FORMATS,
+)
+
+
+@command(
+    "plot",
+    "wingcrack_post.cli:plot",
+    Parameter("directories", "DIR...", read=Path, many=True),
+    Parameter(
+        "--times",
+        "T,...",
+        "times of maps and profiles: seconds, or with the unit s, min, h or d; the nearest"
+        " written times are drawn (default: the first, the start of growth, the highest"
+        " well pressure, equally spaced fracture lengths, the last; no short steps after growth)",
+        parse_times,
+        (),
+    ),
+    Parameter(
+        "--only",
+        "GROUP,...",
+        f"draw these groups: {', '.join(GROUPS)}, or {ALL}",
+        each_of((*GROUPS, ALL)),
+        (),
+    ),
+    _FORMATS,
+    flag("--quiet", "print nothing but errors"),
+    about="""\
+Without --only, the figures in which something happens are drawn, and those that were drawn before:
+network and stress intensities where tips grow, maps, profiles, lengths and states where a fracture
+slips or opens, wells where there are several or stages; balance and view only on request.
+
+groups of figures (--only), written to DIR/figures:
+  summary    any run on one page: body and loads, network by state, pressure or load, length,
+             K_eq over K_IC, errors, warnings; and index.html, which shows all figures
+  story      an injection on one page: the network with its slip events, well pressure,
+             injectivity, where the fluid is, lengths, seismic moment
+  network    the fractures at the start and what has grown, coloured by its order
+  maps       pore pressure, or without a fluid stress, in up to six states, with the contact states
+  fractures  opening, slip, aperture, pressure and tractions along each fracture; of more than 12
+             those with a well, that grow, that are longest, unless --only names this group
+  tips       stress intensities; load and growth; length, well pressure, states; fluid balance
+  wells      pressures, flow, volume and injectivity of each well
+  probes     pressure, displacement and stress at the probe points
+  view       the deformed body, its displacements drawn larger than they are
+
+A figure whose files are there and would come out the same is not drawn again.
+""",
+    example="./wingcrack plot out/wing_crack --times 0.5h,20h,40h --only maps,fractures\n",
+)
+def plot(given: SimpleNamespace) -> None:
+    """Draw the figures of finished or running runs into DIR/figures."""
+    if not given.directories:
+        raise UsageError("plot needs the directory of a run, as in ./wingcrack plot out/onset")
+    for directory in given.directories:
+        _judge_folder(directory)
+
+
+@command(
+    "view",
+    "wingcrack_view.cli:view",
+    Parameter("directory", "DIR", read=Path),
+    Parameter("--port", "N", "port of the page (default: a free one)", whole(1, 65535), 0),
+    flag("--no-browser", "only print the address, open no browser"),
+    about="""\
+The page shows a field of the rock in every written state, the fractures by state, the wells, and
+the history beside them. While a run goes on, new states appear by themselves. Only this machine
+reaches the page, and it asks no other. Ctrl-C ends it.
+""",
+    example="""\
+./wingcrack view out/onset
+./wingcrack view out/onset --port 8040 --no-browser    # then: ssh -L 8040:localhost:8040 HOST
+""",
+)
+def view(given: SimpleNamespace) -> None:
+    """Show a finished or running run in the browser."""
+    if given.directory is None:
+        raise UsageError("view needs the directory of a run, as in ./wingcrack view out/onset")
+    _judge_folder(given.directory)
+
+
+def _judge_folder(directory: Path) -> None:
+    if not directory.is_dir():
+        raise UsageError(f"there is no directory {directory}")
+
+
+@command(
+    "study",
+    "wingcrack_study.cli:study",
+    Parameter("study", "STUDY.toml", read=Path, required=True),
+    Parameter(
+        "--jobs",
+        "N",
+        "runs at a time, or workers of the cluster (default: the cores at hand,"
+        f" {len(os.sched_getaffinity(0))})",
+        whole(1, 1024),
+    ),
+    Parameter("--out", "DIR", "where the results go (default: out/STUDY)", Path),
+    flag("--quick", "the short form that the study's file tells in [quick]"),
+    choice(
+        "--cluster",
+        CLUSTERS,
+        "how the runs are spread: none (processes of this call), or by Dask on this machine"
+        " (local) or others (default: as the study's file says, else none)",
+    ),
+    _FORMATS,
+    flag("--check", "read the study and check all its scenes, run nothing"),
+    Parameter("--build", "DIR", "where the solver was built", absolute, TOP / "build" / "release"),
+    about="""\
+Runs a scene many times, as the study's file says (docs/studies.md), and writes table.csv,
+table.parquet, statistics.csv, study.json and figures/ into the folder. A call that was ended, even
+killed, goes on where it stopped when it is given again: finished runs are not repeated.
+""",
+    statuses="""\
+0 done; 1 a run failed (the table has all others); 2 bad study, scene or usage
+(nothing was run); 3 the environment lacks something; 130 and 143 interrupted: the table has what
+was done until then.""",
+    example="""\
+./wingcrack study inputs/studies/d3_rate.toml --quick
+./wingcrack study inputs/studies/monte_carlo.toml --jobs 4 --out out/chance
+""",
+)
+def study(given: SimpleNamespace) -> None:
+    """Run a scene many times as a file says, for a table and figures."""
+    if given.study.is_dir():
+        raise UsageError(f"{given.study} is a folder, not a study's file")
+    if not given.study.is_file():
+        raise UsageError(f"there is no study {given.study}")
+    name = given.study.stem + ("_quick" if given.quick else "")
+    given.out = (given.out or Path("out") / name).resolve()  # runs are made in folders of their own
+    place = next(folder for folder in (given.out, *given.out.parents) if folder.exists())
+    if not place.is_dir():
+        raise UsageError(f"results cannot go to {given.out}: {place} is a file")

@@ -1,0 +1,9 @@
+"""What a call may choose among; the command line and the packages take it from here."""
+
+from __future__ import annotations
+
+GROUPS = ("summary", "story", "network", "maps", "fractures", "tips", "wells", "probes", "view")
+ALL = "all"
+FORMATS = ("png", "pdf")
+DEFAULT_FORMATS = ("png",)
+CLUSTERS = ("none", "local", "slurm", "pbs", "ssh")  # how the runs of a study are spread
