@@ -7,7 +7,9 @@
 !! turns of pivoting and pressure diverge. With the pressure of the fluid held pivoting has its
 !! guarantee, as the stiffness of a body that neither gains nor loses fluid is symmetric and positive
 !! definite. From there the share that the rock has in the fluid's pressure rises to one, and Newton's
-!! method follows the state: its way is continuous, and a step along it that fails is shortened.
+!! method follows the state; a rise that fails is halved. Where this way turns back (rock between
+!! faces gives way at once), the fluid is held at the pressure that it has got there, and its share
+!! rises from none again: what gives way then does so without drawing on all the rest.
 module coarse_pivoting
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
@@ -53,17 +55,18 @@ contains
          if (has_start) call pivot(eq, body, x, has_start)
       end if
       eq%way = 0
-      call let_free(eq, x, has_start)
+      call let_free(eq, fluid, x, has_start)
       eq%share_of_rock = 1.0_rk
       eq%way = 0
    end subroutine pivot_fractures
 
-   !> Let the share of the rock in the pressure of the fluid rise from none to one.
-   subroutine let_free(eq, x, has_start)
+   !> Let the share of the rock in the pressure of the fluid rise to one, from the state without.
+   subroutine let_free(eq, fluid, x, has_start)
       class(fracture_system_t), intent(inout) :: eq
+      integer(ik), intent(in) :: fluid(:)  !< unknowns that are its pressure
       real(rk), intent(inout) :: x(:)  !< near the state without a share [Pa]
       logical, intent(out) :: has_start  !< the state with a share of one is near
-      real(rk), parameter :: first = 0.125_rk, longest = 0.25_rk, shortest = 1.0e-3_rk
+      real(rk), parameter :: first = 0.125_rk, longest = 0.25_rk, shortest = 1.0_rk/64.0_rk
       real(rk), parameter :: growth = 1.5_rk  ! of the steps, after each that succeeds
       integer(ik), parameter :: most_steps = 200
       type(iteration_settings_t) :: how
@@ -89,7 +92,12 @@ contains
             step = min(longest, growth*step)
          else
             step = 0.5_rk*step
-            has_start = step >= shortest
+            if (step < shortest) then
+               has_start = reached > 0.0_rk
+               eq%held_pressure = x(fluid)
+               reached = 0.0_rk
+               step = first
+            end if
          end if
       end do
       has_start = .false.
