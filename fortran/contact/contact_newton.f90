@@ -228,7 +228,7 @@ contains
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
       ! Next to the stiffness that would hold a face its strength falls slowly.
-      integer(ik), parameter :: rounds = 300, iterations_of_trial = 8
+      integer(ik), parameter :: rounds = 3000, iterations_of_trial = 8
       real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
       type(iteration_settings_t) :: briefly
       type(iteration_report_t) :: found
