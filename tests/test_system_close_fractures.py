@@ -24,13 +24,29 @@ def reason_of(folder: Path, text: str) -> str:
     return reason
 
 
+# What the files alone must show; the judge's other measures are for bodies loaded by their sides.
+MEASURES = (
+    "tension of contact",
+    "penetration",
+    "shear above friction",
+    "traction on open faces",
+    "slip against friction",
+    "mass balance",
+    "fracture volume",
+)
+
+
 @pytest.mark.parametrize("number", [66, 160, 200])
 def test_close_sets_have_an_initial_state(number: int, tmp_path: Path) -> None:
-    """None was found; the states obey friction, and fluid is conserved, by the files alone."""
-    (tmp_path / "scene.nml").write_text(close_sweeps.scene_text(number))
+    """None was found. The states obey friction, and fluid is conserved."""
+    text = close_sweeps.scene_text(number)
+    assert "&output vtu = .false." in text
+    text = text.replace("&output vtu = .false.", "&output interval = 1e-9")
+    (tmp_path / "scene.nml").write_text(text)
     verdict, reason, _ = call_solver(tmp_path, SOLVER, 200.0)
     assert (verdict, reason) == (None, "")
-    assert recompute.judge(tmp_path / "out").wrong == []
+    worst = recompute.judge(tmp_path / "out").worst
+    assert max(worst[name] for name in MEASURES) < 1e-9
 
 
 def test_close_sets_of_every_kind_run(tmp_path: Path) -> None:
@@ -41,7 +57,7 @@ def test_close_sets_of_every_kind_run(tmp_path: Path) -> None:
 def test_a_step_that_is_not_solved_names_fracture_and_place(tmp_path: Path) -> None:
     text = varied(
         ("rate = 5.0e-9", "rate = 1.0e-5"),
-        ("step = 3600.0", "step = 3600.0, smallest_factor = 0.5"),
+        ("step = 3600.0", "step = 3600.0, smallest_factor = 0.01"),
         ("intensities = .true.", "intensities = .false."),
         ("size_boundary = 0.25", "size_boundary = 0.25, newton_max = 1"),
     )
@@ -53,7 +69,7 @@ def test_a_fracture_that_a_well_empties_says_so(tmp_path: Path) -> None:
     text = varied(
         ("rate = 5.0e-9", "rate = -1.0e-6"),
         ("&injection ", "&injection name = 'a', "),
-        ("step = 3600.0", "step = 3600.0, smallest_factor = 0.5"),
+        ("step = 3600.0", "step = 3600.0, smallest_factor = 0.01"),
         ("intensities = .true.", "intensities = .false."),
     )
     reason = reason_of(tmp_path, text)
