@@ -65,8 +65,8 @@ void require_cuts(const SplitMesh& mesh, const Domain& domain) {
         Fault fault{FaultKind::too_near, {}, point.xy, ""};
         for (const int cell : point.cells) {
             const int fracture = mesh.fracture_cells[cell].fracture;
-            if (fault.culprits.empty() || (fault.culprits.size() == 1 &&
-                                           fault.culprits.front().number != fracture))
+            if (fault.culprits.empty() ||
+                (fault.culprits.size() == 1 && fault.culprits.front().number != fracture))
                 fault.culprits.push_back(fracture_culprit(fracture));
         }
         if (fault.culprits.empty())
@@ -93,7 +93,8 @@ void check_euler(const SplitMesh& mesh, const Domain& domain) {
     if (found == expected)
         return;
     require_cuts(mesh, domain);
-    require(false, "it has " + std::to_string(std::abs(found - expected)) + " cuts more or less than the fractures make (its Euler characteristic is " +
+    require(false, "it has " + std::to_string(std::abs(found - expected)) +
+                       " cuts more or less than the fractures make (its Euler characteristic is " +
                        std::to_string(found) + ", not " + std::to_string(expected) +
                        "); fractures that nearly touch are the usual cause: move them apart, or "
                        "make them one");

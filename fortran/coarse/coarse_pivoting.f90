@@ -5,11 +5,11 @@
 !! In the initial state the fluid has the rock's pressure. Rock between faces that are close to each
 !! other answers to their jumps with so much pressure that pivoting is without a guarantee, and that
 !! turns of pivoting and pressure diverge. With the pressure of the fluid held pivoting has its
-!! guarantee, as the stiffness of a body that neither gains nor loses fluid is symmetric and positive
-!! definite. From there the share that the rock has in the fluid's pressure rises to one, and Newton's
-!! method follows the state; a rise that fails is halved. Where this way turns back (rock between
-!! faces gives way at once), the fluid is held at the pressure that it has got there, and its share
-!! rises from none again: what gives way then does so without drawing on all the rest.
+!! guarantee, as the stiffness of a body that neither gains nor loses fluid is symmetric and
+!! positive definite. From there the share that the rock has in the fluid's pressure rises to one,
+!! and Newton's method follows the state; a rise that fails is halved. Where this way turns back
+!! (rock between faces gives way at once), the fluid is held at the pressure that it has got there,
+!! and its share rises from none again: what gives way then does so without drawing on all the rest.
 module coarse_pivoting
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk

@@ -12,7 +12,7 @@
 !! pressure, and under uniform shear without friction: means over cracks of 20 cells at 20, 45 and
 !! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
 !! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
-!! the body unstable. Rock between a tip and another fracture gives way more easily, and this quarter
+!! the body unstable. Rock between a tip and another fracture gives way more easily, and a quarter
 !! may be all it takes: where they share a triangle, or the nodes of one, no spring is negative.
 !!
 !! Fluid leaks off in the same way: its flux rises toward a tip with one over the square root of the

@@ -196,7 +196,7 @@ contains
    end subroutine let_wear
 
    !> Solve the system, from the x and the states that it has at the start.
-   recursive subroutine iterate(system, x, settings, report)
+   subroutine iterate(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -210,7 +210,7 @@ contains
    end subroutine iterate
 
    !> Solve a system whose strength does not depend on the step.
-   recursive subroutine iterate_held(system, x, settings, report)
+   subroutine iterate_held(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -222,7 +222,7 @@ contains
    end subroutine iterate_held
 
    !> Solve the system with its strength held, from which it falls, until it does no more.
-   recursive subroutine iterate_worn(system, x, settings, report)
+   subroutine iterate_worn(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -268,7 +268,7 @@ contains
    end subroutine iterate_worn
 
    !> Try the slower ways to a solution, where the iteration from the last x has failed.
-   recursive subroutine persevere(system, x, settings, report)
+   subroutine persevere(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -309,7 +309,7 @@ contains
    !> Iterate until convergence or failure. A start that is good enough is not accepted as it is: a
    !! state would not follow a load that changes by less than the tolerance, and the search for an
    !! onset of growth would not end.
-   recursive subroutine iterate_from(system, x, settings, report)
+   subroutine iterate_from(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -379,7 +379,7 @@ contains
    end subroutine iterate_damped
 
    !> Whether x, where the system was last evaluated, is a solution.
-   recursive subroutine judge(system, x, settings, course, report)
+   subroutine judge(system, x, settings, course, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(in) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
@@ -411,7 +411,7 @@ contains
    end subroutine judge
 
    !> The step from where the system was last evaluated.
-   recursive subroutine find_next(system, settings, course, step, report)
+   subroutine find_next(system, settings, course, step, report)
       class(contact_system_t), intent(inout) :: system
       type(iteration_settings_t), intent(in) :: settings
       type(course_t), intent(inout) :: course
