@@ -49,6 +49,11 @@ def test_close_sets_have_an_initial_state(number: int, tmp_path: Path) -> None:
     assert max(worst[name] for name in MEASURES) < 1e-9
 
 
+def test_a_close_set_goes_on_from_its_initial_state(tmp_path: Path) -> None:
+    """No step of any length was found from there."""
+    assert close_sweeps.sweep(tmp_path, [371]) == {"right": 1}
+
+
 def test_close_sets_of_every_kind_run(tmp_path: Path) -> None:
     seeds = [1, 2, 3, 4, 5]
     assert close_sweeps.sweep(tmp_path, seeds) == {"right": len(seeds)}

@@ -22,7 +22,7 @@
 !!
 !! What still cycles is iterated with shortened steps. Where states change the residuals keep their
 !! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
-!! continuous function, and a step is halved until it falls.
+!! continuous function, and a step is halved until it falls; at last from where the iteration began.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
@@ -215,10 +215,16 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
+      real(rk) :: start(size(x))
 
+      start = x
       call iterate_from(system, x, settings, report)
       if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
-      if (settings%perseveres) call persevere(system, x, settings, report)
+      if (.not. settings%perseveres) return
+      call persevere(system, x, settings, report)
+      if (report%outcome /= outcome_stuck .or. report%was_restarted) return
+      x = start
+      call iterate_damped(system, x, settings, report)
    end subroutine iterate_held
 
    !> Solve the system with its strength held, from which it falls, until it does no more.
