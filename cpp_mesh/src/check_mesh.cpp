@@ -2,6 +2,7 @@
 
 #include "errors.hpp"
 
+#include <cstdlib>
 #include <string>
 
 namespace cpp_mesh {
@@ -54,9 +55,34 @@ void check_faces(const SplitMesh& mesh) {
     }
 }
 
+// A point inside where d edges meet becomes d nodes, one on the boundary d + 1; where it is not so,
+// other fractures than those given are joined there, or some are not cut.
+void require_cuts(const SplitMesh& mesh, const Domain& domain) {
+    for (const FracturePoint& point : mesh.points) {
+        const int edges = static_cast<int>(point.cells.size());
+        if (point.copies == (domain.depth(point.xy) > 0.0 ? edges : edges + 1))
+            continue;
+        Fault fault{FaultKind::too_near, {}, point.xy, ""};
+        for (const int cell : point.cells) {
+            const int fracture = mesh.fracture_cells[cell].fracture;
+            if (fault.culprits.empty() ||
+                (fault.culprits.size() == 1 && fault.culprits.front().number != fracture))
+                fault.culprits.push_back(fracture_culprit(fracture));
+        }
+        if (fault.culprits.empty())
+            continue;
+        fault.reason = fault.culprits.size() == 1
+                           ? "{1} could not be cut open in the mesh {at}; move it away from what "
+                             "it nearly touches there, or make them one"
+                           : "{1} and {2} could not be cut open in the mesh {at}; move them apart, "
+                             "or make them one";
+        throw MeshError(fault);
+    }
+}
+
 // Cutting along a graph with E edges and V points inside the body changes the Euler
-// characteristic nodes - faces + cells from 1 to 1 + E - V, whatever the graph's form: a point
-// inside where d edges meet becomes d nodes, one on the boundary d + 1, and each edge becomes two.
+// characteristic nodes - faces + cells from 1 to 1 + E - V, whatever the graph's form, as each edge
+// becomes two and each point as many as require_cuts says.
 void check_euler(const SplitMesh& mesh, const Domain& domain) {
     int inside = 0;
     for (const FracturePoint& point : mesh.points)
@@ -64,8 +90,14 @@ void check_euler(const SplitMesh& mesh, const Domain& domain) {
     const int expected = 1 + static_cast<int>(mesh.fracture_cells.size()) - inside;
     const int found = static_cast<int>(mesh.xy.size()) - static_cast<int>(mesh.faces.size()) +
                       static_cast<int>(mesh.cells.size());
-    require(found == expected, "its Euler characteristic is " + std::to_string(found) + ", not " +
-                                   std::to_string(expected));
+    if (found == expected)
+        return;
+    require_cuts(mesh, domain);
+    require(false, "it has " + std::to_string(std::abs(found - expected)) +
+                       " cuts more or less than the fractures make (its Euler characteristic is " +
+                       std::to_string(found) + ", not " + std::to_string(expected) +
+                       "); fractures that nearly touch are the usual cause: move them apart, or "
+                       "make them one");
 }
 
 // Side + is on the right of the fracture, side - on its left.

@@ -115,10 +115,13 @@ contains
          end associate
       end do
       fluid = eq%layout%at_pressure(i)
-      eq%residual(fluid) = x(fluid) - 0.5_rk*(x(faces(1)) + x(faces(2)))
+      eq%residual(fluid) = x(fluid) - 0.5_rk*eq%share_of_rock*(x(faces(1)) + x(faces(2)))
+      if (eq%share_of_rock < 1.0_rk) then
+         eq%residual(fluid) = eq%residual(fluid) - (1.0_rk - eq%share_of_rock)*eq%held_pressure(i)
+      end if
       call eq%slopes%add(fluid, fluid, 1.0_rk)
       do side = 1, 2
-         call eq%slopes%add(fluid, faces(side), -0.5_rk)
+         call eq%slopes%add(fluid, faces(side), -0.5_rk*eq%share_of_rock)
       end do
    end subroutine fill_equilibrium
 

@@ -71,6 +71,9 @@ module coarse_fractures
       real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
       type(contact_law_t), allocatable :: law_held(:, :)  !< (2, n) see hold_strength
       logical :: holds_strength = .false.
+      !> Share of the rock's pressure in that of the fluid, in the initial state; the rest is held
+      real(rk) :: share_of_rock = 1.0_rk
+      real(rk), allocatable :: held_pressure(:)  !< (n) with a share below 1 [Pa]
       !> Contact's equations are that the tractions are zero
       logical :: is_without_contact = .false.
    contains

@@ -85,11 +85,37 @@ contains
          report%reason = "contact and flow on the fractures met a value that is not a number"
       case (outcome_singular)
          report%reason = "contact and flow on the fractures do not follow from the loads"
+         report%cell = worst_cell(eq, x)
       case default
          report%reason = "the iteration on contact and flow of the fractures did not converge"
+         report%cell = worst_cell(eq, x)
       end select
       if (report%converged) call accept(condensed, cells, dt, eq, x, state, report)
    end subroutine solve_fractures
+
+   !> The cell whose equations are missed most at x; 0: none is known.
+   integer(ik) function worst_cell(eq, x) result(worst)
+      type(equations_t), intent(inout) :: eq
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk) :: largest, rest
+      integer(ik) :: i, k
+
+      worst = 0
+      largest = 0.0_rk
+      call eq%evaluate(x)
+      do i = 1, eq%layout%n_cells
+         rest = abs(eq%residual(eq%layout%at_pressure(i)))
+         do k = 1, 2
+            associate (at => eq%layout%at_jump(i, k))
+               rest = max(rest, maxval(abs(eq%residual(at:at + 1))), &
+                          abs(eq%residual(eq%layout%at_face_pressure(i, k))))
+            end associate
+         end do
+         if (.not. rest > largest) cycle
+         largest = rest
+         worst = i
+      end do
+   end function worst_cell
 
    !> The state before, the rock at the fractures having their pressure, without flow.
    pure subroutine find_start(eq, state, x)
@@ -126,8 +152,9 @@ contains
       type(step_report_t), intent(inout) :: report
       type(cell_fluid_t) :: fluid(condensed%n)
       real(rk) :: aperture(condensed%n), head, residual
-      integer(ik) :: at, end, i
+      integer(ik) :: at, end, i, worst
 
+      worst = 0
       do i = 1, condensed%n
          aperture(i) = cells%residual_aperture(i) &
                        + 0.5_rk*(eq%q(condensed%layout%at_jump(i, 1)) &
@@ -136,6 +163,7 @@ contains
       if (.not. all(aperture > 0.0_rk)) then
          report%converged = .false.
          report%reason = "a fracture cell has an aperture that is not positive"
+         report%cell = minloc(aperture, dim=1, kind=ik)
          return
       end if
       do i = 1, condensed%n
@@ -144,6 +172,8 @@ contains
       if (any(fluid%void > aperture - cells%roughness)) then
          report%converged = .false.
          report%reason = "a fracture cell has less fluid than is drawn from it"
+         report%cell = maxloc(fluid%void - aperture + cells%roughness, dim=1, kind=ik)
+         report%is_drained = .true.
          return
       end if
       if (is_overdrawn(eq, x)) then
@@ -156,12 +186,14 @@ contains
             at = condensed%layout%at_jump(i, end)
             residual = contact_residual(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
                                         eq%q(at:at + 1), state%jump(2, end, i))
+            if (residual > report%contact_residual*report%stress_scale) worst = i
             report%contact_residual = max(report%contact_residual, residual/report%stress_scale)
          end do
       end do
       if (.not. report%contact_residual <= contact_residual_max) then
          report%converged = .false.
          report%reason = "the law of contact is not fulfilled on some fracture cell"
+         report%cell = worst
          return
       end if
       state%slip_before = state%jump(2, :, :)

@@ -1,16 +1,23 @@
 !> Another start for the iteration on the fractures where that finds no initial state: contact by
-!! complementary pivoting (contact_pivoting), in turns with the pressure of the fluid.
+!! complementary pivoting (contact_pivoting), the pressure of the fluid held, which is then let free
+!! bit by bit.
 !!
 !! In the initial state the fluid has the rock's pressure. Rock between faces that are close to each
-!! other answers to their jumps with so much pressure that pivoting is without a guarantee. With the
-!! pressure of the fluid held it has one, as the stiffness of a body that neither gains nor loses
-!! fluid is symmetric and positive definite. So both are found in turns.
+!! other answers to their jumps with so much pressure that pivoting is without a guarantee, and that
+!! turns of pivoting and pressure diverge. With the pressure of the fluid held pivoting has its
+!! guarantee, as the stiffness of a body that neither gains nor loses fluid is symmetric and
+!! positive definite. From there the share that the rock has in the fluid's pressure rises to one,
+!! and Newton's method follows the state; a rise that fails is halved. Where this way turns back
+!! (rock between faces gives way at once), the fluid is held at the pressure that it has got there,
+!! and its share rises from none again: what gives way then does so without drawing on all the rest.
 module coarse_pivoting
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
    use coarse_fractures, only: fracture_system_t
    use coarse_full_step, only: full_slopes
    use contact_law, only: contact_law_t
+   use contact_newton, only: iterate_from, iteration_report_t, iteration_settings_t, &
+                             outcome_converged
    use contact_pivoting, only: pivot_to_solution
    implicit none(type, external)
    private
@@ -35,28 +42,66 @@ contains
       class(fracture_system_t), intent(inout) :: eq
       real(rk), intent(inout) :: x(:)  !< where the iteration started [Pa]; replaced if solved
       logical, intent(out) :: has_start
-      integer(ik), parameter :: turns = 60
-      real(rk), parameter :: settled = 1.0e-3_rk  ! of the largest stress: Newton's method goes on
-      real(rk) :: change(eq%layout%n_cells)
-      integer(ik) :: faces(2, eq%layout%n_cells), fluid(eq%layout%n_cells), i, k
+      integer(ik) :: fluid(eq%layout%n_cells), i
       type(condensed_jumps_t) :: body
 
-      has_start = eq%settings%equilibrate .and. eq%condensed%is_full &
-                  .and. 2*eq%layout%n_cells <= most_points
+      has_start = eq%settings%equilibrate
       if (.not. has_start) return
       fluid = eq%layout%at_pressure([(i, i=1, eq%layout%n_cells)])
-      faces = reshape([(eq%layout%at_face_pressure(i, [1_ik, 2_ik]), i=1, eq%layout%n_cells)], &
-                      shape(faces))
-      do k = 1, turns
+      eq%held_pressure = x(fluid)
+      eq%share_of_rock = 0.0_rk
+      if (eq%condensed%is_full .and. 2*eq%layout%n_cells <= most_points) then
          call condense(eq, x, fluid, body, has_start)
          if (has_start) call pivot(eq, body, x, has_start)
-         if (.not. has_start) return
-         change = 0.5_rk*(x(faces(1, :)) + x(faces(2, :))) - x(fluid)
-         x(fluid) = x(fluid) + change
-         if (maxval(abs(change)) <= settled*eq%stress_scale) exit
-      end do
+      end if
+      eq%way = 0
+      call let_free(eq, fluid, x, has_start)
+      eq%share_of_rock = 1.0_rk
       eq%way = 0
    end subroutine pivot_fractures
+
+   !> Let the share of the rock in the pressure of the fluid rise to one, from the state without.
+   subroutine let_free(eq, fluid, x, has_start)
+      class(fracture_system_t), intent(inout) :: eq
+      integer(ik), intent(in) :: fluid(:)  !< unknowns that are its pressure
+      real(rk), intent(inout) :: x(:)  !< near the state without a share [Pa]
+      logical, intent(out) :: has_start  !< the state with a share of one is near
+      real(rk), parameter :: first = 0.125_rk, longest = 0.25_rk, shortest = 1.0_rk/64.0_rk
+      real(rk), parameter :: growth = 1.5_rk  ! of the steps, after each that succeeds
+      integer(ik), parameter :: most_steps = 200
+      type(iteration_settings_t) :: how
+      type(iteration_report_t) :: report
+      real(rk) :: reached, step, trial(size(x))
+      integer(ik) :: k
+
+      how = iteration_settings_t(tolerance=eq%settings%tolerance, allows_rounding=.true., &
+                                 iterations_max=eq%settings%iterations_max)
+      call iterate_from(eq, x, how, report)
+      has_start = report%outcome == outcome_converged
+      reached = 0.0_rk
+      step = first
+      do k = 1, most_steps
+         if (.not. has_start .or. reached >= 1.0_rk) return
+         eq%share_of_rock = min(1.0_rk, reached + step)
+         eq%way = 0
+         trial = x
+         call iterate_from(eq, trial, how, report)
+         if (report%outcome == outcome_converged) then
+            x = trial
+            reached = eq%share_of_rock
+            step = min(longest, growth*step)
+         else
+            step = 0.5_rk*step
+            if (step < shortest) then
+               has_start = reached > 0.0_rk
+               eq%held_pressure = x(fluid)
+               reached = 0.0_rk
+               step = first
+            end if
+         end if
+      end do
+      has_start = .false.
+   end subroutine let_free
 
    !> Tractions as functions of the jumps alone, the pressures of the fluid held.
    subroutine condense(eq, x, held, body, is_regular)

@@ -69,6 +69,8 @@ module coarse_state
       real(rk) :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]
       real(rk) :: rock_outflow = 0.0_rk  !< fluid out of the rock through the boundary [m2]
       character(len=:), allocatable :: reason  !< why it did not converge
+      integer(ik) :: cell = 0  !< fracture cell where it did not; 0: none in particular
+      logical :: is_drained = .false.  !< for more fluid is drawn from that than it has
    end type step_report_t
 
 end module coarse_state

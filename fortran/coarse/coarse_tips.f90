@@ -12,7 +12,8 @@
 !! pressure, and under uniform shear without friction: means over cracks of 20 cells at 20, 45 and
 !! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
 !! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
-!! the body unstable.
+!! the body unstable. Rock between a tip and another fracture gives way more easily, and a quarter
+!! may be all it takes: where they share a triangle, or the nodes of one, no spring is negative.
 !!
 !! Fluid leaks off in the same way: its flux rises toward a tip with one over the square root of the
 !! distance, is uniform in a cell here, and a crack leaks as if it were shorter by 0.22 of a cell at
@@ -61,6 +62,46 @@ contains
       ends%inwards = merge(1_ik, -1_ik, fracture%tip_end == 1)
    end function free_ends
 
+   !> Fracture cells whose nodes are joined by an edge to a node of another fracture, or are its
+   !! own: their jumps act on the same triangles.
+   pure function lie_beside_another(mesh) result(is_beside)
+      type(mesh_t), intent(in) :: mesh
+      logical :: is_beside(mesh%fracture%n_cells)
+      integer(ik), parameter :: several = -1
+      integer(ik) :: fracture_of(mesh%n_nodes)  ! 0: none
+      logical :: has_other(mesh%n_nodes)
+      integer(ik) :: cell, k, node, side
+
+      fracture_of = 0
+      do cell = 1, mesh%fracture%n_cells
+         associate (fracture => mesh%fracture%cell_fracture(cell))
+            do side = 1, 2
+               do k = 1, 2
+                  node = mesh%face_nodes(k, mesh%fracture%cell_faces(side, cell))
+                  if (fracture_of(node) == 0) fracture_of(node) = fracture
+                  if (fracture_of(node) /= fracture) fracture_of(node) = several
+               end do
+            end do
+         end associate
+      end do
+      has_other = fracture_of == several
+      do cell = 1, mesh%n_cells
+         associate (nodes => mesh%cell_nodes(:, cell))
+            do k = 1, 3
+               has_other(nodes(k)) = has_other(nodes(k)) &
+                                     .or. any(fracture_of(nodes) /= 0 &
+                                              .and. fracture_of(nodes) /= fracture_of(nodes(k)))
+            end do
+         end associate
+      end do
+      do cell = 1, mesh%fracture%n_cells
+         associate (faces => mesh%fracture%cell_faces(:, cell))
+            is_beside(cell) = any(has_other(mesh%face_nodes(:, faces(1)))) &
+                              .or. any(has_other(mesh%face_nodes(:, faces(2))))
+         end associate
+      end do
+   end function lie_beside_another
+
    !> Stiffness added to that of the condensed body, by unknown of q.
    pure function tip_springs(ends, rock, mesh, condensed) result(spring)
       type(crack_ends_t), intent(in) :: ends
@@ -71,8 +112,10 @@ contains
       type(solid_t) :: solid
       real(rk) :: at_end(2), left, share
       integer(ik) :: cell, step, tip
+      logical :: is_beside(mesh%fracture%n_cells)
 
       spring = 0.0_rk
+      is_beside = lie_beside_another(mesh)
       do tip = 1, size(ends%cell, kind=ik)
          cell = ends%cell(tip)
          step = ends%inwards(tip)
@@ -87,7 +130,9 @@ contains
             at_end = in_cell_behind(solid)
          end do
          share = 1.0_rk - left/condensed%length(cell)
-         call add(cell, at_end + (1.0_rk/share - 1.0_rk)*within(solid))
+         at_end = at_end + (1.0_rk/share - 1.0_rk)*within(solid)
+         if (is_beside(cell)) at_end = max(0.0_rk, at_end)
+         call add(cell, at_end)
          if (share < 1.0_rk) call add(cell + step, (1.0_rk - share)*in_cell_behind(solid))
       end do
 

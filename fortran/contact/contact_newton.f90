@@ -22,14 +22,15 @@
 !!
 !! What still cycles is iterated with shortened steps. Where states change the residuals keep their
 !! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
-!! continuous function, and a step is halved until it falls.
+!! continuous function, and a step is halved until it falls; at last from where the iteration began.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
    implicit none(type, external)
    private
 
-   public :: contact_system_t, iterate, iteration_report_t, iteration_settings_t, step_quality_t
+   public :: contact_system_t, iterate, iterate_from, iteration_report_t, iteration_settings_t, &
+             step_quality_t
    public :: outcome_converged, outcome_not_a_number, outcome_singular
 
    integer(ik), parameter :: outcome_converged = 0
@@ -214,10 +215,16 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
+      real(rk) :: start(size(x))
 
+      start = x
       call iterate_from(system, x, settings, report)
       if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
-      if (settings%perseveres) call persevere(system, x, settings, report)
+      if (.not. settings%perseveres) return
+      call persevere(system, x, settings, report)
+      if (report%outcome /= outcome_stuck .or. report%was_restarted) return
+      x = start
+      call iterate_damped(system, x, settings, report)
    end subroutine iterate_held
 
    !> Solve the system with its strength held, from which it falls, until it does no more.
@@ -227,7 +234,7 @@ contains
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
       ! Next to the stiffness that would hold a face its strength falls slowly.
-      integer(ik), parameter :: rounds = 300, iterations_of_trial = 8
+      integer(ik), parameter :: rounds = 3000, iterations_of_trial = 8
       real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
       type(iteration_settings_t) :: briefly
       type(iteration_report_t) :: found

@@ -283,16 +283,18 @@ contains
    end subroutine show_closing
 
    !> Find the jumps that fulfil equilibrium and the law. A reason is given if that fails.
-   subroutine solve_contact(problem, load, given_jump, contact, jump, reason)
+   subroutine solve_contact(problem, load, given_jump, contact, jump, reason, cell)
       type(contact_problem_t), intent(inout) :: problem
       real(rk), intent(in) :: load(:)  !< g (2 n) [N/m]
       real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
       type(contact_t), intent(inout) :: contact  !< replaced only by a solution
       real(rk), intent(out) :: jump(:)  !< w (2 n) [m]
       character(len=:), allocatable, intent(out) :: reason
+      integer(ik), intent(out) :: cell  !< fracture cell where it fails most; 0: none is known
       type(iteration_report_t) :: report
       real(rk) :: opened(problem%n), path(problem%n), x(2*problem%n)
 
+      cell = 0
       call gather(problem, contact%jump(2, :, :), jump(1 :: 2))
       call gather(problem, contact%jump(1, :, :), jump(2 :: 2))
       call gather(problem, contact%slip_before, problem%slip_before)
@@ -321,6 +323,7 @@ contains
       case default
          reason = "no state of the faces was found that obeys friction; fractures that nearly "// &
                   "touch, and friction above 1, make that hard"
+         cell = worst_cell(problem, x)
       end select
       if (allocated(reason)) return
 
@@ -333,6 +336,20 @@ contains
       contact%state = state_open
       call scatter(problem, jump, problem%traction, problem%state, contact)
    end subroutine solve_contact
+
+   !> The fracture cell of the pair whose equations are missed most at x; 0: none is known.
+   integer(ik) function worst_cell(problem, x) result(worst)
+      type(contact_problem_t), intent(inout) :: problem
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      integer(ik) :: pair
+
+      call problem%evaluate(x)
+      pair = (maxloc(abs(problem%residual), dim=1, kind=ik) + 1)/2
+      do worst = 1, size(problem%place, 2)
+         if (any(problem%place(:, worst) == pair)) return
+      end do
+      worst = 0
+   end function worst_cell
 
    !> From values on the cells to values at the pairs: means weighted by the cells' lengths.
    pure subroutine gather(problem, cells, pairs)

@@ -3,6 +3,7 @@ module fine_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   use base_number, only: brief_text
    use algebra_multifrontal, only: multifrontal_t
    use fine_assembly, only: find_blocks, list_blocks, tied_elements_t
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
@@ -17,7 +18,7 @@ module fine_model
    use fine_joints, only: tie_joints
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t, tip_collapsed
-   use mesh_types, only: mesh_t
+   use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
 
@@ -308,6 +309,7 @@ contains
       real(rk) :: load(1, size(self%constraints%kept_dofs)), jump(2*self%contact_problem%n)
       real(rk), allocatable :: loose(:)
       character(len=:), allocatable :: reason
+      integer(ik) :: cell
 
       if (self%contact_problem%n == 0) then
          call self%solver%solve(x(:, 1), error)
@@ -319,15 +321,29 @@ contains
          call close_joints(problem, load)
          loose = loose_unknowns(problem%loose, load(1, m + 1:))
          if (problem%loose%n > 0) load(1, :m) = load(1, :m) - matmul(loose, problem%loose%in_rows)
-         call solve_contact(problem, load(1, :m), given_jump, contact, jump, reason)
+         call solve_contact(problem, load(1, :m), given_jump, contact, jump, reason, cell)
          if (allocated(reason)) then
-            call raise_error(error, "fine_model_t%solve", "contact: "//reason//loose_place(self))
+            call raise_error(error, "fine_model_t%solve", "contact: "//reason// &
+                             cell_place(self%mesh%fracture, cell)//loose_place(self))
             return
          end if
          if (problem%loose%n > 0) loose = loose - matmul(problem%loose%by_jump, jump)
       end associate
       call self%solver%expand([jump, loose], x(:, 1), error)
    end subroutine solve_unknowns
+
+   !> Where a fracture cell is, for messages; empty if there is none.
+   pure function cell_place(fracture, cell) result(words)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: cell
+      character(len=:), allocatable :: words
+      real(rk) :: middle(2)  ! [m]
+
+      words = ""
+      if (cell == 0) return
+      middle = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+      words = ", most of all at ("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
+   end function cell_place
 
    !> Where a piece is that nothing but contact holds, for messages; empty if there is none.
    pure function loose_place(self) result(words)

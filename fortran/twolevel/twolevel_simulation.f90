@@ -193,7 +193,8 @@ contains
       if (self%report%converged) return
       call raise_error(error, "", "the initial state was not found: "//self%report%reason// &
                        "; fractures that nearly touch are the usual cause: move them apart, or "// &
-                       "make them one; so is friction above 1")
+                       "make them one, or begin with &initial fracture_pressure = 'undrained'; "// &
+                       "so is friction above 1")
    end subroutine find_initial_state
 
    !> What the wells have done.

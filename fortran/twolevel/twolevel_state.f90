@@ -31,6 +31,7 @@ module twolevel_state
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_trend, only: trend_t
+   use twolevel_unsolved, only: why_unsolved
    use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
@@ -231,6 +232,7 @@ contains
       self%undrained = .true.
      call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%longest(), self%state, &
                                   timers, report, error)
+      if (.not. allocated(error)) call explain(self, 0.0_rk, report)
       call self%rest_wells()
    end subroutine equilibrate
 
@@ -249,10 +251,24 @@ contains
       end if
       call self%ask(dt)
       call self%model%advance(self%mesh, dt, self%state, timers, report, error)
+      if (.not. allocated(error)) call explain(self, dt, report)
       if (allocated(error) .or. .not. report%converged) return
       self%values_are_current = .false.
       self%undrained = .false.
    end subroutine try_step
+
+   !> Put the reason why a step is not solved in the words of the scene.
+   subroutine explain(self, dt, report)
+      class(two_levels_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(step_report_t), intent(inout) :: report
+
+      if (report%converged) return
+      associate (wells => self%scene%injections)
+         report%reason = why_unsolved(report, self%coarse_network, self%mesh%fracture, wells, &
+                                      self%share, rate(wells, self%state%time, dt))
+      end associate
+   end subroutine explain
 
    !> Error in time of the state that a step of length dt has led to, relative [-].
    function step_error(self, dt) result(error)

@@ -9,6 +9,7 @@ program test_coarse_tips
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
+   use coarse_tips, only: tip_springs
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
@@ -26,6 +27,7 @@ program test_coarse_tips
    call test_lengths(.false., 0.2_rk)
    call test_lengths(.false., 0.45_rk)
    call test_leak_off()
+   call test_beside_another()
    call checks%finish()
 
 contains
@@ -131,5 +133,51 @@ contains
             half_length/cell - a/cell + ahead(k)
       end do
    end subroutine test_leak_off
+
+   !> Tips of two cracks side by side, and of a third one away from them: only those of the third
+   !! have springs that are negative.
+   subroutine test_beside_another()
+      real(rk), parameter :: gap = 0.01_rk*a
+      real(rk), parameter :: ends(2, 2, 3) = reshape([ &
+                                                     0.6_rk - a, 1.0_rk, 0.6_rk + a, 1.0_rk, &
+                                                     0.6_rk - a, 1.0_rk + gap, &
+                                                     0.6_rk + a, 1.0_rk + gap, &
+                                                     1.4_rk - a, 1.0_rk, 1.4_rk + a, 1.0_rk], &
+                                                     [2, 2, 3])
+      type(scene_t) :: scene
+      type(mesh_t) :: mesh
+      type(mesher_t) :: mesher
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: spring(:)
+      real(rk) :: lowest
+      integer(ik) :: at, cell, k, tip
+
+      scene = porous_body()
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      call mesh_square(checks, straight_network(ends), 0.02_rk, 0.3_rk, mesher, mesh)
+      model%cells = uniform_cells(mesh, contact_law_t(friction=0.5_rk, dilation=0.0_rk), 1.0e-4_rk)
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization of three cracks")
+      call new_state(mesh, model%cells, scene%initial, model, state)
+      call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
+      call checks%is_true(report%converged, "three cracks")
+      spring = tip_springs(model%ends, model%rock, mesh, model%condensed)
+      call checks%is_true(mesh%fracture%n_tips == 6, "six tips")
+      do tip = 1, mesh%fracture%n_tips
+         cell = model%ends%cell(tip)
+         lowest = huge(1.0_rk)
+         do k = 1, 2
+            at = model%condensed%layout%at_jump(cell, k)
+            lowest = min(lowest, minval(spring(at:at + 1)))
+         end do
+         call checks%is_true((lowest < 0.0_rk) .eqv. mesh%fracture%tip_fracture(tip) == 3, &
+                             "springs are negative only where no other crack is near")
+      end do
+   end subroutine test_beside_another
 
 end program test_coarse_tips
