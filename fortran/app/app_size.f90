@@ -2,7 +2,7 @@
 !! are real: a scene that is far too large has more of everything than an integer counts.
 module app_size
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_number, only: brief_text
    use base_plane, only: polygon_area
    use growth_network, only: network_of_scene, total_length
@@ -104,7 +104,6 @@ contains
       real(rk) :: n
       integer, parameter :: layers = 400
       real(rk), parameter :: cells_per_square = 4.0_rk/sqrt(3.0_rk)  ! equilateral triangles
-      real(rk), parameter :: pi = acos(-1.0_rk)
       !> The farthest point: no more than exp(-5) of the body is beyond it.
       real(rk), parameter :: covered = 5.0_rk
       type(outline_t) :: outline

@@ -12,9 +12,9 @@ module coarse_diffusion
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
-   use coarse_geometry, only: corner_geometry, face_length
    use coarse_layout, only: end_of_block, fracture_cell_of_block
    use coarse_regions, only: regions_t
+   use mesh_geometry, only: corner_geometry, face_length
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private

@@ -11,12 +11,12 @@ module coarse_matrix
    use base_lists, only: lists_t
    use coarse_diffusion, only: find_flux_stencil
    use coarse_elimination, only: local_system_t, share_t
-   use coarse_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component
    use coarse_regions, only: find_regions, regions_t
    use coarse_rock, only: rock_t
    use coarse_stress, only: find_stress_stencil
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_sides, only: boundary_side_t
    implicit none(type, external)

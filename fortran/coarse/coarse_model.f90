@@ -17,7 +17,6 @@ module coarse_model
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
    use coarse_fractures, only: newton_settings_t
-   use coarse_geometry, only: cell_area
    use coarse_guess, only: guess_t
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets

@@ -3,6 +3,7 @@ module coarse_points
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use coarse_matrix, only: matrix_t
+   use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
    implicit none(type, external)
@@ -95,7 +96,7 @@ contains
       integer(ik) :: k
 
       do k = 1, size(cells, kind=ik)
-         centre(:, k) = sum(mesh%xy(:, mesh%cell_nodes(:, cells(k))), dim=2)/3.0_rk - xy
+         centre(:, k) = cell_centre(mesh, cells(k)) - xy
       end do
       mean = sum(centre, dim=2)/size(cells)
       centre = centre - spread(mean, 2, size(cells))

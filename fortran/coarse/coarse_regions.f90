@@ -11,8 +11,8 @@ module coarse_regions
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
    use coarse_elimination, only: response_t
-   use coarse_geometry, only: corner_geometry
    use coarse_layout, only: block_count, end_block
+   use mesh_geometry, only: corner_geometry
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private

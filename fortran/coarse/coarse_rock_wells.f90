@@ -6,7 +6,7 @@
 !!   at a rate Q        q + C (p_w - p_w,before)/dt = Q with the storage C of the well
 !! Which one holds under a limit is tried: a step whose outcome contradicts it is repeated.
 module coarse_rock_wells
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_tolerances, only: same_value
    use coarse_matrix, only: matrix_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
@@ -40,7 +40,7 @@ contains
       real(rk), intent(in) :: radius  !< r_w [m]
       real(rk), intent(in) :: area  !< of the triangle [m2]
       real(rk), intent(in) :: mobility  !< K/mu [m2/(Pa s)]
-      real(rk), parameter :: pi = acos(-1.0_rk), radius_of_cell = 0.151_rk
+      real(rk), parameter :: radius_of_cell = 0.151_rk
 
       well_index = 2.0_rk*pi*mobility/log(radius_of_cell*sqrt(area)/radius)
    end function well_index

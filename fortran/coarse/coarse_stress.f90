@@ -25,11 +25,11 @@ module coarse_stress
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
-   use coarse_geometry, only: corner_geometry, face_length, outward_normal
    use coarse_in_situ, only: in_situ_state_t
    use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
    use coarse_regions, only: fracture_end_region, regions_t, traction_face
    use coarse_rock, only: rock_t
+   use mesh_geometry, only: corner_geometry, face_length, outward_normal
    use mesh_types, only: mesh_t
    use scene_sides, only: boundary_side_t
    implicit none(type, external)

@@ -2,9 +2,9 @@
 !! less what the rise of the stress with depth holds, and of regions what their density adds.
 module coarse_weight
    use base_kinds, only: ik, rk
-   use coarse_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t, weight_of_scene
    use coarse_permeability, only: mean_of_regions
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -12,8 +12,8 @@ module fine_model
                            solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t, rocks_t
    use fine_element, only: stiffness_matrix
-   use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
-                         face_conditions_t, face_contact, face_loaded, prescribe_jumps
+   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, &
+                         face_contact, face_loaded, prescribe_jumps
    use fine_joints, only: tie_joints
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t, tip_collapsed

@@ -3,7 +3,7 @@
 !! Triangle rules give barycentric coordinates, and weights that add up to one half, the area of the
 !! reference triangle, so that an integral is the sum of weight * Jacobian determinant * value.
 module fine_quadrature
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    implicit none(type, external)
    private
 
@@ -15,7 +15,6 @@ contains
    pure subroutine gauss_rule(n, points, weights)
       integer(ik), intent(in) :: n
       real(rk), intent(out) :: points(n), weights(n)  !< weights add up to 1 [-]
-      real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk) :: x, step, p, p_before, p_next, slope
       integer(ik) :: i, k, iteration
 

@@ -12,7 +12,8 @@
 !! problem. It has one solution where M is negative definite, else others too: here the tips that
 !! exceed their toughness most grow first, and others with them only as far as they must.
 module growth_competition
-   use algebra_lapack, only: dgesv
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use algebra_lapack, only: dgesv, dsyev
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
@@ -176,32 +177,17 @@ contains
       preference = largest_eigenvalue(turned(2:, 2:))
    end function preference
 
-   !> Of a symmetric matrix, by Jacobi's rotations.
+   !> Of a symmetric matrix; without a number where LAPACK finds none.
    pure real(rk) function largest_eigenvalue(matrix)
       real(rk), intent(in) :: matrix(:, :)
-      integer, parameter :: sweeps = 30
-      real(rk) :: a(size(matrix, 1), size(matrix, 1)), angle, rotation(2, 2), rest
-      integer :: i, j, k, n, sweep
+      real(rk) :: a(size(matrix, 1), size(matrix, 1)), eigenvalues(size(matrix, 1))
+      real(rk) :: work(3*size(matrix, 1))
+      integer(ik) :: info, n
 
       a = matrix
-      n = size(a, 1)
-      do sweep = 1, sweeps
-         rest = sum(a**2) - sum([(a(i, i)**2, i=1, n)])
-         if (.not. rest > epsilon(1.0_rk)**2*sum(a**2)) exit
-         do i = 1, n - 1
-            do j = i + 1, n
-               angle = 0.5_rk*atan2(2.0_rk*a(i, j), a(j, j) - a(i, i))
-               rotation = reshape([cos(angle), -sin(angle), sin(angle), cos(angle)], [2, 2])
-               do k = 1, n
-                  a(k, [i, j]) = matmul(a(k, [i, j]), rotation)
-               end do
-               do k = 1, n
-                  a([i, j], k) = matmul(transpose(rotation), a([i, j], k))
-               end do
-            end do
-         end do
-      end do
-      largest_eigenvalue = maxval([(a(i, i), i=1, n)])
+      n = size(a, 1, kind=ik)
+      call dsyev("N", "L", n, a, n, eigenvalues, work, size(work, kind=ik), info)
+      largest_eigenvalue = merge(eigenvalues(n), ieee_value(1.0_rk, ieee_quiet_nan), info == 0)
    end function largest_eigenvalue
 
 end module growth_competition

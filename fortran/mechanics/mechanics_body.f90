@@ -14,7 +14,7 @@ module mechanics_body
    use fine_springs, only: add_side_springs
    use fine_recovery, only: recover_by_patches, recovery_t
    use growth_network, only: end_pieces
-   use mechanics_faces, only: face_conditions, face_pressure, given_slip
+   use mechanics_faces, only: face_conditions, given_slip
    use mechanics_loads, only: body_loads, held_boundary
    use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &

@@ -1,9 +1,10 @@
 !> What the limits of a run watch in a body without fluid (simulation_limits).
 module mechanics_limits
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degrees, ik, rk
    use base_number, only: brief_text
    use mechanics_fields, only: fracture_jump
    use mechanics_state, only: loaded_body_t
+   use mesh_geometry, only: fracture_cell_centre
    use simulation_limits, only: limit_angle, limit_contact, limit_jump, limit_strain
    use simulation_watch, only: worst_place
    implicit none(type, external)
@@ -16,7 +17,6 @@ contains
    !> Take note of a state in equilibrium, before it is accepted.
    subroutine watch_body(self)
       class(loaded_body_t), intent(inout) :: self
-      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
       character(len=:), allocatable :: when
       real(rk), allocatable :: jump(:, :), ratio(:), strain(:)
       integer(ik) :: i
@@ -32,8 +32,8 @@ contains
             jump = fracture_jump(body)
             ratio = norm2(jump, dim=1)/body%model%mesh%face_length
             i = worst_place(ratio)
-            call watch%see(limit_jump, ratio(i), when, 0.5_rk* &
-                           sum(fracture%point_xy(:, fracture%cell_points(:, i)), dim=2))
+            call watch%see(limit_jump, ratio(i), when, &
+                           fracture_cell_centre(fracture, i))
          end if
          if (self%scene%growth%intensities) then
             call watch%see_tips(self%tip, self%scene%material%toughness, &

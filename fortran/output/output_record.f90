@@ -1,7 +1,7 @@
 !> run.json: what a run was, how it ended and what it cost. output_columns says what its keys mean.
 module output_record
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use base_texts, only: text_t
    use base_timers, only: phase_count, phase_names, timers_t
    use output_files, only: write_text_file
@@ -63,7 +63,7 @@ contains
          call json%add("forward_error_bound", self%forward_error_bound)
       end if
       if (self%smallest_angle > 0.0_rk) then
-         call json%add("smallest_angle_deg", self%smallest_angle*180.0_rk/acos(-1.0_rk))
+         call json%add("smallest_angle_deg", self%smallest_angle*180.0_rk/pi)
       end if
       if (self%energy_error > 0.0_rk) then
          call json%add("energy_error_relative", self%energy_error)

@@ -1,9 +1,10 @@
 !> The CSV tables of a run: where the value of each column of output_columns comes from.
 module output_tables
    use base_errors, only: error_t, keep_first
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degrees, ik, rk
    use base_texts, only: text_t
    use contact_states, only: state_name
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
    use output_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
                             probe_columns, slip_event_columns, tip_columns, well_columns, well_count
@@ -17,7 +18,6 @@ module output_tables
    public :: tables_t
 
    integer, parameter :: column_length = name_length + 17
-   real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  !< per radian
 
    !> The tables; those that the scene has nothing for stay closed.
    type :: tables_t
@@ -164,8 +164,7 @@ contains
       if (.not. self%fractures%is_open()) return
       associate (table => self%fractures)
          do cell = 1, mesh%n_cells
-            centre = 0.5_rk*(mesh%point_xy(:, mesh%cell_points(1, cell)) &
-               & + mesh%point_xy(:, mesh%cell_points(2, cell)))
+            centre = fracture_cell_centre(mesh, cell)
             call table%put("time_s", time)
             call table%put("load_factor", time)
             call table%put("fracture", mesh%cell_fracture(cell))

@@ -1,7 +1,7 @@
 !> Checks the sides of the body: which they are, and what is prescribed on each.
 module scene_check_sides
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_number, only: integer_text
    use base_tolerances, only: same_direction
    use scene_parameters, only: groups, side_names
@@ -15,7 +15,7 @@ module scene_check_sides
 
    public :: check_parts, check_sides
 
-   real(rk), parameter :: turn = 2.0_rk*acos(-1.0_rk)  !< [rad]
+   real(rk), parameter :: turn = 2.0_rk*pi  !< [rad]
 
 contains
 

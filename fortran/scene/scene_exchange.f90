@@ -2,11 +2,11 @@
 !>
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, radians, rk
    use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
                                       exchange_side
    use scene_exchange_rock, only: exchange_material, exchange_region
-   use scene_exchange_values, only: exchange, exchange_word, radians, set_text, to_degrees
+   use scene_exchange_values, only: exchange, exchange_word, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t

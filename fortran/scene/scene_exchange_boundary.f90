@@ -1,7 +1,7 @@
 !> Carries what holds and loads a body between the groups of a sheet and a scene, either way.
 module scene_exchange_boundary
-   use base_kinds, only: rk
-   use scene_exchange_values, only: exchange, radians, to_degrees
+   use base_kinds, only: radians, rk
+   use scene_exchange_values, only: exchange, to_degrees
    use scene_sheet, only: record_t
    use scene_sides, only: boundary_side_t, of_inflow, of_normal_traction, of_pressure, &
                           of_shear_traction, of_x_displacement, of_x_traction, &

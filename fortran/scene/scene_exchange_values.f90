@@ -1,12 +1,12 @@
 !> Carries single values between a group of a sheet and the components of a scene, either way.
 module scene_exchange_values
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: ik, lk, radians, rk
    use scene_sheet, only: parameter_index, record_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
-   public :: exchange, exchange_word, radians, set_text, to_degrees
+   public :: exchange, exchange_word, set_text, to_degrees
 
    !> Copy one value: into the scene if `reading` and the sheet has it, else into the sheet.
    !> A component that equals `nothing` stays out of the sheet.
@@ -18,8 +18,6 @@ module scene_exchange_values
       module procedure exchange_logical
       module procedure exchange_text
    end interface exchange
-
-   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  !< [rad/degree]
 
 contains
 

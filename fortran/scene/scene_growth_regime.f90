@@ -5,7 +5,7 @@
 !! K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu
 !! (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
 module scene_growth_regime
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -21,7 +21,6 @@ contains
       type(scene_t), intent(in) :: scene
       real(rk), intent(out) :: dimensionless_toughness  !< [-]
       integer, intent(out) :: well  !< which one has it; 0: there is none
-      real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk) :: modulus, rate, toughness, value
       integer :: i
 

@@ -2,7 +2,7 @@
 !> wrong units give, and values that do not go together. These are warnings; what cannot be
 !> simulated is refused (scene_check).
 module scene_plausible
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degrees, ik, rk
    use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
@@ -189,7 +189,6 @@ contains
       type(fracture_t), intent(in) :: fractures(:)
       logical, intent(in) :: has_fluid
       type(text_t), allocatable, intent(inout) :: list(:)
-      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
       integer :: i
 
       do i = 1, size(fractures)

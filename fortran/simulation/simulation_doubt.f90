@@ -3,7 +3,7 @@
 !! Growth in equilibrium asks whether K_eq reaches K_IC. A tip of which that may be so, within what
 !! its intensities may be off, has to know them to a share of K_IC (simulation_limits).
 module simulation_doubt
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use base_number, only: integer_text
    use growth_tip, only: tip_t
    use simulation_limits, only: judge, limit_k_to_grow, verdict_stop

@@ -7,6 +7,7 @@
 !! goes from 0, fractures by themselves, to 2 (Sanderson and Nixon 2015, The use of topology in
 !! fracture network characterization, J. Struct. Geol. 72: C_B, there with d = 3 at Y and 4 at X).
 module simulation_reach
+   use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, point_tip
    implicit none(type, external)
@@ -22,45 +23,46 @@ contains
       logical, intent(in) :: starts(:)  !< (cells) those of them that let pass
       logical, intent(in) :: passes(:)  !< (cells)
       logical :: reached(fracture%n_cells)
-      integer(ik) :: cell, i, k, n, next, queue(fracture%n_cells)
+      logical :: is_reached(fracture%n_points)
+      integer(ik), allocatable :: number(:)
+      integer(ik) :: cell
 
-      reached = starts .and. passes
-      n = count(reached)
-      queue(:n) = pack([(cell, cell=1, fracture%n_cells)], reached)
-      i = 0
-      do while (i < n)
-         i = i + 1
-         do k = 1, 2
-            associate (point => fracture%cell_points(k, queue(i)))
-               do cell = 1, fracture%point_cells%length(point)
-                  next = fracture%point_cells%at(point, cell)
-                  if (reached(next) .or. .not. passes(next)) cycle
-                  reached(next) = .true.
-                  n = n + 1
-                  queue(n) = next
-               end do
-            end associate
-         end do
+      number = groups_of_points(fracture, passes)
+      is_reached = .false.
+      do cell = 1, fracture%n_cells
+         if (starts(cell) .and. passes(cell)) &
+            is_reached(number(fracture%cell_points(1, cell))) = .true.
       end do
+      reached = passes .and. is_reached(number(fracture%cell_points(1, :fracture%n_cells)))
    end function reached_cells
 
    !> How many groups of fractures there are that hang together.
    pure integer(ik) function cluster_count(fracture) result(n)
       type(fracture_mesh_t), intent(in) :: fracture
-      logical :: all_pass(fracture%n_cells), seen(fracture%n_cells), starts(fracture%n_cells)
+      logical :: all_pass(fracture%n_cells), is_met(fracture%n_points)
+      integer(ik), allocatable :: number(:)
+
+      all_pass = .true.
+      number = groups_of_points(fracture, all_pass)
+      is_met = .false.
+      is_met(number(fracture%cell_points(1, :fracture%n_cells))) = .true.
+      n = count(is_met, kind=ik)
+   end function cluster_count
+
+   !> The numbers of the groups of points that cells which let pass join.
+   pure function groups_of_points(fracture, passes) result(number)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: passes(:)  !< (cells)
+      integer(ik), allocatable :: number(:)
+      type(groups_t) :: groups
       integer(ik) :: cell
 
-      n = 0
-      seen = .false.
-      all_pass = .true.
+      groups = single_groups(fracture%n_points)
       do cell = 1, fracture%n_cells
-         if (seen(cell)) cycle
-         n = n + 1
-         starts = .false.
-         starts(cell) = .true.
-         seen = seen .or. reached_cells(fracture, starts, all_pass)
+         if (passes(cell)) call groups%join(fracture%cell_points(1, cell), fracture%cell_points(2, cell))
       end do
-   end function cluster_count
+      number = groups%numbers()
+   end function groups_of_points
 
    !> Mean number of connected ends of a branch, C_B; 0 without branches [-].
    pure real(rk) function connections_per_branch(fracture) result(connections)

@@ -18,6 +18,7 @@
 module simulation_slip
    use base_kinds, only: ik, rk
    use contact_states, only: state_open, state_stick
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
    use results_rows, only: slip_event_t
    use simulation_shear, only: shear_t
@@ -234,7 +235,7 @@ contains
       if (is_sudden) amount%sudden = amount%moment
       amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
       do cell = first, last
-         centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+         centre = fracture_cell_centre(fracture, cell)
          amount%place = amount%place + moment(cell)*centre
          rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
          if (.not. rate > amount%rate) cycle

@@ -2,14 +2,15 @@
 !! state to the next, with the growth of the tips in between; and what its files shall hold.
 module simulation_types
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degrees, ik, rk
    use base_texts, only: text_t
    use base_timers, only: timers_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_states, only: state_open, state_slip
    use growth_front, only: front_t
    use growth_network, only: end_gain
    use growth_targets, only: target_boundary
    use growth_tip, only: tip_t
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use results_chronicle, only: chronicle_t, event_arrest, event_growth, event_joint, &
                                 event_opening, event_remesh, event_slip_onset
@@ -186,7 +187,7 @@ contains
 
       do cell = 1, fracture%n_cells
          f = fracture%cell_fracture(cell)
-         centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+         centre = fracture_cell_centre(fracture, cell)
          if (state(cell) == state_slip .and. slips(f) .and. .not. self%has_slipped(f)) then
             self%has_slipped(f) = .true.
             call self%chronicle%add_event(self%time(), event_slip_onset, "first slip", f, centre)
@@ -309,7 +310,6 @@ contains
    !> Note the tips that have grown in the last increment, joined something or stopped short of it.
    subroutine note_growth(self)
       class(simulation_t), intent(inout) :: self
-      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
       character(len=64) :: detail
       integer(ik) :: i
 

@@ -1,6 +1,6 @@
 !> Stress intensity factors from the displacements of the crack faces next to the tip.
 module tips_displacement
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use tips_types, only: tip_frame_t
@@ -20,7 +20,6 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       real(rk), intent(out) :: k1, k2  !< [Pa m^1/2]
-      real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk) :: near(2), far(2), combination(2), factor
       integer(ik) :: far_end
 

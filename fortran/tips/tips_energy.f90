@@ -13,7 +13,6 @@ module tips_energy
    use base_plane, only: triangle_area
    use fine_line, only: line_shapes, line_slopes
    use fine_loads, only: fine_loads_t
-   use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_quadrature, only: gauss_rule
    use tips_domain, only: domain_weight, element_rule, in_situ_stress, rule_size

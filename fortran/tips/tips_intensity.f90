@@ -1,7 +1,7 @@
 !> Stress intensity factors of a free tip by three methods, and how far they agree.
 module tips_intensity
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_plane, only: turned_left
    use base_tolerances, only: round_off, same_value
    use fine_faces, only: face_contact
@@ -196,7 +196,6 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_probe_t), intent(in) :: probe
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: pi = acos(-1.0_rk)
       real(rk), allocatable :: normal(:), r(:, :)
       logical, allocatable :: is_far(:)
       real(rk) :: doubt, traction(2)

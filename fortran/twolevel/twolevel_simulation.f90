@@ -1,7 +1,7 @@
 !> A scene with a fluid in progress: time steps, and growth of the tips in each of them.
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_solid, only: shear_beside

@@ -5,7 +5,6 @@ module twolevel_state
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use coarse_geometry, only: cell_area
    use coarse_model, only: new_state, rest_fluid
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
@@ -17,6 +16,7 @@ module twolevel_state
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t

@@ -9,7 +9,7 @@
 !! a row per window: 0 stands for the body.
 program network_windows
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use mechanics_simulation, only: mechanics_simulation_t
    use scene_namelist, only: read_scene
@@ -154,7 +154,7 @@ contains
       real(rk) :: ends(4)
       real(rk) :: half(2)
 
-      associate (angle => deg*acos(-1.0_rk)/180.0_rk)
+      associate (angle => deg*pi/180.0_rk)
          half = 0.5_rk*length*[cos(angle), sin(angle)]
       end associate
       ends = [centre - half, centre + half]

@@ -5,12 +5,12 @@ module sample_bodies
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use contact_law, only: contact_law_t
-   use coarse_geometry, only: face_length
    use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_geometry, only: face_length
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -3,7 +3,7 @@
 program test_coarse_joints
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_equations, only: equations_t
    use coarse_fields, only: cell_stresses
@@ -18,10 +18,9 @@ program test_coarse_joints
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: load_sides, mesh_square, porous_body, scattered, straight_network, &
                             uniform_cells
-   use scene_types, only: initial_t, scene_t
+   use scene_types, only: scene_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: side_pressure = 2.0e6_rk  !< of the left side, where it has one [Pa]
    type(checks_t) :: checks
 

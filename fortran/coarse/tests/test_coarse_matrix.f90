@@ -7,11 +7,11 @@ program test_coarse_matrix
    use algebra_lapack, only: dpotrf
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_geometry, only: cell_area, corner_geometry, face_length
    use coarse_matrix, only: discretize, matrix_t
    use coarse_regions, only: regions_t, traction_face
    use coarse_rock, only: new_rock, rock_t
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
    use sample_bodies, only: dense_matrix, linear_unknowns, load_sides, mesh_square, &
                             porous_body, scattered, shake, straight_network

@@ -3,7 +3,7 @@
 program test_coarse_model
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use contact_law, only: contact_law_t
    use contact_states, only: state_slip, state_stick
@@ -306,7 +306,7 @@ contains
       type(timers_t) :: timers
       type(step_report_t) :: report
       type(error_t), allocatable :: error
-      real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk, pi = acos(-1.0_rk)
+      real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk
       real(rk), parameter :: at(2, 2) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2])
       real(rk) :: exact, volume
 

@@ -6,7 +6,6 @@ program test_coarse_permeability
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_diffusion, only: cell_outflow, corner_gradient, region_fluxes
-   use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_permeability, only: bearable, conduction_t, layered, place_regions, share_of_cell
@@ -15,6 +14,7 @@ program test_coarse_permeability
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, load_sides, mesh_square, porous_body, &
                             straight_network, uniform_cells

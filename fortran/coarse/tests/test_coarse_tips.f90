@@ -5,7 +5,7 @@
 program test_coarse_tips
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
@@ -16,7 +16,6 @@ program test_coarse_tips
    use scene_types, only: scene_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]
    integer(ik), parameter :: n_cells = 20
    type(checks_t) :: checks

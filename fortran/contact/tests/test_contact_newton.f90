@@ -1,6 +1,6 @@
 !> Bodies of which no other start is known, for the test below.
 module one_start
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use contact_pairs, only: contact_pairs_t
    implicit none(type, external)
    private

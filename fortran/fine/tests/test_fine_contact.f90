@@ -3,7 +3,7 @@
 program test_fine_contact
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use contact_law, only: contact_law_t
    use contact_states, only: state_open, state_slip, state_stick
    use exact_cracks, only: bent_crack, centre_crack, uniform_field
@@ -127,7 +127,7 @@ contains
       associate (b => boxes)
          mesh = cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [4*b, 4*b], 2*b, b + 1, 3*b)
       end associate
-      call rotate_mesh(mesh, 0.25_rk*acos(-1.0_rk), .false.)
+      call rotate_mesh(mesh, 0.25_rk*pi, .false.)
       call model%set_mesh(mesh, rock, error)
       call checks%no_error(error, "cracked plate is numbered")
    end subroutine set_crack

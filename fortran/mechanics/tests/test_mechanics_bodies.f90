@@ -3,7 +3,7 @@
 program test_mechanics_bodies
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use mechanics_fields, only: cell_stress
    use scene_outline, only: outline_of_scene, outline_t
@@ -13,7 +13,6 @@ program test_mechanics_bodies
    implicit none(type, external)
    real(rk), parameter :: young = 2.0e9_rk, poisson = 0.3_rk
    real(rk), parameter :: round_off = 1.0e-10_rk  !< of solutions that the elements hold exactly
-   real(rk), parameter :: pi = acos(-1.0_rk)
    type(checks_t) :: checks
 
    call check_outline()

@@ -3,7 +3,7 @@
 program test_mechanics_equilibrium
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use mechanics_balance, only: balance_load
    use mechanics_misfit, only: share_misfit, tolerance
@@ -12,7 +12,6 @@ program test_mechanics_equilibrium
    use scene_types, only: fracture_t, restraint_t, scene_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    type(checks_t) :: checks
 
    call check_strip("length")

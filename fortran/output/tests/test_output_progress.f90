@@ -1,7 +1,7 @@
 !> Tests of output_progress: what the line says, and that it says nothing where nobody looks.
 program test_output_progress
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
+   use testing_checks, only: checks_t
    use output_progress, only: duration_text, progress_line, progress_t, progress_values_t
    implicit none(type, external)
 

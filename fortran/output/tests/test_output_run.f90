@@ -4,7 +4,7 @@ program test_output_run
    use testing_files, only: file_exists, file_text
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: phase_output, timers_t
    use contact_states, only: state_open, state_slip, state_stick
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
@@ -79,7 +79,7 @@ contains
             & seismic_moment=1.0e6_rk))
          call output%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
             & xy=[1.0_rk, 0.5_rk], k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
-            & keq=1.05e6_rk, g=30.0_rk, angle=acos(-1.0_rk)/4.0_rk, advance=0.0_rk, &
+            & keq=1.05e6_rk, g=30.0_rk, angle=pi/4.0_rk, advance=0.0_rk, &
             & k1_error=1.0e3_rk, k2_error=2.0e3_rk, g_domain=28.0_rk, g_error=1.5_rk, &
             & k1_dc_error=3.0e3_rk, k2_dc_error=4.0e3_rk, k1_corrected=1.0005e6_rk, &
             & k2_corrected=2.005e5_rk))

@@ -10,7 +10,6 @@
 !! from these 10 9, which meets 9 11 in a V; and 13 14 15 by itself.
 program test_simulation_reach
    use base_kinds, only: ik, rk
-   use base_lists, only: lists_t
    use mesh_types, only: fracture_mesh_t, point_corner, point_interior, point_joint_x, point_tip
    use simulation_reach, only: cluster_count, connections_per_branch, reached_cells
    use simulation_stretches, only: stretches_t

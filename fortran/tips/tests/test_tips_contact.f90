@@ -3,7 +3,7 @@
 program test_tips_contact
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, pi, rk
    use contact_law, only: contact_law_t
    use exact_cracks, only: bent_crack, centre_crack, uniform_field
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
@@ -18,7 +18,6 @@ program test_tips_contact
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
    real(rk), parameter :: a = 0.05_rk  ! half-length [m]
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.0_rk, .false.)
    logical :: in_situ

@@ -3,7 +3,7 @@
 program test_tips_intensity
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, pi, rk
    use exact_cracks, only: centre_crack, uniform_field
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_jump, face_slip, loaded_everywhere
@@ -15,7 +15,6 @@ program test_tips_intensity
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
    real(rk), parameter :: half_length = 0.05_rk  ! a [m]
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 1.0_rk, .false.)
    integer(ik) :: i

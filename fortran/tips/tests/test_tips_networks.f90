@@ -4,7 +4,7 @@
 program test_tips_networks
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use exact_cracks, only: uniform_field
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_jump, loaded_everywhere
@@ -17,7 +17,6 @@ program test_tips_networks
    use tips_types, only: intensity_t
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: tolerance = 0.002_rk  ! half of it is what the window's size leaves
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 1.0_rk, .false.)
 

@@ -4,7 +4,7 @@
 program test_tips_plate
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side, &
                             nearest_node
    use fine_elasticity, only: elasticity_t
@@ -21,7 +21,6 @@ program test_tips_plate
    use tips_types, only: intensity_t
    implicit none(type, external)
    integer(ik), parameter :: tension = 1, shear = 2, clamped = 3
-   real(rk), parameter :: pi = acos(-1.0_rk)
    type(checks_t) :: checks
    type(intensity_t) :: intensity, first
    real(rk) :: energy, exact

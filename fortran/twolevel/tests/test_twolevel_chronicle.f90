@@ -1,7 +1,7 @@
 !> What a simulation notes of its tips: rows before and after growth, joints, arrests, contact.
 program test_twolevel_chronicle
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
+   use testing_checks, only: checks_t
    use contact_states, only: state_open, state_slip, state_stick
    use growth_network, only: network_of_scene
    use growth_targets, only: target_boundary

@@ -6,7 +6,7 @@
 program test_twolevel_doubt
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
    use sample_scenes, only: add_fracture, squeezed_body
@@ -20,7 +20,7 @@ program test_twolevel_doubt
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
    real(rk), parameter :: pressure = 6.8e6_rk, friction = 0.5_rk
    real(rk), parameter :: known = (5.0e6_rk - friction*(15.0e6_rk - pressure)) &
-                          *sqrt(acos(-1.0_rk)*a)  !< K_II [Pa m^1/2]
+                          *sqrt(pi*a)  !< K_II [Pa m^1/2]
    !> Share of `known` by which K of the body differs from that of an infinite one: a^2 over the
    !! square of its half-width of 1 m, times less than 1.
    real(rk), parameter :: finite = a**2

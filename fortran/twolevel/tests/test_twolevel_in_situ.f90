@@ -3,7 +3,7 @@
 program test_twolevel_in_situ
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use base_timers, only: timers_t
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: step_report_t
@@ -176,7 +176,7 @@ contains
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
-      real(rk), parameter :: pi = acos(-1.0_rk), a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
+      real(rk), parameter :: a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
       real(rk) :: k(2), modulus, unit
 
       scene = basin()

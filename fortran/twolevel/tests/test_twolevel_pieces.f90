@@ -3,7 +3,7 @@
 program test_twolevel_pieces
    use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use growth_network, only: end_place
    use growth_targets, only: target_boundary
@@ -75,7 +75,7 @@ contains
    !! that the others take lets the pressure fall below that of the onset, 2 MPa + K_IC/sqrt(pi a).
    subroutine test_two_bars(gap)
       real(rk), intent(in) :: gap  !< [m]
-      real(rk), parameter :: half = 0.2_rk, pi = acos(-1.0_rk)
+      real(rk), parameter :: half = 0.2_rk
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       real(rk) :: s

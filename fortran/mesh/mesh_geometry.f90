@@ -1,12 +1,12 @@
-!> Lengths and areas of the mesh, and the corners of its cells.
-module coarse_geometry
+!> Lengths, areas and centres of the cells and faces of a mesh, and the corners of its cells.
+module mesh_geometry
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
-   use mesh_types, only: mesh_t
+   use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
 
-   public :: cell_area, corner_geometry, face_length, outward_normal
+   public :: cell_area, cell_centre, corner_geometry, face_length, fracture_cell_centre, outward_normal
 
 contains
 
@@ -64,6 +64,22 @@ contains
       if (dot_product(normal, inward) > 0.0_rk) normal = -normal
    end function outward_normal
 
+   pure function cell_centre(mesh, cell) result(centre)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+   end function cell_centre
+
+   pure function fracture_cell_centre(fracture, cell) result(centre)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: cell
+      real(rk) :: centre(2)  !< [m]
+
+      centre = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+   end function fracture_cell_centre
+
    !> Area of a cell.
    pure function cell_area(mesh, cell) result(area)
       type(mesh_t), intent(in) :: mesh
@@ -75,4 +91,4 @@ contains
       area = triangle_area(corners)
    end function cell_area
 
-end module coarse_geometry
+end module mesh_geometry

@@ -1,13 +1,13 @@
-!> Unknowns of the fractures that leave the full matrix: each is linked to a few others by an
-!! equation that holds no more than these,
+!> Unknowns that leave a full matrix: each is linked to a few others by an equation that holds no
+!! more than these,
 !!   step(unknown) = rest + sum_k share_k step(partner_k)
 !! and leaves together with its equation. In networks most unknowns are linked: where faces stick
-!! the jumps do not change, in rock that conducts far less than the fractures the pressures of the
-!! faces are those of the fluid, and along a fracture each pressure of the fluid follows from the
-!! one before and the flow between.
+!! the jumps do not change, those that slip open with their slip alone, in rock that conducts far
+!! less than the fractures the pressures of the faces are those of the fluid, and along a fracture
+!! each pressure of the fluid follows from the one before and the flow between.
 !!
 !! The links are in the order in which their unknowns leave: partners leave later, or stay.
-module coarse_links
+module algebra_links
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
@@ -27,6 +27,7 @@ module coarse_links
       logical, allocatable :: is_used(:)  !< (equations)
    contains
       procedure :: link
+      procedure :: link_pair
       procedure :: kept_unknowns
       procedure :: kept_equations
       procedure :: take_residual
@@ -75,6 +76,28 @@ contains
       self%is_linked(unknown) = .true.
       self%is_used(equation(1)) = .true.
    end subroutine link
+
+   !> Link an unknown and the next one, as far as the two equations of these numbers hold no others.
+   pure subroutine link_pair(self, at, own, is_own)
+      class(links_t), intent(inout) :: self
+      integer(ik), intent(in) :: at  !< the first one's number
+      real(rk), intent(in) :: own(2, 2)  !< (equation, unknown) derivatives [-]
+      logical, intent(in) :: is_own(2)  !< the equation holds no other unknown
+      integer(ik), parameter :: none(0) = [integer(ik) ::]
+      real(rk), parameter :: nothing(0) = [real(rk) ::]
+      real(rk) :: determinant
+
+      if (.not. is_own(1) .or. .not. abs(own(1, 1)) > 0.0_rk) return
+      if (is_own(2)) then
+         determinant = own(1, 1)*own(2, 2) - own(1, 2)*own(2, 1)
+         if (.not. abs(determinant) > 0.0_rk) return
+         call self%link(at, [at, at + 1], [-own(2, 2), own(1, 2)]/determinant, none, nothing)
+         call self%link(at + 1, [at + 1, at], [-own(1, 1), own(2, 1)]/determinant, none, nothing)
+      else
+         call self%link(at, [at, 0_ik], [-1.0_rk/own(1, 1), 0.0_rk], [at + 1], &
+                        [-own(1, 2)/own(1, 1)])
+      end if
+   end subroutine link_pair
 
    !> The unknowns that stay.
    pure function kept_unknowns(self) result(numbers)
@@ -143,4 +166,4 @@ contains
       end do
    end subroutine complete
 
-end module coarse_links
+end module algebra_links

@@ -1,8 +1,8 @@
 !> Links: three of five unknowns leave, one after another, and what is left gives all of them.
-program test_coarse_links
+program test_algebra_links
+   use algebra_links, only: links_t, new_links
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_links, only: links_t, new_links
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -53,4 +53,4 @@ contains
       call checks%is_close(maxval(abs(step - solution)), 0.0_rk, 1.0e-13_rk, "all five")
    end subroutine leaves_and_comes_back
 
-end program test_coarse_links
+end program test_algebra_links
