@@ -85,12 +85,12 @@ SCENES = {
 # Modules, or the beginnings of their names, that a scene has no use for. Those of growth: what
 # evaluates tips and moves them.
 FLUID = ("coarse_", "twolevel_")
-TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "growth_law")
+TIPS = ("fine_tip_intensity", "fine_tip_interaction", "fine_tip_energy", "tips_displacement", "growth_law")
 CONTACT = ("contact_law",)
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
 JOINTS = ("coarse_joint_flow",)
 REGIONS = ("coarse_permeability", "scene_region_outline", "scene_check_regions", "base_clip")
-FILES = ("output_vtu",)
+FILES = ("report_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,
     "open crack": FLUID + TIPS + CONTACT + FILES,

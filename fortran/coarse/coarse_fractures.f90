@@ -7,16 +7,16 @@ module coarse_fractures
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
+   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_joints, only: joints_t
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_slopes, only: slopes_t
-   use coarse_state, only: fracture_cells_t, state_t
-   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_sparse_step, only: sparse_step_t
+   use coarse_state, only: fracture_cells_t, state_t
    use coarse_wells, only: wells_t
    use contact_law, only: contact_law_t
    use contact_newton, only: contact_system_t, step_quality_t
-   use contact_wear, only: weaken
+   use contact_pairs, only: weaken
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private

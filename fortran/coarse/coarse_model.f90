@@ -11,27 +11,22 @@ module coarse_model
                           phase_solve, timers_t
    use base_tolerances, only: same_time
    use coarse_condensed, only: condensed_t
-   use contact_states, only: state_stick
-   use coarse_damping, only: dampers, jumps_of
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
    use coarse_fractures, only: newton_settings_t
-   use coarse_guess, only: guess_t
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: discretize, matrix_t, renew_sides
    use coarse_newton, only: solve_fractures
-   use coarse_points, only: add_point_forces, hold_points
-   use coarse_regions, only: regions_t
-   use coarse_permeability, only: place_regions, relative_resistance
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_rock_wells, only: rock_wells_t
+   use coarse_own_pressure, only: add_point_forces, hold_points
+   use coarse_permeability, only: find_weight, place_regions, relative_resistance
+   use coarse_regions, only: new_rock, regions_t, rock_t
    use coarse_sparse_step, only: sparse_step_t
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
-   use coarse_weight, only: find_weight
-   use coarse_wells, only: wells_t
+   use coarse_state, only: fracture_cells_t, guess_t, state_t, step_report_t
+   use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
+   use coarse_wells, only: rock_wells_t, wells_t
+   use contact_law, only: state_stick
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene

@@ -4,14 +4,12 @@ module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_equations, only: equations_t
-   use coarse_guess, only: guess_t
-   use coarse_joints, only: joints_t
-   use coarse_loops, only: flows_in_loops, unknown_flow
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
+   use coarse_joints, only: flows_in_loops, joints_t, unknown_flow
    use coarse_sparse_step, only: sparse_step_t
+   use coarse_state, only: fracture_cells_t, guess_t, state_t, step_report_t
    use coarse_well_flow, only: find_well
    use coarse_wells, only: wells_t
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular

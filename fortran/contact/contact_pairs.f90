@@ -3,6 +3,8 @@
 !! What is left of the equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair),
 !! g the load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The law of
 !! contact at every pair closes the system.
+!!
+!! Strength that is held within a step, and falls from one solution to the next: see contact_newton.
 module contact_pairs
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
@@ -10,11 +12,10 @@ module contact_pairs
    use contact_law, only: contact_equations, contact_law_t, contact_residual
    use contact_newton, only: contact_system_t, step_quality_t
    use contact_pivoting, only: pivot_to_solution
-   use contact_wear, only: weaken
    implicit none(type, external)
    private
 
-   public :: contact_pairs_t
+   public :: contact_pairs_t, weaken
 
    !> The pairs, their history and their load.
    type, extends(contact_system_t) :: contact_pairs_t
@@ -297,5 +298,27 @@ contains
 
       self%law = self%law_before
    end subroutine let_wear
+
+   !> Let a held law become as weak as what the faces have slipped and opened in the step leaves it;
+   !! it never becomes stronger again.
+   pure subroutine weaken(law, traction, jump, slip, held, lost)
+      type(contact_law_t), intent(in) :: law  !< at the start of the step
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip  !< of the step [m]
+      type(contact_law_t), intent(inout) :: held  !< law whose strength does not change
+      real(rk), intent(out) :: lost  !< strength [Pa]
+      type(contact_law_t) :: last
+      real(rk) :: slope
+
+      last = held
+      held = law
+      held%wears = .false.
+      call law%friction_at(slip, held%friction, slope)
+      held%friction = min(held%friction, last%friction)
+      held%bond = min(law%bond_left(law%apart(traction, jump), slip), last%bond)
+      lost = (last%friction - held%friction)*max(0.0_rk, -traction(1)) &
+             + (last%bond - held%bond)*max(law%tension, law%cohesion)
+   end subroutine weaken
 
 end module contact_pairs

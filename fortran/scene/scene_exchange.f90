@@ -3,14 +3,13 @@
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
    use base_kinds, only: ik, radians, rk
-   use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
-                                      exchange_side
-   use scene_exchange_rock, only: exchange_material, exchange_region
-   use scene_exchange_values, only: exchange, exchange_word, set_text, to_degrees
+   use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
+                                    exchange_point_load, exchange_region, exchange_restraint, &
+                                    exchange_side, exchange_word, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t
-   use scene_types, only: probe_t, scene_t
+   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t, probe_t, &
+                          scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private

@@ -6,8 +6,8 @@ module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: corner_tractions
-   use coarse_nodes, only: curved_displacement
    use coarse_layout, only: block_count, end_block
+   use coarse_nodes, only: curved_displacement
    use mesh_geometry, only: cell_centre
    use twolevel_faces, only: coarse_jumps
    use twolevel_state, only: two_levels_t

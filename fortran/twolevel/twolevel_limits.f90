@@ -1,4 +1,4 @@
-!> What the limits of a run watch in a scene with a fluid (simulation_limits).
+!> What the limits of a run watch in a scene with a fluid (report_limits).
 module twolevel_limits
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk
@@ -6,11 +6,11 @@ module twolevel_limits
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
    use mesh_geometry, only: cell_centre, fracture_cell_centre
-   use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                                limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
-                                limit_loop_flow, limit_mass, limit_pressure_load, &
-                                limit_pressure_stiffness, limit_strain, limit_table
-   use simulation_watch, only: worst_place
+   use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
+                            limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
+                            limit_loop_flow, limit_mass, limit_pressure_load, &
+                            limit_pressure_stiffness, limit_strain, limit_table
+   use report_watch, only: worst_place
    use twolevel_scales, only: pressure_scale
    use twolevel_state, only: two_levels_t
    implicit none(type, external)

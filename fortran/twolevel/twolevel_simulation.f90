@@ -7,9 +7,9 @@ module twolevel_simulation
    use coarse_solid, only: shear_beside
    use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
-   use results_rows, only: history_row_t, probe_row_t, well_row_t
+   use report_rows, only: history_row_t, probe_row_t, well_row_t
+   use report_simulation, only: snapshot_t
    use scene_types, only: scene_t
-   use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess

@@ -1,10 +1,10 @@
 !> Wells: which fracture cells they feed, what they are asked for, and when that changes.
 module twolevel_wells
    use base_kinds, only: ik, rk
+   use base_plane, only: nearest_place
    use base_tolerances, only: same_place, same_value
    use coarse_joints, only: joints_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
-   use base_plane, only: nearest_place
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
    use scene_types, only: injection_t

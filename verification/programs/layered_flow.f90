@@ -12,7 +12,7 @@ program layered_flow
    use base_timers, only: timers_t
    use coarse_matrix, only: discretize
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_rock, only: resistivity_of
+   use coarse_regions, only: resistivity_of
    use coarse_state, only: state_t, step_report_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_geometry, only: cell_area, face_length

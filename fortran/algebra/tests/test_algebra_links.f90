@@ -1,8 +1,8 @@
 !> Links: three of five unknowns leave, one after another, and what is left gives all of them.
 program test_algebra_links
    use algebra_links, only: links_t, new_links
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,10 +1,10 @@
 !> Tests of base_number: the text is short, and reads back as the same number, bit for bit.
 program test_base_number
-   use testing_checks, only: checks_t
+   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
+                                            ieee_value
    use base_kinds, only: ik, lk, pi, rk
    use base_number, only: brief_text, exact_text, integer_text
-   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_value
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -3,7 +3,6 @@
 !! the stress s that it releases; and what leaks off from it, against that of a strip of one
 !! pressure.
 program test_coarse_tips
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
@@ -14,6 +13,7 @@ program test_coarse_tips
    use mesh_types, only: mesh_t
    use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]

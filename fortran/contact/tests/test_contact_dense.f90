@@ -3,10 +3,10 @@
 !! flows that a condition leaves out.
 program test_contact_dense
    use algebra_links, only: links_t, new_links
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use contact_dense, only: solve_by_parts, solve_full
    use contact_newton, only: step_quality_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -3,11 +3,9 @@
 !! traction. Friction from none to 2, with dilation and without, T and X joints, kinks, fractures
 !! that end on the boundary.
 program test_fine_contact_random
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_stick
+   use contact_law, only: contact_law_t, state_open, state_stick
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
@@ -16,6 +14,7 @@ program test_fine_contact_random
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    integer(ik), parameter :: n_bodies = 6, n_loads = 6, n_laws = 6
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4

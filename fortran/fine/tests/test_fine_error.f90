@@ -1,6 +1,5 @@
 !> Recovered stresses and estimated errors against exact fields.
 program test_fine_error
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use exact_fields, only: angle, rock, solve_exact, true_errors
@@ -11,6 +10,7 @@ program test_fine_error
    use fine_recovery, only: recover_by_averages, recover_by_patches, recovery_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

@@ -1,9 +1,9 @@
 !> The field of unit intensity against the polar formulas of Williams (1957) and against
 !! differences.
 program test_fine_tip_field
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, pi, rk
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk), parameter :: mu = 0.8_rk, kappa = 1.9_rk

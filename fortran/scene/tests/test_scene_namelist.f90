@@ -1,11 +1,11 @@
 !> What a file says arrives in the scene, and what it leaves out has its default.
 program test_scene_namelist
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: pi, rk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_lines, source_path
    use scene_types, only: discretization_t, growth_t, initial_t, output_t, scene_t, time_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_namelist.nml"
    type(checks_t) :: checks

@@ -4,14 +4,14 @@
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
 !> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
 program test_twolevel_doubt
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
+   use report_watch, only: doubtful
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
-   use simulation_doubt, only: doubtful
+   use testing_checks, only: checks_t
    use twolevel_doubt, only: improve_windows
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_trust, only: estimate_coarse_errors

@@ -1,7 +1,6 @@
 !> Tips that stand so near to something that nothing but the rest of a piece lies between: they join
 !! it at once, once they exceed their toughness, and no others do.
 program test_twolevel_pieces
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
@@ -9,6 +8,7 @@ program test_twolevel_pieces
    use growth_targets, only: target_boundary
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
+   use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 
