@@ -12,9 +12,8 @@
 !! its block does, so that the fronts are those of the matrix.
 module coarse_factors
    use algebra_multifrontal, only: element_matrices_t, multifrontal_t
-   use algebra_mumps, only: mumps_indefinite, mumps_t
+   use algebra_mumps, only: are_shared, mumps_indefinite, mumps_t
    use algebra_ordering, only: dissect, expand_order, neighbours_of
-   use algebra_ranks, only: are_shared
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t

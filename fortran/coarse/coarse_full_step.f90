@@ -1,7 +1,7 @@
 !> The linear step of the fractures' equations where the body is condensed onto them as a full
 !! matrix.
 !!
-!! As many unknowns as can be leave that matrix first (algebra_links), so that it is a small one even
+!! As many unknowns as can be leave that matrix first (algebra_links), so that it is small even
 !! where there are many fracture cells. All but one kind of links are exact. Pressures of the faces
 !! differ from that of the fluid by what the volume that leaves through them, which all unknowns
 !! have a part in, takes in the fracture: next to nothing where the rock conducts far less. It is

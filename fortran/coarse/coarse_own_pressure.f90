@@ -47,7 +47,8 @@ contains
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
             plain(v) = plain(v) + means(c)
-            values(v) = values(v) + dot_product(gradients(:, c), mesh%xy(:, v) - cell_centre(mesh, c))
+            values(v) = values(v) + dot_product(gradients(:, c), mesh%xy(:, &
+                                                                         v) - cell_centre(mesh, c))
             weight(v) = weight(v) + 1.0_rk
          end do
       end do

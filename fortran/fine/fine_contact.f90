@@ -21,9 +21,9 @@ module fine_contact
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
    use contact_pairs, only: contact_pairs_t
+   use fine_element, only: line_parameter, line_resultants, line_shapes
    use fine_faces, only: constraints_t, face_conditions_t, face_contact
    use fine_mesh, only: fine_mesh_t
-   use fine_quadrature, only: line_parameter, line_resultants, line_shapes
    implicit none(type, external)
    private
 

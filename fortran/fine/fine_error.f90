@@ -6,7 +6,7 @@
 !!
 !! The error of stress intensity factors from that of the whole solution.
 !!
-!! K is a linear function of the displacement (fine_tip_interaction), and z the displacement that its
+!! K is a linear function of the displacement (fine_tip_interaction), z the displacement that its
 !! nodal forces cause in the same body. The error of K is then a(e_u, e_z), the energy of the error
 !! of the solution in the strain of that of z (Becker and Rannacher 2001); both are estimated by
 !! recovered stresses.
@@ -15,10 +15,10 @@ module fine_error
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
+   use fine_element, only: collapsed_rule, triangle_rule_7
    use fine_faces, only: face_loaded
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, triangle_rule_7
    use fine_recovery, only: recover_by_patches, recovered_stress, recovery_t
    use fine_tip_intensity, only: complete_errors, tip_probe_t
    use fine_tip_types, only: intensity_t

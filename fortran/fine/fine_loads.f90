@@ -6,8 +6,8 @@ module fine_loads
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: rocks_t
+   use fine_element, only: collapsed_rule, line_resultants
    use fine_mesh, only: fine_mesh_t
-   use fine_quadrature, only: collapsed_rule, line_resultants
    implicit none(type, external)
    private
 

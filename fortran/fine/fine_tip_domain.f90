@@ -7,11 +7,11 @@ module fine_tip_domain
    use base_plane, only: point_distance
    use base_tolerances, only: same_direction, same_place
    use fine_elasticity, only: is_same, rocks_t
+   use fine_element, only: collapsed_rule, line_resultants, triangle_rule_7
    use fine_faces, only: face_contact, face_jump, face_loaded
    use fine_loads, only: fine_loads_t, volume_forces
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, line_resultants, triangle_rule_7
    use fine_tip_types, only: tip_frame_t
    implicit none(type, external)
    private

@@ -14,10 +14,10 @@ module fine_tip_energy
    use base_kinds, only: ik, pi, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
+   use fine_element, only: gauss_rule, line_shapes, line_slopes
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: gauss_rule, line_shapes, line_slopes
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
                               rule_size, traction_source
    use fine_tip_types, only: tip_frame_t

@@ -21,9 +21,9 @@
 !! that of the initial stress is the symmetric part of hat u,1 (x) q', and q hat e,1.
 module fine_tip_interaction
    use base_kinds, only: ik, rk
+   use fine_element, only: gauss_rule, line_shapes
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: gauss_rule, line_shapes
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
                               reference_angle, rule_size, traction_source
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place

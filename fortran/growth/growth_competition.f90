@@ -13,16 +13,21 @@
 !! exceed their toughness most grow first, and others with them only as far as they must.
 !!
 !! Length control: how far the tips of a group go while the load factor follows them.
+!!
+!! Kinds of tips: those that are alike grow alike, and count as one.
+!!
+!! Tips that have come equally far, and that the errors of their intensities do not tell from each
+!! other, go equally far as long as that is so: else the errors of their meshes would part them.
+!! What is like something alike is alike too, so the order of the tips does not matter.
 module growth_competition
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use algebra_lapack, only: dgesv, dsyev
    use base_kinds, only: ik, rk
-   use growth_kinds, only: matrix_of_kinds, means, of_kinds
    implicit none(type, external)
    private
 
    public :: better_advances, complementary_advances, corrected_advances, fitted, joined_groups
-   public :: learn_from_trial, preference
+   public :: learn_from_trial, likes, matrix_of_kinds, means, numbered, of_kinds, preference
 
    ! Where a tip is within its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
@@ -251,5 +256,82 @@ contains
       group = pack([(i, i=1, max(maxval(a), maxval(b)))], &
                    [(any(a == i) .or. any(b == i), i=1, max(maxval(a), maxval(b)))])
    end function joined_groups
+
+   !> The first tip that is like each, itself if there is none before it, by what is alike in pairs
+   !! and all that follows from that.
+   pure function likes(alike) result(first)
+      logical, intent(in) :: alike(:, :)  !< (tips, tips)
+      integer(ik) :: first(size(alike, 1))
+      integer(ik) :: before(size(first)), i, j
+
+      first = [(i, i=1, size(first, kind=ik))]
+      do
+         before = first
+         do j = 1, size(first, kind=ik)
+            do i = 1, size(first, kind=ik)
+               if (alike(i, j) .or. alike(j, i)) first([i, j]) = min(first(i), first(j))
+            end do
+         end do
+         if (all(first == before)) exit
+      end do
+   end function likes
+
+   !> Marks as numbers from 1, in the order in which they come.
+   pure function numbered(marks) result(number)
+      integer(ik), intent(in) :: marks(:)
+      integer(ik) :: number(size(marks))
+      integer(ik) :: k, n
+
+      n = 0
+      do k = 1, size(marks, kind=ik)
+         number(k) = findloc(marks, marks(k), dim=1, kind=ik)
+         if (number(k) == k) then
+            n = n + 1
+            number(k) = n
+         else
+            number(k) = number(number(k))
+         end if
+      end do
+   end function numbered
+
+   !> The means over each kind, for all of it.
+   pure function means(kind, values)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: values(:)
+      real(rk) :: means(size(values))
+      integer :: k
+
+      do k = 1, size(values)
+         means(k) = sum(values, mask=kind == kind(k))/count(kind == kind(k))
+      end do
+   end function means
+
+   !> The matrix between kinds of tips, all of which go equally far.
+   pure function matrix_of_kinds(kind, matrix) result(reduced)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: matrix(:, :)
+      real(rk) :: reduced(maxval(kind), maxval(kind))
+      integer :: i, j
+
+      reduced = 0.0_rk
+      do j = 1, size(kind)
+         do i = 1, size(kind)
+            reduced(kind(i), kind(j)) = reduced(kind(i), kind(j)) &
+                                        + matrix(i, j)/count(kind == kind(i))
+         end do
+      end do
+   end function matrix_of_kinds
+
+   !> A value of each kind: that of its first tip.
+   pure function of_kinds(kind, values) result(each)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: values(:)
+      real(rk) :: each(maxval(kind))
+      integer :: k
+
+      do k = 1, size(each)
+         each(k) = values(findloc(kind, k, dim=1))
+      end do
+   end function of_kinds
 
 end module growth_competition

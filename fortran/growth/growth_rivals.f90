@@ -7,8 +7,8 @@
 !! runs ahead where nothing else does.
 module growth_rivals
    use base_kinds, only: ik, rk
-   use growth_competition, only: complementary_advances, learn_from_trial, preference
-   use growth_kinds, only: likes, matrix_of_kinds, numbered
+   use growth_competition, only: complementary_advances, learn_from_trial, likes, &
+                                 matrix_of_kinds, numbered, preference
    use growth_segment, only: segment_t
    implicit none(type, external)
    private

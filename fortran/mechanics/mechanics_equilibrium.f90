@@ -10,8 +10,7 @@ module mechanics_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use growth_competition, only: better_advances, fitted, joined_groups, learn_from_trial, &
-                                 preference
-   use growth_kinds, only: matrix_of_kinds, means, numbered, of_kinds
+                                 matrix_of_kinds, means, numbered, of_kinds, preference
    use growth_tip, only: tip_t
    use mechanics_balance, only: balance_load, needed_intensity, share_misfit, tolerance
    use mechanics_state, only: loaded_body_t, together

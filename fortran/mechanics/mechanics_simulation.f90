@@ -12,8 +12,7 @@ module mechanics_simulation
    use mechanics_rise, only: go_to_peak, rise
    use mechanics_state, only: loaded_body_t, together
    use mesh_types, only: mesh_t, network_t
-   use report_chronicle, only: event_bifurcation
-   use report_rows, only: history_row_t, probe_row_t
+   use report_rows, only: event_bifurcation, history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
    use report_watch, only: doubtful, stop_on_doubt
    use scene_types, only: scene_t

@@ -7,7 +7,7 @@ module mechanics_tries
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
-   use growth_kinds, only: likes
+   use growth_competition, only: likes
    use growth_network, only: end_gain, extend, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t

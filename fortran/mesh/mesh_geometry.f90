@@ -6,7 +6,8 @@ module mesh_geometry
    implicit none(type, external)
    private
 
-   public :: cell_area, cell_centre, corner_geometry, face_length, fracture_cell_centre, outward_normal
+   public :: cell_area, cell_centre, corner_geometry, face_length, fracture_cell_centre
+   public :: outward_normal
 
 contains
 

@@ -9,7 +9,7 @@ module report_record
    use base_timers, only: phase_count, phase_names, timers_t
    use report_files, only: write_text_file
    use report_progress, only: duration_text
-   use report_summary, only: dof_block_t, summary_t
+   use report_rows, only: dof_block_t, summary_t
    use report_text, only: json_t
    implicit none(type, external)
    private

@@ -8,9 +8,8 @@ module report_run
    use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
-   use report_files, only: reserve_file, write_text_file
+   use report_files, only: place_t, reserve_file, write_text_file
    use report_network, only: network_record_t
-   use report_place, only: place_t
    use report_record, only: run_record_t, status_failed
    use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
                           matrix_fields_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
@@ -140,7 +139,7 @@ contains
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(run_output_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of report_chronicle
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of report_rows
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]

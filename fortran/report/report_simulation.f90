@@ -12,12 +12,10 @@ module report_simulation
    use growth_tip, only: tip_t
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
-   use report_chronicle, only: chronicle_t, event_arrest, event_growth, event_joint, &
-                               event_opening, event_remesh, event_slip_onset
-   use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-                          matrix_fields_t, probe_row_t, tip_row_t
+   use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
+                          event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
+                          intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, tip_row_t
    use report_slip, only: slip_catalogue_t
-   use report_summary, only: summary_t
    use report_watch, only: watch_t
    use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t

@@ -220,7 +220,7 @@ contains
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(tables_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s], or the load factor
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. of report_chronicle
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. of report_rows
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]

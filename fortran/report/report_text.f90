@@ -6,8 +6,7 @@ module report_text
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: format_real, integer_text, number_width
-   use base_texts, only: text_t
-   use base_utf8, only: utf8_length
+   use base_texts, only: text_t, utf8_length
    use report_files, only: write_text_file
    implicit none(type, external)
    private

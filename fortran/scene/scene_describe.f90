@@ -2,12 +2,12 @@
 !!
 !! What scenes without a fluid can say and scenes with one, side by side, for docs/input.md.
 module scene_describe
-   use scene_intervals, only: in_words
    use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, &
                                in_mechanics, kind_choice, kind_integer, kind_logical, kind_name, &
                                kind_real, kind_reals, kind_wholes, need_always, need_choice, &
                                need_fluid, need_fracture, need_growth, need_tips, parameter_t, &
                                parameters
+   use scene_words, only: in_words
    implicit none(type, external)
    private
 

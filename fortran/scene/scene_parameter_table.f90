@@ -10,10 +10,10 @@
 !!
 !! What a scene file can say of meshes, growth and output.
 module scene_parameter_table
-   use scene_intervals, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
-                              exponent_range, interval_t, newton_range, passes_range, &
-                              poisson_range, porosity_range, positive, rosette_range, share, &
-                              steps_range, tolerance_range
+   use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
+                          exponent_range, interval_t, newton_range, passes_range, poisson_range, &
+                          porosity_range, positive, rosette_range, share, steps_range, &
+                          tolerance_range
    implicit none(type, external)
    private
 

@@ -9,7 +9,7 @@ module twolevel_doubt
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
-   use report_chronicle, only: event_window
+   use report_rows, only: event_window
    use report_watch, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
    implicit none(type, external)

@@ -6,8 +6,8 @@ module twolevel_limits
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
    use mesh_geometry, only: cell_centre, fracture_cell_centre
-   use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                            limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
+   use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_fluid_in_rock, &
+                            limit_forward_error, limit_jump, limit_keq, limit_layering, &
                             limit_loop_flow, limit_mass, limit_pressure_load, &
                             limit_pressure_stiffness, limit_strain, limit_table
    use report_watch, only: worst_place
@@ -97,7 +97,8 @@ contains
       associate (range => self%scene%fluid%table_pressure, p => self%fracture_pressure())
          beyond = max(range(1) - p, p - range(size(range)), 0.0_rk)/(range(size(range)) - range(1))
          i = worst_place(beyond)
-         call self%watch%see(limit_table, beyond(i), when, fracture_cell_centre(self%mesh%fracture, i))
+         call self%watch%see(limit_table, beyond(i), when, &
+                             fracture_cell_centre(self%mesh%fracture, i))
       end associate
    end subroutine watch_fluid
 
@@ -116,7 +117,8 @@ contains
                              fracture_cell_centre(self%mesh%fracture, i))
          ratio = maxval(norm2(state%jump, dim=1), dim=1)/length
          i = worst_place(ratio)
-         call self%watch%see(limit_jump, ratio(i), when, fracture_cell_centre(self%mesh%fracture, i))
+         call self%watch%see(limit_jump, ratio(i), when, &
+                             fracture_cell_centre(self%mesh%fracture, i))
       end associate
    end subroutine watch_fractures
 
@@ -129,7 +131,8 @@ contains
 
       call mesh_quality(self%mesher, angle, cell, error)
       if (allocated(error)) return
-      call self%watch%see(limit_angle, angle*degrees, present_time(self), cell_centre(self%mesh, cell))
+      call self%watch%see(limit_angle, angle*degrees, present_time(self), cell_centre(self%mesh, &
+                                                                                      cell))
       associate (rock => self%model%rock)
          if (rock%most_layered_cell == 0) return
          call self%watch%see(limit_layering, rock%most_layered, present_time(self), &

@@ -11,9 +11,8 @@ module twolevel_results
    use growth_tip, only: tip_t
    use mesh_builder, only: locate
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
-   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t
+   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
    use report_simulation, only: snapshot_t
-   use report_summary, only: summary_t
    use twolevel_fed, only: cell_heights
    use twolevel_places, only: end_cell
    use twolevel_state, only: two_levels_t

@@ -10,9 +10,8 @@ module twolevel_state
    use coarse_own_pressure, only: own_pressure
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use fine_scene, only: follow_outlines, law_of_fracture, shape_body
-   use growth_front, only: growth_rules_t
+   use growth_front, only: growth_rules_t, prepared_t
    use growth_network, only: network_of_scene
-   use growth_prepared, only: prepared_t
    use growth_rivals, only: company_t, rivals_t
    use growth_segment, only: segment_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher

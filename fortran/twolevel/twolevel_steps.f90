@@ -7,8 +7,8 @@ module twolevel_steps
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: guess_t, step_report_t
-   use report_chronicle, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
+   use report_rows, only: event_step_cut, event_unstable
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_notes, only: notes_t
    use twolevel_schedule, only: last_switch, next_switch

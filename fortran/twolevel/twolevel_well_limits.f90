@@ -12,7 +12,7 @@ module twolevel_well_limits
    use base_tolerances, only: same_time
    use coarse_state, only: guess_t, state_t, step_report_t
    use coarse_wells, only: control_limited, control_pressure, control_rate
-   use report_chronicle, only: event_well
+   use report_rows, only: event_well
    use scene_types, only: injection_t
    use twolevel_schedule, only: last_switch
    use twolevel_state, only: two_levels_t

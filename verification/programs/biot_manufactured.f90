@@ -10,7 +10,7 @@ program biot_manufactured
    use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
-   use fine_quadrature, only: triangle_rule_7
+   use fine_element, only: triangle_rule_7
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_types, only: initial_t, scene_t

@@ -1,6 +1,6 @@
 !> Characters of one to four bytes, and bytes that are none (RFC 3629).
 program test_base_utf8
-   use base_utf8, only: is_printable, utf8_length
+   use base_texts, only: is_printable, utf8_length
    use testing_checks, only: checks_t
    implicit none(type, external)
 

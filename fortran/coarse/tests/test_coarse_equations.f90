@@ -4,11 +4,11 @@ program test_coarse_equations
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_equations, only: equations_t
    use coarse_fractures, only: newton_settings_t, prepare
    use coarse_full_step, only: full_slopes
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_newton, only: equations_t
    use coarse_state, only: state_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    use contact_law, only: contact_law_t, state_open, state_stick

@@ -4,11 +4,11 @@ program test_coarse_joints
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
-   use coarse_equations, only: equations_t
    use coarse_fields, only: cell_stresses
    use coarse_fractures, only: prepare
    use coarse_full_step, only: full_slopes
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_newton, only: equations_t
    use coarse_nodes, only: nodal_values
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_stick

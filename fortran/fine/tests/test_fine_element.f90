@@ -1,8 +1,7 @@
 !> The six-node triangle against exact fields and integrals.
 program test_fine_element
    use base_kinds, only: ik, rk
-   use fine_element, only: evaluate_element, shape_values, stiffness_matrix
-   use fine_quadrature, only: collapsed_rule
+   use fine_element, only: collapsed_rule, evaluate_element, shape_values, stiffness_matrix
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks

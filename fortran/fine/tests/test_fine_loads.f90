@@ -2,9 +2,9 @@
 program test_fine_loads
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use fine_element, only: collapsed_rule
    use fine_loads, only: fine_loads_t, no_loads, volume_forces
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
-   use fine_quadrature, only: collapsed_rule
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
    use testing_checks, only: checks_t

@@ -5,12 +5,11 @@ program test_fine_model
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field
    use fine_elasticity, only: elasticity_t, rocks_t
-   use fine_element, only: evaluate_element
+   use fine_element, only: evaluate_element, triangle_rule_7
    use fine_error, only: energy_error_t, estimate_error
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: triangle_rule_7
    use fine_recovery, only: recover_by_patches, recovery_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle

@@ -1,7 +1,7 @@
 !> Rules of integration against the integrals of monomials.
 program test_fine_quadrature
    use base_kinds, only: ik, rk
-   use fine_quadrature, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
+   use fine_element, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks

@@ -2,7 +2,7 @@
 !> each with the tip as it was then, and how long the rest of the path is.
 program test_growth_prepared
    use base_kinds, only: ik, rk
-   use growth_prepared, only: prepared_t
+   use growth_front, only: prepared_t
    use growth_tip, only: tip_t
    use testing_checks, only: checks_t
    implicit none(type, external)

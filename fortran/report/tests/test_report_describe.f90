@@ -3,14 +3,14 @@ program test_report_describe
    use base_kinds, only: ik
    use base_timers, only: phase_names
    use contact_law, only: state_name
-   use report_chronicle, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &
-                               event_joint, event_opening, event_remesh, event_slip_onset, &
-                               event_step_cut, event_unstable, event_well, event_window
    use report_columns, only: contact_words, event_words, record_keys, status_words
    use report_describe, only: describe_output
    use report_record, only: status_failed, status_finished, status_stopped
+   use report_rows, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &
+                          event_joint, event_opening, event_remesh, event_slip_onset, &
+                          event_step_cut, event_unstable, event_well, event_window
    use testing_checks, only: checks_t
-   use testing_pages, only: check_page
+   use testing_files, only: check_page
    implicit none(type, external)
    type(checks_t) :: checks
    integer(ik) :: i

@@ -6,11 +6,10 @@ program test_report_run
    use base_timers, only: phase_output, timers_t
    use contact_law, only: state_open, state_slip, state_stick
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
-   use report_chronicle, only: event_slip_onset, event_step_cut
    use report_files, only: make_directory, write_text_file
    use report_record, only: run_record_t, status_finished
-   use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-                          matrix_fields_t, probe_row_t, tip_row_t
+   use report_rows, only: event_slip_onset, event_step_cut, fracture_fields_t, history_row_t, &
+                          intersection_fields_t, matrix_fields_t, probe_row_t, tip_row_t
    use report_run, only: run_output_t
    use scene_types, only: injection_t, scene_t
    use testing_checks, only: checks_t

@@ -2,7 +2,7 @@
 program test_scene_describe
    use scene_describe, only: describe_input
    use testing_checks, only: checks_t
-   use testing_pages, only: check_page
+   use testing_files, only: check_page
    implicit none(type, external)
    type(checks_t) :: checks
    integer :: code

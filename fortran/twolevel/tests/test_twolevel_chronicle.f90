@@ -5,8 +5,7 @@ program test_twolevel_chronicle
    use growth_network, only: network_of_scene
    use growth_targets, only: target_boundary
    use mesh_types, only: fracture_mesh_t
-   use report_chronicle, only: event_arrest, event_growth, event_joint, event_opening, &
-                               event_slip_onset
+   use report_rows, only: event_arrest, event_growth, event_joint, event_opening, event_slip_onset
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
