@@ -6,12 +6,12 @@ module app_geometry
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use base_plane, only: point_distance
-   use fine_scene, only: keep_off
    use growth_network, only: end_pieces, network_of_scene
    use mesh_builder, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
                           culprit_t, fault_t, with_name
    use mesh_types, only: network_t
+   use report_scene, only: keep_off
    use scene_outline, only: outline_of_scene, outline_t, scene_corner, scene_edge
    use scene_sheet, only: line_text, refuse, sheet_t
    use scene_types, only: scene_t

@@ -20,13 +20,11 @@ module coarse_newton
    use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
                                    fill_flow, fill_joint
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t, newton_settings_t, prepare
+   use coarse_fractures, only: cell_fluid_t, fracture_problem_t, fracture_system_t, prepare
    use coarse_full_step, only: full_slopes
-   use coarse_joints, only: flows_in_loops, joints_t, unknown_flow
-   use coarse_sparse_step, only: sparse_step_t
-   use coarse_state, only: fracture_cells_t, guess_t, state_t, step_report_t
+   use coarse_joints, only: flows_in_loops, unknown_flow
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_well_flow, only: fill_well, find_well
-   use coarse_wells, only: wells_t
    use contact_law, only: contact_equations, contact_law_t, contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
@@ -60,16 +58,8 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, wells, &
-                              settings, dt, g, state, q, report)
-      type(condensed_t), intent(inout), target :: condensed
-      type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
-      type(guess_t), intent(inout) :: guess  !< from earlier solutions
-      type(fracture_cells_t), intent(in), target :: cells
-      integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
-      type(joints_t), intent(in), target :: joints
-      type(wells_t), intent(in), target :: wells
-      type(newton_settings_t), intent(in) :: settings
+   subroutine solve_fractures(problem, dt, g, state, q, report)
+      type(fracture_problem_t), intent(inout), target :: problem
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(inout), target :: state
@@ -80,18 +70,20 @@ contains
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
       integer(ik) :: spent
+      logical :: equilibrate
 
-      call prepare(condensed, cells, connections, joints, wells, settings, dt, g, state, eq)
-      eq%factors => factors
-      how = iteration_settings_t(tolerance=settings%tolerance, &
-                                 iterations_max=settings%iterations_max, with_condition=.true., &
-                                 allows_rounding=.true.)
+      equilibrate = problem%settings%equilibrate
+      call prepare(problem, dt, g, state, eq)
+      eq%factors => problem%factors
+      how = iteration_settings_t(tolerance=problem%settings%tolerance, &
+                                 iterations_max=problem%settings%iterations_max, &
+                                 with_condition=.true., allows_rounding=.true.)
       call find_start(eq, state, start)
       x = start
       eq%start = start
       spent = 0
-      if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
-         x = guess%from(start, dt)
+      if (problem%guess%is_known(size(start, kind=ik)) .and. .not. equilibrate) then
+         x = problem%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
          how%perseveres = .true.
@@ -104,8 +96,8 @@ contains
       end if
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
       found%iterations = found%iterations + spent
-      if (found%outcome == outcome_converged .and. .not. settings%equilibrate) then
-         call guess%remember(dt, start, x)
+      if (found%outcome == outcome_converged .and. .not. equilibrate) then
+         call problem%guess%remember(dt, start, x)
       end if
       q = eq%q
       report%stress_scale = eq%stress_scale
@@ -122,7 +114,7 @@ contains
       case default
          report%reason = "the iteration on contact and flow of the fractures did not converge"
       end select
-      if (report%converged) call accept(condensed, cells, dt, eq, x, state, report)
+      if (report%converged) call accept(problem%condensed, problem%cells, dt, eq, x, state, report)
    end subroutine solve_fractures
 
    !> The state before, the rock at the fractures having their pressure, without flow.

@@ -17,25 +17,21 @@
 !! In a cell an outline counts as a straight line with its mean direction there, placed such that
 !! the region has its share of the cell. Each line cuts the region's part off what later regions
 !! have left, so regions that share an outline leave nothing between them.
-!!
-!! The weight of the cells that no stress in situ carries: of the rock with what fills its pores,
-!! less what the rise of the stress with depth holds, and of regions what their density adds.
 module coarse_permeability
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, left_part, polygon_area, triangle_area, turned_left
-   use coarse_in_situ, only: in_situ_state_t, weight_of_scene
    use coarse_regions, only: mean_mobility, new_rock, resistivity_of, rock_t
    use coarse_solid, only: any_differ, make_room, number_stiffnesses, set_solid, solid_of, solid_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
-   use scene_check_regions, only: most_anisotropic
+   use scene_check_permeability, only: most_anisotropic
    use scene_region_outline, only: is_inside, outline_t, region_outline
-   use scene_types, only: domain_t, fluid_t, region_t, scene_t
+   use scene_types, only: domain_t, fluid_t, region_t
    implicit none(type, external)
    private
 
-   public :: bearable, conduction_t, find_weight, layered, place_regions, relative_resistance
-   public :: share_of_cell
+   public :: bearable, conduction_t, layered, mean_of_regions, place_regions
+   public :: relative_resistance, share_of_cell
 
    !> How a rock conducts, each xx, yy, xy.
    type :: conduction_t
@@ -343,35 +339,5 @@ contains
 
       image = [tensor(1)*vector(1) + tensor(3)*vector(2), tensor(3)*vector(1) + tensor(2)*vector(2)]
    end function applied
-
-   !> Force on each cell; none if there is no weight.
-   pure subroutine find_weight(mesh, scene, in_situ, weight)
-      type(mesh_t), intent(in) :: mesh
-      type(scene_t), intent(in) :: scene
-      type(in_situ_state_t), allocatable, intent(in) :: in_situ
-      real(rk), allocatable, intent(out) :: weight(:, :)  !< (2, n_cells) [N/m]
-      real(rk) :: density(mesh%n_cells), force(2)  ! [kg/m3], [N/m3]
-      integer(ik) :: c
-      logical :: has_layers
-
-      force = weight_of_scene(scene)
-      if (allocated(in_situ)) force(2) = force(2) + in_situ%stress_per_y(2)
-      has_layers = .false.
-      if (allocated(scene%regions)) then
-         has_layers = any(abs(scene%regions%material%density - scene%material%density) > 0.0_rk)
-      end if
-      if (.not. (any(abs(force) > 0.0_rk) .or. has_layers)) return
-      allocate (weight(2, mesh%n_cells))
-      do c = 1, mesh%n_cells
-         weight(:, c) = cell_area(mesh, c)*force
-      end do
-      if (.not. has_layers) return
-      density = mean_of_regions(mesh, scene%regions, scene%domain, &
-                                [scene%material%density, scene%regions%material%density])
-      do c = 1, mesh%n_cells
-         weight(:, c) = weight(:, c) + cell_area(mesh, c)*(density(c) - scene%material%density) &
-                        *scene%gravity
-      end do
-   end subroutine find_weight
 
 end module coarse_permeability

@@ -12,8 +12,6 @@ module mechanics_body
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use fine_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
-                         regions_of_other_rock
    use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
@@ -21,6 +19,8 @@ module mechanics_body
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
+   use report_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
+                           regions_of_other_rock
    use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use scene_types, only: material_t, scene_t
    implicit none(type, external)

@@ -14,9 +14,9 @@ module mechanics_faces
    use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_mesh, only: fine_mesh_t
-   use fine_scene, only: law_of_fracture
    use growth_network, only: fracture_length
    use mesh_types, only: network_t
+   use report_scene, only: law_of_fracture
    use scene_outline, only: sides_of_scene
    use scene_sides, only: boundary_side_t
    use scene_types, only: fracture_t, in_situ_t, scene_t

@@ -7,7 +7,6 @@ module mechanics_state
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use fine_elasticity, only: elasticity_t, is_same
-   use fine_scene, only: relative_toughness
    use fine_tip_types, only: frame_of_tip, tip_frame_t
    use growth_front, only: growth_rules_t
    use growth_law, only: growth_drive
@@ -15,6 +14,7 @@ module mechanics_state
    use mechanics_body, only: body_t
    use mechanics_programme, only: reading_t
    use mesh_types, only: fracture_mesh_t, point_boundary
+   use report_scene, only: relative_toughness
    use report_simulation, only: simulation_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t

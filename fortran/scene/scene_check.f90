@@ -12,8 +12,8 @@ module scene_check
    use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
-   use scene_check_regions, only: check_given_permeability, check_given_regions, check_regions, &
-                                  check_tensor
+   use scene_check_permeability, only: check_given_permeability, check_tensor
+   use scene_check_regions, only: check_given_regions, check_regions
    use scene_check_sides, only: check_faces, check_parts, check_sides
    use scene_fluid_law, only: least_compressibility, skempton, storage
    use scene_parameters, only: choice_name, choice_value, groups, parameters

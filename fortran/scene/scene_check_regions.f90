@@ -1,13 +1,11 @@
 !> Checks regions: what their shape needs, outlines that are simple, parts of the body within them.
-!!
-!! Checks the permeability of the rock and of regions: isotropic, or a positive definite tensor that
-!! the multi-point fluxes of the coarse level can do with.
 module scene_check_regions
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use base_plane, only: cross, crosses, polygon_area
    use base_tolerances, only: round_off, same_place
+   use scene_check_permeability, only: check_tensor
    use scene_fluid_law, only: least_compressibility, skempton, storage
    use scene_parameters, only: groups
    use scene_region_outline, only: body_part, region_outline
@@ -18,8 +16,7 @@ module scene_check_regions
    implicit none(type, external)
    private
 
-   public :: anisotropy, check_given_permeability, check_given_regions, check_regions, check_tensor
-   public :: most_anisotropic
+   public :: check_given_regions, check_regions
 
    !> What makes the rock of a region another one than that of the scene.
    character(len=15), parameter :: of_rock(8) = [character(len=15) :: &
@@ -29,12 +26,6 @@ module scene_check_regions
    real(rk), parameter :: stiffest = 1.0e9_rk
 
    integer, parameter :: most_points = 1000  !< of a curve: every pair of edges is compared
-
-   !> Largest principal permeability over the smallest. The coarse level's fluxes are exact for
-   !! linear pressures, but on triangles they lose what makes pressures stay within their bounds: at
-   !! a ratio of 100 they left them by 20 %, from 1e4 on they grew without a source to 1e10 Pa
-   !! (verification/stability_joints) [-].
-   real(rk), parameter :: most_anisotropic = 1.0e3_rk
 
 contains
 
@@ -364,84 +355,5 @@ contains
 
       text = "("//rounded_text(xy(1))//", "//rounded_text(xy(2))//")"
    end function place_text
-
-   !> It is given as a scalar or as a tensor.
-   pure subroutine check_given_permeability(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i
-
-      do i = 1, sheet%length
-         select case (groups(sheet%records(i)%group)%name)
-         case ("material")
-            call check_record(sheet, i, sheet%has("fluid"), "a scene with &fluid", error)
-         case ("region")
-            call check_record(sheet, i, .false., "a region", error)
-         case default
-            cycle
-         end select
-         if (allocated(error)) return
-      end do
-   end subroutine check_given_permeability
-
-   pure subroutine check_record(sheet, i, is_needed, who, error)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: i
-      logical, intent(in) :: is_needed
-      character(len=*), intent(in) :: who  !< needs it
-      type(error_t), allocatable, intent(out) :: error
-      logical :: scalar, xx, yy, xy
-
-      scalar = sheet%records(i)%is_given("permeability")
-      xx = sheet%records(i)%is_given("permeability_xx")
-      yy = sheet%records(i)%is_given("permeability_yy")
-      xy = sheet%records(i)%is_given("permeability_xy")
-      if (scalar .and. (xx .or. yy .or. xy)) then
-         call refuse(error, sheet, i, "permeability", "is given beside components of the "// &
-                     "tensor but must be given alone or not at all")
-      else if ((xx .neqv. yy) .or. (xy .and. .not. xx)) then
-         call refuse(error, sheet, i, merge("permeability_yy", "permeability_xx", xx), &
-                     "is missing but must be given with the other components of the tensor")
-      else if (is_needed .and. .not. (scalar .or. xx)) then
-         call refuse(error, sheet, i, "permeability", "[m2], which "//who//" needs, is missing")
-      end if
-   end subroutine check_record
-
-   !> The tensor is positive definite, and not too anisotropic.
-   pure subroutine check_tensor(sheet, i, material, error)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: i  !< record
-      type(material_t), intent(in) :: material
-      type(error_t), allocatable, intent(out) :: error
-
-      associate (m => material)
-         if (.not. abs(m%permeability_xy) < sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
-            call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &
-                        " but must be smaller than sqrt(permeability_xx permeability_yy), for "// &
-                        "the tensor must be positive definite")
-         else if (anisotropy(m) > most_anisotropic*(1.0_rk + 1.0e-9_rk)) then
-            call refuse(error, sheet, i, "permeability_xx", "and its companions make the rock "// &
-                        rounded_text(anisotropy(m))//" times more permeable one way than "// &
-                        "across it, but the fluxes between cells hold for a ratio of at most "// &
-                        rounded_text(most_anisotropic))
-         end if
-      end associate
-   end subroutine check_tensor
-
-   !> Largest principal permeability over the smallest [-].
-   pure real(rk) function anisotropy(material)
-      type(material_t), intent(in) :: material
-      real(rk) :: half_trace, radius, xx, xy, yy
-
-      associate (m => material)
-         ! Over the largest component: products of permeabilities may be too small for a number.
-         xx = m%permeability_xx/max(m%permeability_xx, m%permeability_yy)
-         yy = m%permeability_yy/max(m%permeability_xx, m%permeability_yy)
-         xy = m%permeability_xy/max(m%permeability_xx, m%permeability_yy)
-      end associate
-      half_trace = 0.5_rk*(xx + yy)
-      radius = hypot(0.5_rk*(xx - yy), xy)
-      anisotropy = (half_trace + radius)**2/max(xx*yy - xy**2, tiny(1.0_rk))
-   end function anisotropy
 
 end module scene_check_regions

@@ -1,5 +1,5 @@
-!> The one table of everything a scene file can say: its groups, and the names of the modules
-!> scene_parameters_*.
+!> The one table of everything a scene file can say: its groups, and the names of
+!> scene_parameter_table.
 !>
 !> Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
 !> A new parameter is one entry there and one line in scene_exchange.

@@ -17,7 +17,7 @@ module scene_plausible
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_place, same_time
    use scene_check_mechanics, only: surplus_restraints
-   use scene_check_regions, only: anisotropy
+   use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
    use scene_region_outline, only: body_part
    use scene_types, only: domain_t, fracture_t, scene_t

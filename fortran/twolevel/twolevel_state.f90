@@ -9,7 +9,6 @@ module twolevel_state
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use fine_scene, only: follow_outlines, law_of_fracture, shape_body
    use growth_front, only: growth_rules_t, prepared_t
    use growth_network, only: network_of_scene
    use growth_rivals, only: company_t, rivals_t
@@ -17,6 +16,7 @@ module twolevel_state
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_map_t, mesh_t, network_t
+   use report_scene, only: follow_outlines, law_of_fracture, shape_body
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    use twolevel_certainty, only: certainty_t

@@ -18,11 +18,11 @@ module twolevel_window
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_scene, only: place_rocks, regions_of_other_rock, shape_body
    use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips, transfer_mesher
    use mesh_types, only: mesh_t, network_t
+   use report_scene, only: place_rocks, regions_of_other_rock, shape_body
    use scene_types, only: scene_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges

@@ -186,10 +186,10 @@ contains
       type(newton_settings_t) :: settings
 
       settings = model%settings
-      settings%equilibrate = equilibrate
-      settings%vapour_pressure = vapour_pressure
-      call prepare(model%condensed, model%cells, model%connections, model%joints, model%wells, &
-                   settings, dt, g, state, eq)
+      model%settings%equilibrate = equilibrate
+      model%settings%vapour_pressure = vapour_pressure
+      call prepare(model%fracture_problem_t, dt, g, state, eq)
+      model%settings = settings
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

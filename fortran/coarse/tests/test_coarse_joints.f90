@@ -168,8 +168,7 @@ contains
       call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
       allocate (g(model%condensed%layout%count()), source=0.0_rk)
-      call prepare(model%condensed, model%cells, model%connections, model%joints, model%wells, &
-                   model%settings, dt, g, state, eq)
+      call prepare(model%fracture_problem_t, dt, g, state, eq)
       x = 4.0e6_rk*scattered(eq%layout%count())
       x(eq%layout%at_flow(1_ik):) = 1.0e-3_rk*x(eq%layout%at_flow(1_ik):)
       below = eq

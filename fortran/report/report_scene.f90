@@ -7,7 +7,7 @@
 !! What the scene says of a fracture's faces, as the law of contact takes it.
 !!
 !! The shape of a scene's body, as the mesher takes it.
-module fine_scene
+module report_scene
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
@@ -117,7 +117,7 @@ contains
       room = 0.5_rk*interface_distance(scene, xy)
       if (room < least_rosette*radius) then
          write (place, "(3(a,es12.5))") "(", xy(1), ",", xy(2), ") m is ", 2.0_rk*room
-         call raise_error(error, "fine_scene", "the tip at "//trim(place)//" m from rock "// &
+         call raise_error(error, "report_scene", "the tip at "//trim(place)//" m from rock "// &
                           "of another stiffness, too near for stress intensity factors: a tip "// &
                           "on or next to an interface has another singularity")
          return
@@ -203,4 +203,4 @@ contains
       spec%is_window = .false.  ! whose edges are straight and cut fractures
    end subroutine shape_body
 
-end module fine_scene
+end module report_scene

@@ -1,10 +1,10 @@
 !> Regions by place: which rock counts at a point, how far an interface is, what toughness a tip has
 !! before tougher rock, and where a tip is too near to an interface.
-program test_fine_scene
+program test_report_scene
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use fine_scene, only: interface_distance, keep_off, regions_of_other_rock, relative_toughness
    use mesh_types, only: network_t
+   use report_scene, only: interface_distance, keep_off, regions_of_other_rock, relative_toughness
    use scene_region_outline, only: rock_places_t
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
@@ -112,4 +112,4 @@ contains
       allocate (network%s_start, source=[0.0_rk])
    end function line_to
 
-end program test_fine_scene
+end program test_report_scene
