@@ -1,7 +1,7 @@
 !> Tests of base_number: the text is short, and reads back as the same number, bit for bit.
 program test_base_number
    use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
-                                            ieee_value
+                                                                               ieee_value
    use base_kinds, only: ik, lk, pi, rk
    use base_number, only: brief_text, exact_text, integer_text
    use testing_checks, only: checks_t
