@@ -70,7 +70,9 @@ contains
       integer(ik), intent(in) :: cell
       real(rk) :: centre(2)  !< [m]
 
-      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+      associate (xy => mesh%xy, nodes => mesh%cell_nodes)
+         centre = (xy(:, nodes(1, cell)) + xy(:, nodes(2, cell)) + xy(:, nodes(3, cell)))/3.0_rk
+      end associate
    end function cell_centre
 
    pure function fracture_cell_centre(fracture, cell) result(centre)
