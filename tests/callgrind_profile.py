@@ -24,7 +24,7 @@ ONE_KIND = {
 
 _LOADER = re.compile(r"_dl_|do_lookup_x|check_match|strcmp|__cxa_finalize")
 _ALLOCATOR = re.compile(r"_int_malloc|_int_free|_int_realloc|malloc_consolidate|unlink_chunk")
-_MODULE = re.compile(r"__([a-z]\w*)_MOD_(?!_)")
+_PROCEDURE = re.compile(r"__([a-z]\w*)_MOD_(?!_)(\w*)")
 
 
 def why_not() -> str:
@@ -44,8 +44,8 @@ class Profile:
     total: int
 
     def executed(self, *modules: str) -> set[str]:
-        """Give the functions executed of modules whose names begin in one of these ways."""
-        return {name for name in self.functions if _module_of(name).startswith(modules)}
+        """Give the functions executed whose "module: procedure" begins in one of these ways."""
+        return {name for name in self.functions if _procedure_of(name).startswith(modules)}
 
     def loading(self) -> int:
         """Instructions that find libraries and their names, before and after the program."""
@@ -59,15 +59,15 @@ class Profile:
         """Instructions by room: the first word of a module's name."""
         count: Counter[str] = Counter()
         for name, instructions in self.functions.items():
-            if _module_of(name):
-                count[_module_of(name).split("_")[0]] += instructions
+            if _procedure_of(name):
+                count[_procedure_of(name).split("_")[0]] += instructions
         return count
 
 
-def _module_of(function: str) -> str:
-    """Name the Fortran module of a procedure; none for what gfortran adds to copy and finalize."""
-    found = _MODULE.match(function)
-    return found.group(1) if found else ""
+def _procedure_of(function: str) -> str:
+    """Name a Fortran procedure with its module; none for what gfortran adds to copy or end."""
+    found = _PROCEDURE.match(function)
+    return f"{found.group(1)}: {found.group(2)}" if found else ""
 
 
 def profile(scene: str, place: Path, program: Path = SOLVER) -> Profile:

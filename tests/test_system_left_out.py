@@ -82,15 +82,20 @@ SCENES = {
     + "&growth enabled = .true., law = 'paris', stop_gain = 0.01 /\n",
 }
 
-# Modules, or the beginnings of their names, that a scene has no use for. Those of growth: what
-# evaluates tips and moves them.
+# Modules, or the beginnings of their names, that a scene has no use for, or of "module: procedure".
+# Those of growth: what evaluates tips and moves them.
 FLUID = ("coarse_", "twolevel_")
-TIPS = ("tips_intensity", "tips_interaction", "tips_energy", "tips_displacement", "growth_law")
-CONTACT = ("contact_law",)
+TIPS = ("fine_tip_intensity", "fine_tip_interaction", "fine_tip_energy", "growth_law")
+CONTACT = ("contact_law: contact_equations", "contact_law: contact_residual")
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
-JOINTS = ("coarse_joint_flow",)
-REGIONS = ("coarse_permeability", "scene_region_outline", "scene_check_regions", "base_clip")
-FILES = ("output_vtu",)
+JOINTS = ("coarse_fracture_flow: fill_joint", "coarse_fracture_flow: fill_branch")
+REGIONS = (
+    "coarse_permeability",
+    "scene_region_outline",
+    "scene_check_regions",
+    "base_plane: left_part",
+)
+FILES = ("report_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,
     "open crack": FLUID + TIPS + CONTACT + FILES,
@@ -149,7 +154,7 @@ def test_what_is_left_out_saves(
     profiles: dict[str, Profile], capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each part of a scene costs; without it its rooms execute nothing, or less."""
-    rooms = ("mechanics", "coarse", "twolevel", "fine", "contact", "tips", "output")
+    rooms = ("mechanics", "coarse", "twolevel", "fine", "contact", "growth", "report")
     with capsys.disabled():
         print("\nthousands of instructions" + "".join(f"{room:>10}" for room in rooms))
         for name, counts in profiles.items():

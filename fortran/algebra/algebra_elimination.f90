@@ -5,10 +5,9 @@
 !! pivots eliminated, and what is left waits on a stack for its parent.
 module algebra_elimination
    use, intrinsic :: iso_fortran_env, only: int64
-   use algebra_front_kernels, only: add_matrix, add_triangle, clear, push
-   use algebra_front_parts, only: parts_t
-   use algebra_fronts, only: fronts_t
-   use algebra_partial_cholesky, only: eliminate, eliminate_signed
+   use algebra_front_kernels, only: add_matrix, add_triangle, clear, eliminate, eliminate_signed, &
+                                    push
+   use algebra_fronts, only: fronts_t, parts_t
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
 !$ use omp_lib, only: omp_get_num_threads

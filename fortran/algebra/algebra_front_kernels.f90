@@ -1,12 +1,24 @@
 !> What is done with the numbers of one front: matrices and triangles added at their places, what is
 !! left put on a stack, and the front's part of the substitutions.
+!!
+!! Cholesky elimination of the first unknowns of a dense symmetric matrix that is positive definite
+!! or, with a sign for each pivot, quasi-definite (Vanderbei 1995): A = L S L^T, S the signs.
 module algebra_front_kernels
    use, intrinsic :: iso_fortran_env, only: int64
+   use algebra_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: add_matrix, add_triangle, backwards, clear, forwards, push
+   public :: add_matrix, add_triangle, backwards, clear, eliminate, eliminate_signed, forwards, push
+
+   integer(ik), parameter :: panel = 4  !< pivots that are taken together
+
+   !> With fewer pivots or rows than these the plain loops are faster than the calls.
+   integer(ik), parameter :: pivots_for_blas = 16, rows_for_blas = 160
+
+   !> Columns that are taken together where signs stand between two factors.
+   integer(ik), parameter :: columns_together = 64
 
 contains
 
@@ -133,5 +145,153 @@ contains
          product_of = product_of + x(i)*y(i)
       end do
    end function product_of
+
+   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what
+   !! is left of the matrix without these unknowns (its Schur complement). The upper triangle is
+   !! lost.
+   subroutine eliminate(matrix, n, n_pivots, place)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      integer(ik), intent(in) :: n_pivots
+      integer(ik), intent(out) :: place  !< of the first pivot that is not positive; 0: none
+      integer(ik) :: rest
+
+      rest = n - n_pivots
+      if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
+         call eliminate_in_panels(matrix, n, n, spread(1.0_rk, 1, n_pivots), place)
+         return
+      end if
+      call dpotrf("L", n_pivots, matrix, n, place)
+      if (place /= 0 .or. rest == 0) return
+      call dtrsm("R", "L", "T", "N", rest, n_pivots, 1.0_rk, matrix, n, &
+                 matrix(n_pivots + 1, 1), n)
+      call dsyrk("L", "N", rest, n_pivots, -1.0_rk, matrix(n_pivots + 1, 1), n, 1.0_rk, &
+                 matrix(n_pivots + 1, n_pivots + 1), n)
+   end subroutine eliminate
+
+   !> The same for pivots of given signs. The diagonal of the factor is positive.
+   subroutine eliminate_signed(matrix, n, signs, place)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      real(rk), intent(in) :: signs(:)  !< (pivots) 1 or -1
+      integer(ik), intent(out) :: place  !< of the first pivot that has not its sign; 0: none
+      real(rk) :: opposite(size(signs), columns_together)
+      integer(ik) :: at, first, k, m, n_pivots, n_together
+
+      n_pivots = size(signs, kind=ik)
+      if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
+         call eliminate_in_panels(matrix, n, n, signs, place)
+         return
+      end if
+      do first = 1, n_pivots, columns_together
+         m = min(columns_together, n_pivots - first + 1)
+         associate (own => signs(first:first + m - 1), after => first + m)
+            call eliminate_in_panels(matrix(first, first), n, m, own, place)
+            if (place > 0) then
+               place = first - 1 + place
+               return
+            end if
+            if (after > n) exit
+            call dtrsm("R", "L", "T", "N", n - after + 1, m, 1.0_rk, matrix(first, first), n, &
+                       matrix(after, first), n)
+            do k = 1, m
+               if (own(k) < 0.0_rk) matrix(after:, first + k - 1) = -matrix(after:, first + k - 1)
+            end do
+            do at = after, n, columns_together
+               n_together = min(columns_together, n - at + 1)
+               do k = 1, n_together
+                  opposite(:m, k) = own*matrix(at + k - 1, first:first + m - 1)
+               end do
+               call dgemm("N", "N", n - at + 1, n_together, m, -1.0_rk, matrix(at, first), n, &
+                          opposite, n_pivots, 1.0_rk, matrix(at, at), n)
+            end do
+         end associate
+      end do
+   end subroutine eliminate_signed
+
+   !> The same in plain loops, a few pivots at a time.
+   pure subroutine eliminate_in_panels(matrix, n_stored, n, signs, place)
+      integer(ik), intent(in) :: n_stored  !< rows of the matrix that this one is part of
+      integer(ik), intent(in) :: n
+      ! A part of a larger matrix, whose last column ends early.
+      ! allow(C071)
+      real(rk), intent(inout) :: matrix(n_stored, *)
+      real(rk), intent(in) :: signs(:)  !< (pivots)
+      integer(ik), intent(out) :: place
+      real(rk) :: factor(2, panel)
+      integer(ik) :: first, j, k, last, n_pivots
+
+      n_pivots = size(signs, kind=ik)
+      place = 0
+      do first = 1, n_pivots, panel
+         last = min(first + panel - 1, n_pivots)
+         do k = first, last
+            if (.not. signs(k)*matrix(k, k) > 0.0_rk) then
+               place = k
+               return
+            end if
+            matrix(k, k) = sqrt(signs(k)*matrix(k, k))
+            call divide(n - k, signs(k)*matrix(k, k), matrix(min(k + 1, n), k))
+            do j = k + 1, last
+               call subtract_one(n - j + 1, signs(k)*matrix(j, k), matrix(j, k), matrix(j, j))
+            end do
+         end do
+         if (last - first + 1 < panel) then
+            do k = first, last
+               do j = last + 1, n
+                  call subtract_one(n - j + 1, signs(k)*matrix(j, k), matrix(j, k), matrix(j, j))
+               end do
+            end do
+         else
+            do j = last + 1, n - 1, 2
+               do k = first, last
+                  factor(:, k - first + 1) = signs(k)*[matrix(j, k), matrix(j + 1, k)]
+               end do
+               call subtract_four_twice(n - j + 1, factor, &
+                                        matrix(j, first), matrix(j, first + 1), &
+                                        matrix(j, first + 2), matrix(j, first + 3), &
+                                        matrix(j, j), matrix(j, j + 1))
+            end do
+            if (modulo(n - last, 2) == 1) then
+               do k = first, last
+                  call subtract_one(1, signs(k)*matrix(n, k), matrix(n, k), matrix(n, n))
+               end do
+            end if
+         end if
+      end do
+   end subroutine eliminate_in_panels
+
+   pure subroutine divide(n, divisor, column)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: divisor
+      real(rk), intent(inout) :: column(n)
+
+      column = column*(1.0_rk/divisor)
+   end subroutine divide
+
+   !> y - factor x
+   pure subroutine subtract_one(n, factor, x, y)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: factor, x(n)
+      real(rk), intent(inout) :: y(n)
+
+      y = y - factor*x
+   end subroutine subtract_one
+
+   !> Four columns from each of two, where the numbers fit into the registers of the processor.
+   pure subroutine subtract_four_twice(n, factor, x1, x2, x3, x4, y1, y2)
+      integer(ik), intent(in) :: n
+      real(rk), intent(in) :: factor(2, 4)
+      real(rk), intent(in) :: x1(n), x2(n), x3(n), x4(n)
+      real(rk), intent(inout) :: y1(n), y2(n)
+      integer(ik) :: i
+
+      do i = 1, n
+         y1(i) = y1(i) - factor(1, 1)*x1(i) - factor(1, 2)*x2(i) - factor(1, 3)*x3(i) &
+                 - factor(1, 4)*x4(i)
+         y2(i) = y2(i) - factor(2, 1)*x1(i) - factor(2, 2)*x2(i) - factor(2, 3)*x3(i) &
+                 - factor(2, 4)*x4(i)
+      end do
+   end subroutine subtract_four_twice
 
 end module algebra_front_kernels

@@ -9,7 +9,7 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyrk, dtrsm
+   public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyev, dsyrk, dtrsm
 
    interface
       !> C := alpha op(A) op(B) + beta C.
@@ -91,6 +91,19 @@ module algebra_lapack
          real(rk), intent(inout) :: b(ldb, nrhs)
          integer(ik), intent(out) :: info
       end subroutine dpotrs
+
+      !> Eigenvalues of a symmetric matrix, in ascending order.
+      pure subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
+         import :: ik, rk
+         implicit none(type, external)
+         character, intent(in) :: jobz  !< "N": without the eigenvectors
+         character, intent(in) :: uplo  !< the triangle that counts, "U" or "L"; used up
+         integer(ik), intent(in) :: n, lda, lwork
+         real(rk), intent(inout) :: a(lda, n)
+         real(rk), intent(out) :: w(n)
+         real(rk), intent(out) :: work(lwork)
+         integer(ik), intent(out) :: info
+      end subroutine dsyev
 
       !> C = beta C + alpha A A' or, transposed, A' A, of C only one triangle.
       subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)

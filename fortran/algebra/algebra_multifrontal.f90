@@ -14,8 +14,7 @@ module algebra_multifrontal
    use algebra_elimination, only: element_matrices_t, eliminate_fronts, factors_t, pivots_of, &
                                   size_of, sum_up_kept, workspace_t
    use algebra_front_kernels, only: backwards, forwards
-   use algebra_front_parts, only: find_parts
-   use algebra_fronts, only: find_fronts
+   use algebra_fronts, only: find_fronts, find_parts
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t

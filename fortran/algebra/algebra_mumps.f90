@@ -4,17 +4,58 @@
 !! Settings follow measurements on systems of this kind (docs/solvers.md): approximate minimum
 !! degree unless the caller gives an order (algebra_ordering), 40 % spare workspace. MUMPS reports
 !! an exactly singular matrix only with null-pivot detection, which is therefore on.
+!!
+!! Ranks: the processes of MPI among which MUMPS may share a matrix. A program is linked for one
+!! process (`alone`), which is the rule and knows nothing of MPI, or for ranks (`ranks`); of these
+!! the first runs the program, and the others take part in what MUMPS does with shared matrices.
 module algebra_mumps
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: int64
-   use algebra_ranks, only: announce, communicator_of, new_share
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
-   public :: mumps_t
-   public :: mumps_definite, mumps_indefinite, mumps_unsymmetric
-   public :: mumps_minimum_degree, mumps_pord
+   public :: are_shared, begin_ranks, mumps_definite, mumps_indefinite, mumps_pord, mumps_t
+   public :: mumps_unsymmetric
+
+   interface
+      !> To be called once, before anything is solved. Only the first rank comes back; the others
+      !! end with it.
+      subroutine begin_ranks() bind(c, name="algebra_begin_ranks")
+         implicit none(type, external)
+      end subroutine begin_ranks
+
+      !> Whether the ranks would share a matrix of so many unknowns: 1, or 0.
+      pure integer(c_int) function are_shared(n) bind(c, name="algebra_are_shared")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value :: n  !< number of unknowns
+      end function are_shared
+
+      !> A number for a new matrix if the ranks are to share it, or 0.
+      integer(c_int) function new_share(n) bind(c, name="algebra_new_share")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value :: n  !< number of unknowns
+      end function new_share
+
+      !> The communicator that MUMPS is to use for a matrix.
+      integer(c_int) function communicator_of(share) bind(c, name="algebra_communicator")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value :: share  !< number of the matrix, or 0
+      end function communicator_of
+
+      !> Tell the other ranks what MUMPS will be called for next; nothing of what is not shared.
+      subroutine announce(share, kind, job) bind(c, name="algebra_announce")
+         import :: c_int
+         implicit none(type, external)
+         integer(c_int), value :: share  !< number of the matrix, or 0
+         integer(c_int), value :: kind  !< SYM of MUMPS
+         integer(c_int), value :: job  !< JOB of MUMPS
+      end subroutine announce
+   end interface
 
    include "dmumps_struc.h"
 
@@ -39,7 +80,6 @@ module algebra_mumps
 
    !> One matrix with its factors. Not to be copied: the factors belong to the original.
    type :: mumps_t
-      private
       type(dmumps_struc) :: id
       logical :: active = .false.
       integer(ik) :: share = 0  !< its number among those that ranks share; 0: it is not shared

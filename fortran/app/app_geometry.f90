@@ -7,14 +7,14 @@ module app_geometry
    use base_number, only: integer_text
    use base_plane, only: point_distance
    use growth_network, only: end_pieces, network_of_scene
-   use scene_outline, only: outline_of_scene, outline_t, scene_corner, scene_edge
-   use mesh_check, only: check_mesh_input, joint_t
+   use mesh_builder, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &
                           culprit_t, fault_t, with_name
    use mesh_types, only: network_t
+   use report_scene, only: keep_off
+   use scene_outline, only: outline_of_scene, outline_t, scene_corner, scene_edge
    use scene_sheet, only: line_text, refuse, sheet_t
    use scene_types, only: scene_t
-   use simulation_rocks, only: keep_off
    implicit none(type, external)
    private
 

@@ -1,24 +1,45 @@
 !> Run a scene from start to end, whichever way it is simulated.
+!!
+!! What a running scene hands to its files and to the terminal, whichever way it is simulated.
 module app_run
-   use app_journal, only: journal_t
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use app_interrupts, only: interrupted
    use app_simulations, only: allocate_simulation
    use app_version, only: version
    use app_warnings, only: show_warnings
    use base_errors, only: error_t, keep_first
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
+   use base_number, only: integer_text
    use base_texts, only: text_t
    use base_timers, only: listener_t, phase_output, timers_t
    use growth_network, only: total_length
-   use output_closing, only: closing_lines
-   use output_record, only: run_record_t, status_failed, status_finished, status_stopped
+   use mesh_types, only: mesh_t, network_t
+   use report_progress, only: progress_t, progress_values_t
+   use report_record, only: closing_lines, run_record_t, status_failed, status_finished, &
+                            status_stopped
+   use report_rows, only: history_row_t, probe_row_t
+   use report_run, only: run_output_t
+   use report_simulation, only: simulation_t, snapshot_t
    use scene_types, only: scene_t
-   use simulation_types, only: simulation_t
-   use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none(type, external)
    private
 
    public :: run_scene
+
+   !> Files and progress line of a run.
+   type :: journal_t
+      type(run_output_t) :: files
+      type(progress_t) :: progress
+      logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
+      integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
+      type(progress_values_t) :: shown  !< of the last accepted state
+   contains
+      procedure :: begin => begin_journal
+      procedure :: write_state
+      procedure :: show_work
+      procedure :: write_chronicle
+      procedure :: write_fields
+   end type journal_t
 
    !> Hears of long work: shows it, and ends it as the user wants.
    type, extends(listener_t) :: follower_t
@@ -177,5 +198,150 @@ contains
          if (simulation%is_over()) return
       end do
    end subroutine march
+
+   !> The scene is meshed: note its network, and begin to tell how the run goes on.
+   subroutine begin_journal(self, quiet, simulation)
+      class(journal_t), intent(inout) :: self
+      logical, intent(in) :: quiet
+      class(simulation_t), intent(in) :: simulation
+
+      call self%progress%begin(quiet)
+      call write_network(self, simulation)
+   end subroutine begin_journal
+
+   subroutine write_network(self, simulation)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(in) :: simulation
+      type(network_t) :: network
+      type(mesh_t) :: mesh
+
+      call simulation%present_network(network, mesh)
+      call self%files%network_step(simulation%time(), network, mesh)
+   end subroutine write_network
+
+   !> An accepted state: history, probes, fields where they are due, the progress line.
+   subroutine write_state(self, simulation, error)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(inout) :: simulation
+      type(error_t), allocatable, intent(out) :: error
+      type(history_row_t) :: row
+      type(probe_row_t) :: probes
+      character(len=:), allocatable :: log_line
+
+      self%owes_rows = .true.
+      self%owes_vtu = .true.
+      row = simulation%history()
+      if (size(simulation%scene%probes) > 0) then
+         call simulation%probes(probes, error)
+         if (allocated(error)) return
+         call self%files%probe_row(row%time, probes)
+      end if
+      call self%files%history_row(row)
+      call write_due_fields(self, simulation, row%time, error)
+      if (allocated(error)) return
+      call self%files%tick(error)
+      self%shown = progress_values_t(share=simulation%share_done(), time=row%time, &
+                                     step=simulation%summary%steps, n_stick=row%n_stick, &
+                                     n_slip=row%n_slip, n_open=row%n_open, &
+                                     fracture_length=row%fracture_length, &
+                                     well_pressure=row%well_pressure, &
+                                     keq_over_kic=simulation%keq_over_kic(), &
+                                     is_load=.not. simulation%scene%has_fluid())
+      call self%progress%show(self%shown, log_line)
+      if (allocated(log_line)) call self%files%log(log_line)
+   end subroutine write_state
+
+   !> The next state is being looked for: so that a long step shows that it goes on.
+   subroutine show_work(self)
+      class(journal_t), intent(inout) :: self
+      character(len=:), allocatable :: log_line
+
+      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! there is no state yet
+      self%shown%solutions = self%shown%solutions + 1
+      call self%progress%show(self%shown, log_line)
+      if (allocated(log_line)) call self%files%log(log_line)
+   end subroutine show_work
+
+   !> What has happened since the last time.
+   subroutine write_chronicle(self, simulation)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(inout) :: simulation
+      integer(ik) :: i
+
+      associate (chronicle => simulation%chronicle)
+         do i = 1, size(chronicle%events, kind=ik)
+            associate (event => chronicle%events(i))
+               if (event%has_place) then
+                  call self%files%event_row(event%time, event%kind, event%detail, event%fracture, &
+                                            event%xy)
+               else
+                  call self%files%event_row(event%time, event%kind, event%detail)
+               end if
+            end associate
+         end do
+         do i = 1, size(chronicle%tips, kind=ik)
+            call self%files%tip_row(chronicle%tips(i))
+         end do
+         do i = 1, size(chronicle%wells, kind=ik)
+            call self%files%well_row(chronicle%wells(i))
+         end do
+         do i = 1, size(chronicle%slip_events, kind=ik)
+            call self%files%slip_event_row(chronicle%slip_events(i))
+         end do
+         do i = 1, size(chronicle%remarks, kind=ik)
+            call self%files%log(chronicle%remarks(i)%text)
+         end do
+         if (chronicle%has_new_network) call write_network(self, simulation)
+         call chronicle%clear()
+      end associate
+   end subroutine write_chronicle
+
+   !> Fields where they are due: at the end of an interval, or without a fluid of a step of the
+   !! load; and at every increment of growth, with VTU files for as many as the scene wants.
+   subroutine write_due_fields(self, simulation, time, error)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: time  !< of the state [s], or its load factor
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: words
+      logical :: is_due
+
+      is_due = .not. simulation%shows_growth
+      if (simulation%scene%has_fluid()) is_due = self%files%fields_due(time)
+      if (is_due) then
+         call self%write_fields(simulation, error)
+      else if (simulation%shows_growth) then
+         associate (limit => simulation%scene%output%growth_states)
+            if (self%n_growth == limit .and. limit > 0 .and. simulation%scene%output%vtu) then
+               words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
+                       "files of further increments of growth are left out"
+               call self%files%log(words)
+               call simulation%summary%warn(words)
+            end if
+            call self%write_fields(simulation, error, with_vtu=self%n_growth < limit)
+         end associate
+         self%n_growth = self%n_growth + 1
+      end if
+   end subroutine write_due_fields
+
+   !> Fields of the last accepted state, as far as they have not been written.
+   subroutine write_fields(self, simulation, error, with_vtu)
+      class(journal_t), intent(inout) :: self
+      class(simulation_t), intent(in) :: simulation
+      type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_vtu  !< .false.: only the rows of fractures.csv
+      type(snapshot_t), allocatable :: fields
+      logical :: has_vtu
+
+      has_vtu = .true.
+      if (present(with_vtu)) has_vtu = with_vtu
+      if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
+      call simulation%snapshot(fields)
+      if (.not. allocated(fields)) return
+      call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, &
+                                   fields%intersection, error, self%owes_rows, has_vtu)
+      self%owes_rows = .false.
+      if (has_vtu) self%owes_vtu = .false.
+   end subroutine write_fields
 
 end module app_run

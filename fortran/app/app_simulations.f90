@@ -3,8 +3,8 @@
 module app_simulations
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: network_t
+   use report_simulation, only: simulation_t
    use scene_types, only: scene_t
-   use simulation_types, only: simulation_t
    implicit none(type, external)
    private
 

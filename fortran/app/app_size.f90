@@ -1,19 +1,23 @@
 !> How large a scene is, before anything is meshed, and whether a machine can hold it. All numbers
 !! are real: a scene that is far too large has more of everything than an integer counts.
+!!
+!! What a scene has and leaves out, without running it.
 module app_size
+   use app_warnings, only: show_warnings
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, lk, pi, rk
    use base_number, only: brief_text
    use base_plane, only: polygon_area
    use growth_network, only: network_of_scene, total_length
-   use scene_outline, only: outline_of_scene, outline_t
    use mechanics_results, only: touches
+   use scene_outline, only: outline_of_scene, outline_t
+   use scene_plausible, only: doubts_of_scene, find_regime, regime_words
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t, time_t
    implicit none(type, external)
    private
 
-   public :: check_size, size_of_scene, estimate_t
+   public :: check_size, describe_scene, estimate_t, size_of_scene
 
    !> Numbers of things at the start of a run, estimated.
    type :: estimate_t
@@ -104,7 +108,6 @@ contains
       real(rk) :: n
       integer, parameter :: layers = 400
       real(rk), parameter :: cells_per_square = 4.0_rk/sqrt(3.0_rk)  ! equilateral triangles
-      real(rk), parameter :: pi = acos(-1.0_rk)
       !> The farthest point: no more than exp(-5) of the body is beyond it.
       real(rk), parameter :: covered = 5.0_rk
       type(outline_t) :: outline
@@ -209,5 +212,58 @@ contains
 
       text = brief_text(x, 3)
    end function number
+
+   !> Print the scene's contents and its estimated size.
+   subroutine describe_scene(scene, unit)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: unit
+
+      type(estimate_t) :: estimate
+      real(rk) :: length, toughness
+      integer :: well
+
+      associate (body => scene%domain)
+         length = total_length(network_of_scene(scene))
+         estimate = size_of_scene(scene)
+         write (unit, "(2a)") "scene:        ", trim(scene%name)
+         if (len_trim(scene%title) > 0) write (unit, "(2a)") "title:        ", trim(scene%title)
+         write (unit, "(a,2(es10.3,a))") "body:        ", body%x_max - body%x_min, " x", &
+            body%y_max - body%y_min, " m, "//trim(merge("poroelastic", "elastic    ", &
+                                                        scene%has_fluid()))
+         write (unit, "(a,i0,a,es10.3,a)") "fractures:    ", size(scene%fractures), ", together", &
+            length, " m"
+         if (allocated(scene%regions)) write (unit, "(a,i0)") "regions:      ", size(scene%regions)
+         if (scene%has_fluid()) write (unit, "(a,i0)") "wells:        ", size(scene%injections)
+         write (unit, "(a,i0)") "probes:       ", size(scene%probes)
+         if (scene%has_fluid()) then
+            write (unit, "(a,es10.3,a,i0,a)") "time:        ", scene%time%end, " s in "// &
+               trim(merge("about", "     ", scene%time%tolerance > 0.0_rk))//" ", &
+               int(estimate%steps, lk), trim(merge(" chosen steps ", " regular steps", &
+                                                   scene%time%tolerance > 0.0_rk))
+         else if (allocated(scene%load%factors)) then
+            write (unit, "(a,i0,2(a,es10.3),a,i0,a)") "load factors: ", &
+               size(scene%load%factors), " in turn between", minval(scene%load%factors), &
+               " and", maxval(scene%load%factors), ", ", scene%load%steps, " steps to each"
+            write (unit, "(a)") "left out:     pressure, flow, coarse level"
+         else
+            write (unit, "(2(a,es10.3),a,i0,a)") "load factor: ", scene%load%from, " to", &
+               scene%load%to, " in ", scene%load%steps, " steps"
+            write (unit, "(a)") "left out:     pressure, flow, coarse level"
+         end if
+         write (unit, "(2a)") "tips:         ", trim(merge("growth     ", &
+                                                           merge("intensities", "left out   ", &
+                                                                 scene%growth%intensities), &
+                                                           scene%growth%enabled))
+         call find_regime(scene, toughness, well)
+         if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
+            regime_words(toughness), ", K_m = ", toughness, " (well '", &
+            trim(scene%injections(well)%name), "')"
+         write (unit, "(2a)") "VTU files:    ", trim(merge("yes     ", "left out", &
+                                                           scene%output%vtu))
+         write (unit, "(a,i0,a,i0,a)") "about:        ", int(estimate%cells, lk), " cells, ", &
+            int(estimate%fracture_cells, lk), " fracture cells"
+      end associate
+      call show_warnings(doubts_of_scene(scene), unit)
+   end subroutine describe_scene
 
 end module app_size

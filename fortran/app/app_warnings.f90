@@ -1,7 +1,7 @@
 !> Warnings on the terminal.
 module app_warnings
-   use base_number, only: integer_text
    use base_kinds, only: ik
+   use base_number, only: integer_text
    use base_texts, only: text_t
    implicit none(type, external)
    private

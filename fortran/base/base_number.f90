@@ -3,9 +3,9 @@
 !! The digits are those of the standard library of C++ (base_number_digits.cpp): Fortran's formatted
 !! writes cannot find the fewest.
 module base_number
-   use base_kinds, only: ik, lk, rk
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int
+   use base_kinds, only: ik, lk, rk
    implicit none(type, external)
    private
 

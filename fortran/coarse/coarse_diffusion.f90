@@ -3,7 +3,7 @@
 !! flux the Darcy velocity q = -(K/mu) grad p [m/s]; nothing here knows of fluids, and the
 !! comments give the units of that case.
 !!
-!! Mixed form, as for the stress (coarse_stress): each face has a normal flux at each of its two
+!! Mixed form, as for the stress (coarse_matrix): each face has a normal flux at each of its two
 !! ends; around a vertex these couple only to each other and to the scalars of the cells there. The
 !! scalar is continuous at a third of each face. On both sides of a fracture it has a value of its
 !! own, an unknown, at which the flux leaves the rock. Local system (coarse_elimination):
@@ -12,9 +12,9 @@ module coarse_diffusion
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
-   use coarse_geometry, only: corner_geometry, face_length
    use coarse_layout, only: end_of_block, fracture_cell_of_block
    use coarse_regions, only: regions_t
+   use mesh_geometry, only: corner_geometry, face_length
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private

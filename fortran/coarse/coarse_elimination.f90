@@ -15,7 +15,7 @@ module coarse_elimination
 
    public :: eliminate, fix_unknown, local_system_t, new_local_system, response_t, share_t
 
-   !> The system of one vertex. Its units are those of its rows and unknowns, see coarse_stress and
+   !> The system of one vertex. Its units are those of its rows and unknowns, see coarse_matrix and
    !! coarse_diffusion. The arrays may be larger than the system.
    type :: local_system_t
       integer(ik) :: n = 0  !< unknowns to be eliminated

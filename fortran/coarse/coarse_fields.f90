@@ -1,10 +1,9 @@
 !> Fields that follow from the unknowns: fluid content, stress, strain.
 module coarse_fields
    use base_kinds, only: ik, rk
-   use coarse_geometry, only: cell_area
    use coarse_matrix, only: matrix_t
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: rock_t
+   use coarse_regions, only: regions_t, rock_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private

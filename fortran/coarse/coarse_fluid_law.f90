@@ -1,5 +1,5 @@
 !> The fluid in the fractures where its density or viscosity follows its pressure: what that adds to
-!! equations that are filled already as if neither did (coarse_fracture_flow, coarse_joint_flow).
+!! equations that are filled already as if neither did (coarse_fracture_flow, coarse_fracture_flow).
 !!
 !! With r, m and mu_0 of scene_fluid_law, all volumes at the density of the reference pressure:
 !!   balance of a cell   l (r a - r_before a_before) in place of l (a - a_before)

@@ -1,27 +1,28 @@
 !> What the equations of one time step on the fractures are made of: the unknowns and their units,
 !! the condensed body and its forces, the state before. The equations themselves are those of
-!! contact (coarse_equations) and of the fluid (coarse_fracture_flow).
+!! contact (coarse_newton) and of the fluid (coarse_fracture_flow).
 !!
 !! All unknowns x and equations are scaled to Pa: jumps by a stiffness, flows and volumes by a unit.
 module coarse_fractures
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
+   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_joints, only: joints_t
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_slopes, only: slopes_t
-   use coarse_state, only: fracture_cells_t, state_t
-   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_sparse_step, only: sparse_step_t
+   use coarse_state, only: fracture_cells_t, guess_t, state_t
    use coarse_wells, only: wells_t
    use contact_law, only: contact_law_t
    use contact_newton, only: contact_system_t, step_quality_t
-   use contact_wear, only: weaken
+   use contact_pairs, only: weaken
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
-   public :: cell_fluid_t, fracture_system_t, most_of_rock, newton_settings_t, prepare
+   public :: cell_fluid_t, fracture_problem_t, fracture_system_t, most_of_rock
+   public :: newton_settings_t, prepare
 
    !> What the iteration needs to know.
    type :: newton_settings_t
@@ -37,6 +38,18 @@ module coarse_fractures
       logical :: equilibrate = .false.
       type(fluid_law_t), allocatable :: fluid_law  !< of viscosity and density, if there is one
    end type newton_settings_t
+
+   !> What the equations of the fractures of one mesh are made of, from step to step.
+   type :: fracture_problem_t
+      type(condensed_t) :: condensed
+      type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
+      type(guess_t) :: guess  !< what the next step will probably lead to
+      type(newton_settings_t) :: settings
+      type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
+      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      type(joints_t) :: joints  !< where they exchange it otherwise
+      type(wells_t) :: wells  !< whose rate depends on pressures; likewise
+   end type fracture_problem_t
 
    !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and
    !! must outlive them. The points of contact are the starts and ends of the cells in turn.
@@ -107,13 +120,8 @@ module coarse_fractures
 contains
 
    !> Units, and what does not change within the step.
-   subroutine prepare(condensed, cells, connections, joints, wells, settings, dt, g, before, eq)
-      type(condensed_t), intent(inout), target :: condensed
-      type(fracture_cells_t), intent(in), target :: cells
-      integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
-      type(joints_t), intent(in), target :: joints
-      type(wells_t), intent(in), target :: wells
-      type(newton_settings_t), intent(in) :: settings
+   subroutine prepare(problem, dt, g, before, eq)
+      type(fracture_problem_t), intent(inout), target :: problem
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(in), target :: before
@@ -121,27 +129,29 @@ contains
       real(rk) :: reference
       integer(ik) :: n, n_all, n_condensed
 
-      n = condensed%n
-      reference = sum(condensed%length)/real(n, rk)
-      eq%condensed => condensed
-      eq%cells => cells
-      eq%connections => connections
-      eq%joints => joints
-      eq%wells => wells
+      n = problem%condensed%n
+      reference = sum(problem%condensed%length)/real(n, rk)
+      eq%condensed => problem%condensed
+      eq%cells => problem%cells
+      eq%connections => problem%connections
+      eq%joints => problem%joints
+      eq%wells => problem%wells
       eq%g => g
       eq%before => before
-      eq%settings = settings
-      eq%layout = fracture_layout(n, size(connections, 2, kind=ik), joints%branch_count(), &
-                                  wells%n, joints%n)
+      eq%settings = problem%settings
+      eq%layout = fracture_layout(n, size(problem%connections, 2, kind=ik), &
+                                  problem%joints%branch_count(), problem%wells%n, problem%joints%n)
       eq%dt = dt
-      eq%stiffness = settings%young/reference
-      eq%unit = reference**2/settings%young
-      allocate (eq%lowest(n), source=settings%vapour_pressure)
-      if (allocated(cells%pressure_in_situ)) eq%lowest = eq%lowest - cells%pressure_in_situ
-      eq%load_stress = stress_without_jumps(condensed, g)
+      eq%stiffness = problem%settings%young/reference
+      eq%unit = reference**2/problem%settings%young
+      allocate (eq%lowest(n), source=problem%settings%vapour_pressure)
+      if (allocated(problem%cells%pressure_in_situ)) then
+         eq%lowest = eq%lowest - problem%cells%pressure_in_situ
+      end if
+      eq%load_stress = stress_without_jumps(problem%condensed, g)
       eq%state = reshape(before%contact, [2*n])
       n_all = eq%layout%count()
-      n_condensed = condensed%layout%count()
+      n_condensed = problem%condensed%layout%count()
       allocate (eq%way(2*n), source=0_ik)
       allocate (eq%q(n_condensed), eq%force(n_condensed), eq%traction(2, 2, n))
       allocate (eq%residual(n_all))

@@ -1,14 +1,14 @@
 !> The linear step of the fractures' equations where the body is condensed onto them as a full
 !! matrix.
 !!
-!! As many unknowns as can be leave that matrix first (coarse_links), so that it is a small one even
+!! As many unknowns as can be leave that matrix first (algebra_links), so that it is small even
 !! where there are many fracture cells. All but one kind of links are exact. Pressures of the faces
 !! differ from that of the fluid by what the volume that leaves through them, which all unknowns
 !! have a part in, takes in the fracture: next to nothing where the rock conducts far less. It is
 !! left out of their links, and the step improved until it fulfils the equations as they are.
 module coarse_full_step
+   use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
-   use coarse_links, only: links_t, new_links
    use coarse_slopes, only: slopes_t
    use coarse_sparse_matrix, only: apply_rows
    use contact_dense, only: factorize_full, solve_factorized
@@ -159,7 +159,7 @@ contains
          associate (at => kinds%jump(i))
             call look_at(at, at, own(1, :), is_own(1))
             call look_at(at + 1, at, own(2, :), is_own(2))
-            call link_jumps(at)
+            call links%link_pair(at, own, is_own)
          end associate
       end do
 
@@ -238,26 +238,6 @@ contains
             end associate
          end do
       end subroutine look_at
-
-      !> The jumps of an end, as far as its equations hold no others.
-      subroutine link_jumps(at)
-         integer(ik), intent(in) :: at
-         integer(ik), parameter :: none(0) = [integer(ik) ::]
-         real(rk), parameter :: nothing(0) = [real(rk) ::]
-         real(rk) :: determinant
-
-         if (.not. is_own(1) .or. .not. abs(own(1, 1)) > 0.0_rk) return
-         if (is_own(2)) then
-            determinant = own(1, 1)*own(2, 2) - own(1, 2)*own(2, 1)
-            if (.not. abs(determinant) > 0.0_rk) return
-            call links%link(at, [at, at + 1], [-own(2, 2), own(1, 2)]/determinant, none, nothing)
-            call links%link(at + 1, [at + 1, at], [-own(1, 1), own(2, 1)]/determinant, none, &
-                            nothing)
-         else
-            call links%link(at, [at, 0_ik], [-1.0_rk/own(1, 1), 0.0_rk], [at + 1], &
-                            [-own(1, 2)/own(1, 1)])
-         end if
-      end subroutine link_jumps
 
    end subroutine find_links
 

@@ -10,29 +10,21 @@ module coarse_model
    use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
                           phase_solve, timers_t
    use base_tolerances, only: same_time
-   use coarse_condensed, only: condensed_t
-   use contact_states, only: state_stick
-   use coarse_damping, only: dampers, jumps_of
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
-   use coarse_fractures, only: newton_settings_t
-   use coarse_geometry, only: cell_area
-   use coarse_guess, only: guess_t
+   use coarse_fractures, only: fracture_problem_t, newton_settings_t
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
+   use coarse_loads, only: add_point_forces, find_weight, hold_points
    use coarse_matrix, only: discretize, matrix_t, renew_sides
    use coarse_newton, only: solve_fractures
-   use coarse_points, only: add_point_forces, hold_points
-   use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_rock_wells, only: rock_wells_t
-   use coarse_sparse_step, only: sparse_step_t
+   use coarse_regions, only: new_rock, regions_t, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: crack_ends_t, free_ends, place_tips, tip_springs
-   use coarse_weight, only: find_weight
-   use coarse_wells, only: wells_t
+   use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
+   use coarse_wells, only: rock_wells_t, wells_t
+   use contact_law, only: state_stick
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene
@@ -44,20 +36,12 @@ module coarse_model
    public :: coarse_model_t, new_state, rest_fluid
 
    !> Everything that belongs to one mesh.
-   type :: coarse_model_t
+   type, extends(fracture_problem_t) :: coarse_model_t
       type(rock_t) :: rock
       type(boundary_side_t), allocatable :: sides(:)  !< pressures beyond those in situ
       type(in_situ_state_t), allocatable :: in_situ  !< beyond which pressures and stresses count
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(condensed_t) :: condensed
-      type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
-      type(guess_t) :: guess  !< what the next step will probably lead to
-      type(newton_settings_t) :: settings
-      type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
-      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
-      type(joints_t) :: joints  !< where they exchange it otherwise
-      type(wells_t) :: wells  !< whose rate depends on pressures; likewise
       type(rock_wells_t) :: rock_wells  !< those of them in the rock
       !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
       !! regions differ [-]
@@ -426,9 +410,7 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%condensed, self%factors, self%guess, self%cells, &
-                              self%connections, self%joints, self%wells, self%settings, dt, g, &
-                              state, q, report)
+         call solve_fractures(self%fracture_problem_t, dt, g, state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
          if (self%wells%n > 0) call feed(self, state%well_flow(:self%wells%n))

@@ -1,24 +1,34 @@
-!> One time step of the fractures: the iteration of contact_newton on the equations of
-!! coarse_equations, and what of its outcome is accepted.
+!> One time step of the fractures: the iteration of contact_newton on the equations of a step, and
+!! what of its outcome is accepted.
+!!
+!! The equations are contact at both ends of every cell, and the fluid (coarse_fracture_flow,
+!! coarse_well_flow, coarse_fluid_law). Their unknowns are those of fracture_layout_t.
 module coarse_newton
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_equations, only: equations_t
-   use coarse_guess, only: guess_t
-   use coarse_joints, only: joints_t
-   use coarse_loops, only: flows_in_loops, unknown_flow
-   use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
-   use coarse_sparse_step, only: sparse_step_t
-   use coarse_well_flow, only: find_well
-   use coarse_wells, only: wells_t
+   use coarse_fluid_law, only: add_fluid_law
+   use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
+                                   fill_flow, fill_joint
+   use coarse_fractures, only: cell_fluid_t, fracture_problem_t, fracture_system_t, prepare
+   use coarse_joints, only: flows_in_loops, unknown_flow
+   use coarse_pivoting, only: pivot_fractures
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use contact_law, only: contact_residual
+   use coarse_well_flow, only: fill_well, find_well
+   use contact_law, only: contact_equations, contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
    implicit none(type, external)
    private
 
-   public :: solve_fractures
+   public :: equations_t, solve_fractures
+
+   !> The whole system.
+   type, extends(fracture_system_t) :: equations_t
+   contains
+      procedure :: evaluate
+      procedure :: restart
+   end type equations_t
 
    real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
 
@@ -26,16 +36,8 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, wells, &
-                              settings, dt, g, state, q, report)
-      type(condensed_t), intent(inout), target :: condensed
-      type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
-      type(guess_t), intent(inout) :: guess  !< from earlier solutions
-      type(fracture_cells_t), intent(in), target :: cells
-      integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
-      type(joints_t), intent(in), target :: joints
-      type(wells_t), intent(in), target :: wells
-      type(newton_settings_t), intent(in) :: settings
+   subroutine solve_fractures(problem, dt, g, state, q, report)
+      type(fracture_problem_t), intent(inout), target :: problem
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(inout), target :: state
@@ -46,18 +48,20 @@ contains
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
       integer(ik) :: spent
+      logical :: equilibrate
 
-      call prepare(condensed, cells, connections, joints, wells, settings, dt, g, state, eq)
-      eq%factors => factors
-      how = iteration_settings_t(tolerance=settings%tolerance, &
-                                 iterations_max=settings%iterations_max, with_condition=.true., &
-                                 allows_rounding=.true.)
+      equilibrate = problem%settings%equilibrate
+      call prepare(problem, dt, g, state, eq)
+      eq%factors => problem%factors
+      how = iteration_settings_t(tolerance=problem%settings%tolerance, &
+                                 iterations_max=problem%settings%iterations_max, &
+                                 with_condition=.true., allows_rounding=.true.)
       call find_start(eq, state, start)
       x = start
       eq%start = start
       spent = 0
-      if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
-         x = guess%from(start, dt)
+      if (problem%guess%is_known(size(start, kind=ik)) .and. .not. equilibrate) then
+         x = problem%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
          how%perseveres = .true.
@@ -70,8 +74,8 @@ contains
       end if
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
       found%iterations = found%iterations + spent
-      if (found%outcome == outcome_converged .and. .not. settings%equilibrate) then
-         call guess%remember(dt, start, x)
+      if (found%outcome == outcome_converged .and. .not. equilibrate) then
+         call problem%guess%remember(dt, start, x)
       end if
       q = eq%q
       report%stress_scale = eq%stress_scale
@@ -90,7 +94,7 @@ contains
          report%reason = "the iteration on contact and flow of the fractures did not converge"
          report%cell = worst_cell(eq, x)
       end select
-      if (report%converged) call accept(condensed, cells, dt, eq, x, state, report)
+      if (report%converged) call accept(problem%condensed, problem%cells, dt, eq, x, state, report)
    end subroutine solve_fractures
 
    !> The cell whose equations are missed most at x; 0: none is known.
@@ -275,5 +279,94 @@ contains
                         < lowest(j) - contact_residual_max*eq%stress_scale
       end do
    end function is_overdrawn
+
+   !> Residuals [Pa] and their derivatives at x.
+   subroutine evaluate(self, x)
+      class(equations_t), intent(inout) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk) :: pressure
+      integer(ik) :: end, i, k
+
+      call self%find_forces(x)
+      call self%slopes%clear(self%layout%count())
+      pressure = 0.0_rk
+      do i = 1, self%layout%n_cells
+         do end = 1, 2
+            call fill_contact(i, end, x, self)
+         end do
+         if (self%settings%equilibrate) then
+            call fill_equilibrium(i, x, self)
+         else
+            call fill_exchange(i, x, self)
+            call fill_balance(i, x, self)
+         end if
+         pressure = max(pressure, abs(x(self%layout%at_pressure(i))))
+      end do
+      do k = 1, self%layout%n_flows
+         call fill_flow(k, x, self)
+      end do
+      do k = 1, self%layout%n_joints
+         call fill_joint(k, x, self)
+      end do
+      do k = 1, self%layout%n_branches
+         call fill_branch(k, x, self)
+      end do
+      do k = 1, self%layout%n_wells
+         call fill_well(k, x, self)
+      end do
+      if (allocated(self%settings%fluid_law) .and. .not. self%settings%equilibrate) then
+         call add_fluid_law(x, self%settings%fluid_law, self)
+      end if
+      self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
+      if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
+   end subroutine evaluate
+
+   !> Contact by pivoting, from where the step started.
+   subroutine restart(self, x, has_start)
+      class(equations_t), intent(inout) :: self
+      real(rk), intent(inout) :: x(:)  !< [Pa]
+      logical, intent(out) :: has_start
+      real(rk) :: found(size(x))
+
+      found = self%start
+      call pivot_fractures(self, found, has_start)
+      if (has_start) x = found
+   end subroutine restart
+
+   !> The two contact equations at one end of cell i.
+   pure subroutine fill_contact(i, end, x, eq)
+      integer(ik), intent(in) :: i
+      integer(ik), intent(in) :: end  !< 1 start, 2 end
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      class(equations_t), intent(inout) :: eq
+      real(rk) :: by_traction(2, 2), by_jump(2, 2), half_length
+      type(cell_fluid_t) :: fluid
+      integer(ik) :: at, k, m, point, row
+
+      half_length = 0.5_rk*eq%condensed%length(i)
+      at = eq%condensed%layout%at_jump(i, end)
+      row = eq%layout%at_jump(i, end)
+      fluid = eq%fluid_at(x, i)
+      point = 2*(i - 1) + end
+      eq%traction(:, end, i) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
+      call contact_equations(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
+                             eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
+                             eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
+      if (eq%is_without_contact) then
+         eq%residual(row:row + 1) = eq%traction(:, end, i)
+         by_traction = reshape([1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [2, 2])
+         by_jump = 0.0_rk
+      end if
+      do k = 1, 2
+         associate (slopes => eq%slopes, equation => row + k - 1)
+            do m = 1, 2
+               call slopes%add_force(equation, at + m - 1, -by_traction(k, m)/half_length)
+               call slopes%add(equation, row + m - 1, by_jump(k, m)/eq%stiffness)
+            end do
+            call slopes%add(equation, eq%layout%at_pressure(i), &
+                            by_traction(k, 1)*fluid%pressure_slope)
+         end associate
+      end do
+   end subroutine fill_contact
 
 end module coarse_newton

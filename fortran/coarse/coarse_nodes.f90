@@ -3,8 +3,8 @@ module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_fields, only: corner_gradients, displacement_gradients
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: rock_t
+   use coarse_regions, only: regions_t, rock_t
+   use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -190,15 +190,5 @@ contains
       value(1:2) = unknowns(1:2, cell) + matmul(gradient, offset)
       value(3) = unknowns(3, cell) + dot_product(pressure_gradient, offset)
    end subroutine extrapolate
-
-   pure function cell_centre(mesh, cell) result(centre)
-      type(mesh_t), intent(in) :: mesh
-      integer(ik), intent(in) :: cell
-      real(rk) :: centre(2)  !< [m]
-      real(rk) :: corners(2, 3)
-
-      corners = mesh%xy(:, mesh%cell_nodes(:, cell))
-      centre = sum(corners, dim=2)/3.0_rk
-   end function cell_centre
 
 end module coarse_nodes

@@ -7,6 +7,7 @@
 !! that it jumps at the face as far as the layer is thinner than a cell.
 module coarse_own_pressure
    use base_kinds, only: ik, rk
+   use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -37,7 +38,8 @@ contains
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
             plain(v) = plain(v) + means(c)
-            values(v) = values(v) + dot_product(gradients(:, c), mesh%xy(:, v) - centre(mesh, c))
+            values(v) = values(v) + dot_product(gradients(:, c), mesh%xy(:, &
+                                                                         v) - cell_centre(mesh, c))
             weight(v) = weight(v) + 1.0_rk
          end do
       end do
@@ -100,7 +102,7 @@ contains
          p = means(c) - means(1)
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
-            offset = centre(mesh, c) - mesh%xy(:, v)
+            offset = cell_centre(mesh, c) - mesh%xy(:, v)
             moments(:, v) = moments(:, v) + [1.0_rk, offset, offset(1)**2, product(offset), &
                                              offset(2)**2, p, p*offset]
          end do
@@ -109,7 +111,7 @@ contains
          around = 0.0_rk
          do k = 1, 3
             v = mesh%cell_nodes(k, c)
-            around = around + shifted(moments(:, v), mesh%xy(:, v) - centre(mesh, c))
+            around = around + shifted(moments(:, v), mesh%xy(:, v) - cell_centre(mesh, c))
          end do
          gradients(:, c) = gradient_of(around)
       end do
@@ -148,13 +150,5 @@ contains
       minmod = 0.0_rk
       if (a*b > 0.0_rk) minmod = sign(min(abs(a), abs(b)), a)
    end function minmod
-
-   pure function centre(mesh, cell)
-      type(mesh_t), intent(in) :: mesh
-      integer(ik), intent(in) :: cell
-      real(rk) :: centre(2)  !< [m]
-
-      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
-   end function centre
 
 end module coarse_own_pressure

@@ -18,16 +18,14 @@
 !! the region has its share of the cell. Each line cuts the region's part off what later regions
 !! have left, so regions that share an outline leave nothing between them.
 module coarse_permeability
-   use base_clip, only: left_part
    use base_kinds, only: ik, rk
-   use base_plane, only: barycentric, polygon_area, triangle_area, turned_left
-   use coarse_geometry, only: cell_area
-   use coarse_rock, only: mean_mobility, new_rock, resistivity_of, rock_t
+   use base_plane, only: barycentric, left_part, polygon_area, triangle_area, turned_left
+   use coarse_regions, only: mean_mobility, new_rock, resistivity_of, rock_t
    use coarse_solid, only: any_differ, make_room, number_stiffnesses, set_solid, solid_of, solid_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_check_permeability, only: most_anisotropic
-   use scene_region_outline, only: region_outline
-   use scene_rock_places, only: is_inside, outline_t
+   use scene_region_outline, only: is_inside, outline_t, region_outline
    use scene_types, only: domain_t, fluid_t, region_t
    implicit none(type, external)
    private

@@ -12,7 +12,7 @@
 module coarse_solid
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use coarse_rock, only: rock_t
+   use coarse_regions, only: rock_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private

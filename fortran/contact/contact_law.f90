@@ -44,14 +44,16 @@
 !! increment; it opposes the slip on side -, where the traction is -f. (The thesis writes -f_tau for
 !! f_tau, as for a traction on side -; with sigma n as above that would let friction do work on the
 !! slip.)
+!!
+!! The contact state of a fracture cell, in one numbering for all rooms and files.
 module contact_law
    use base_kinds, only: ik, rk
    use base_tolerances, only: round_off
-   use contact_states, only: state_open, state_slip, state_stick
    implicit none(type, external)
    private
 
-   public :: contact_equations, contact_law_t, contact_residual, is_same, is_valid, strength_t
+   public :: contact_equations, contact_law_t, contact_residual, is_same, is_valid, state_name
+   public :: state_open, state_slip, state_stick
 
    !> Parameters of the law.
    type :: contact_law_t
@@ -101,6 +103,10 @@ module contact_law
       real(rk) :: tension_by(2) = 0.0_rk  !< by w, and by the size of the slip [Pa/m]
       real(rk) :: cohesion_by(2) = 0.0_rk  !< the same
    end type strength_t
+
+   integer(ik), parameter :: state_stick = 0  !< the faces touch and hold
+   integer(ik), parameter :: state_slip = 1  !< the faces touch and slide
+   integer(ik), parameter :: state_open = 2  !< the faces do not touch
 
 contains
 
@@ -495,5 +501,22 @@ contains
       ! max() passes over what is not a number.
       if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) worst = huge(1.0_rk)
    end function contact_residual
+
+   !> The word for a contact state.
+   pure function state_name(state) result(name)
+      integer(ik), intent(in) :: state
+      character(len=:), allocatable :: name
+
+      select case (state)
+      case (state_stick)
+         name = "stick"
+      case (state_slip)
+         name = "slip"
+      case (state_open)
+         name = "open"
+      case default
+         name = "unknown"
+      end select
+   end function state_name
 
 end module contact_law

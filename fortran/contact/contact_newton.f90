@@ -55,7 +55,7 @@ module contact_newton
       logical :: is_propped = .false.  !< what only contact holds is held, since a restart
       ! Points where the law of contact holds.
       integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
-      integer(ik), allocatable :: state(:)  !< of contact_states
+      integer(ik), allocatable :: state(:)  !< of contact_law
    contains
       procedure(evaluate_system), deferred :: evaluate
       procedure(find_linear_step), deferred :: find_step

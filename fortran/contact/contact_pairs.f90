@@ -3,17 +3,19 @@
 !! What is left of the equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair),
 !! g the load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The law of
 !! contact at every pair closes the system.
+!!
+!! Strength that is held within a step, and falls from one solution to the next: see contact_newton.
 module contact_pairs
+   use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
+   use contact_dense, only: solve_by_parts, solve_full
    use contact_law, only: contact_equations, contact_law_t, contact_residual
    use contact_newton, only: contact_system_t, step_quality_t
    use contact_pivoting, only: pivot_to_solution
-   use contact_ties, only: new_ties, ties_t
-   use contact_wear, only: weaken
    implicit none(type, external)
    private
 
-   public :: contact_pairs_t
+   public :: contact_pairs_t, weaken
 
    !> The pairs, their history and their load.
    type, extends(contact_system_t) :: contact_pairs_t
@@ -90,34 +92,51 @@ contains
       logical, intent(in) :: with_condition
       real(rk), intent(out) :: step(:)  !< (2 n) [Pa]
       type(step_quality_t), intent(out) :: quality
-      type(ties_t) :: ties
+      type(links_t) :: links
       integer(ik), allocatable :: kept(:)
-      real(rk), allocatable :: factor(:), matrix(:, :), rest(:)
+      real(rk), allocatable :: factor(:), matrix(:, :), rest(:), solution(:)
       real(rk) :: slope(2*self%n)
       integer(ik) :: i, k
+      logical :: is_solved
 
-      ties = new_ties(2*self%n)
+      links = new_links(2*self%n)
       do i = 1, self%n
-         call ties%tie(2*i - 1, self%by_jump(:, :, i)/self%stiffness, &
-                       .not. any(abs(self%by_traction(:, :, i)) > 0.0_rk, dim=2), &
-                       self%residual(2*i - 1:2*i))
+         call links%link_pair(2*i - 1, self%by_jump(:, :, i)/self%stiffness, &
+                              .not. any(abs(self%by_traction(:, :, i)) > 0.0_rk, dim=2))
       end do
-      kept = ties%kept()
-      allocate (matrix(size(kept), size(kept)), rest(size(kept)), factor(size(kept)))
+      call links%take_residual(self%residual)
+      kept = links%kept_unknowns()
+      allocate (matrix(size(kept), size(kept)))
+      allocate (rest(size(kept)), factor(size(kept)), solution(size(kept)))
       do k = 1, size(kept, kind=ik)
          call fill_row(self, kept(k), slope)
          rest(k) = self%residual(kept(k))
-         call ties%reduce(slope, rest(k))
+         call links%reduce(slope, rest(k))
          matrix(:, k) = slope(kept)
          factor(k) = factor_of(self, kept(k))
       end do
-      do i = 1, size(ties%partner, kind=ik)  ! another unknown moves with it: not symmetric
-         if (ties%partner(i) > 0 .and. abs(ties%share(i)) > 0.0_rk) then
-            where (kept == ties%partner(i)) factor = 0.0_rk
-         end if
+      do i = 1, links%first(links%n + 1) - 1  ! another unknown moves with it: not symmetric
+         if (abs(links%share(i)) > 0.0_rk) where (kept == links%partner(i)) factor = 0.0_rk
       end do
-      call ties%find_step(matrix, rest, with_condition, step, quality, factor=factor)
+      is_solved = .false.
+      if (.not. with_condition .and. is_worth(factor)) then
+         call solve_by_parts(matrix, rest, factor, solution, quality, is_solved)
+      end if
+      if (.not. is_solved) call solve_full(matrix, rest, with_condition, solution, quality)
+      if (quality%is_singular) return
+      step(kept) = solution
+      call links%complete(step)
    end subroutine find_step
+
+   !> Whether enough equations have a factor for being solved apart.
+   pure logical function is_worth(factor)
+      real(rk), intent(in) :: factor(:)  !< see solve_by_parts
+      integer(ik), parameter :: many = 32
+      integer(ik) :: n
+
+      n = count(abs(factor) > 0.0_rk, kind=ik)
+      is_worth = n >= many .and. 2*n >= size(factor)
+   end function is_worth
 
    !> What makes an equation that one traction alone decides that of the symmetric S; otherwise 0.
    pure real(rk) function factor_of(self, equation)
@@ -279,5 +298,27 @@ contains
 
       self%law = self%law_before
    end subroutine let_wear
+
+   !> Let a held law become as weak as what the faces have slipped and opened in the step leaves it;
+   !! it never becomes stronger again.
+   pure subroutine weaken(law, traction, jump, slip, held, lost)
+      type(contact_law_t), intent(in) :: law  !< at the start of the step
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip  !< of the step [m]
+      type(contact_law_t), intent(inout) :: held  !< law whose strength does not change
+      real(rk), intent(out) :: lost  !< strength [Pa]
+      type(contact_law_t) :: last
+      real(rk) :: slope
+
+      last = held
+      held = law
+      held%wears = .false.
+      call law%friction_at(slip, held%friction, slope)
+      held%friction = min(held%friction, last%friction)
+      held%bond = min(law%bond_left(law%apart(traction, jump), slip), last%bond)
+      lost = (last%friction - held%friction)*max(0.0_rk, -traction(1)) &
+             + (last%bond - held%bond)*max(law%tension, law%cohesion)
+   end subroutine weaken
 
 end module contact_pairs

@@ -20,9 +20,9 @@
 !! - Faces held closed with friction: its bound is that of the pressed part P+ of P, so that under
 !!   tension the result is a start for the iteration, not its solution.
 module contact_pivoting
+   use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
    use base_tolerances, only: round_off
-   use algebra_lapack, only: dgetrf, dgetrs
    use contact_law, only: contact_law_t
    implicit none(type, external)
    private

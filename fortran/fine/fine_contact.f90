@@ -10,23 +10,25 @@
 !! g)_m/L_m. Rows of S and g combined accordingly leave the form above. Where such an end loads
 !! unknowns that are no jumps of pairs, these stand behind w; combined, their rows have no f left,
 !! and they are eliminated.
+!!
+!! What is kept of contact when the mesh changes.
 module fine_contact
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
-   use contact_law, only: contact_law_t
+   use base_tolerances, only: same_place
+   use contact_law, only: contact_law_t, state_open
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
                              outcome_converged, outcome_not_a_number, outcome_singular
    use contact_pairs, only: contact_pairs_t
-   use contact_states, only: state_open
-   use fine_faces, only: constraints_t, face_contact, face_conditions_t
-   use fine_line, only: line_resultants
+   use fine_element, only: line_parameter, line_resultants, line_shapes
+   use fine_faces, only: constraints_t, face_conditions_t, face_contact
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
 
    public :: close_joints, contact_problem_t, contact_t, eliminate_loose, loose_unknowns
-   public :: new_contact, set_contact_problem, show_closing, solve_contact
+   public :: new_contact, set_contact_problem, show_closing, solve_contact, transfer_contact
 
    !> Contact on all faces, node by node as start, end, mid of each fracture cell; what several
    !! cells share has the same value in each of them. Zero and open where there is no contact.
@@ -38,7 +40,7 @@ module fine_contact
       real(rk), allocatable :: opened(:, :)  !< (3, fracture cells) apart so far at most [m]
       real(rk), allocatable :: apart(:, :)  !< (3, fracture cells) in the last solution [m]
       real(rk), allocatable :: traction(:, :, :)  !< (tau n, start end mid, fracture cell) [Pa]
-      integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_states
+      integer(ik), allocatable :: state(:, :)  !< (start end mid, fracture cell) of contact_law
       integer(ik) :: iterations = 0  !< of the last solution
       logical :: was_restarted = .false.  !< by pivoting, as the iteration had cycled
       real(rk) :: residual = 0.0_rk  !< how far it is from the law, over the largest traction [-]
@@ -390,5 +392,53 @@ contains
          end do
       end do
    end subroutine scatter
+
+   !> Contact on a new mesh: where the old mesh had the fracture, jump and slip of its nodes,
+   !! interpolated; elsewhere it stays as it is.
+   pure subroutine transfer_contact(fine_old, old, fine_new, new)
+      type(fine_mesh_t), intent(in) :: fine_old
+      type(contact_t), intent(in) :: old
+      type(fine_mesh_t), intent(in) :: fine_new
+      type(contact_t), intent(inout) :: new
+      real(rk) :: weight(3)
+      integer(ik) :: cell, k, source
+
+      do cell = 1, fine_new%fracture%n_cells
+         do k = 1, 3
+            call find(fine_new%fracture%cell_fracture(cell), fine_new%face_s(k, cell), source, &
+                      weight)
+            if (source == 0) cycle
+            new%jump(:, k, cell) = matmul(old%jump(:, :, source), weight)
+            new%slip_before(k, cell) = dot_product(old%slip_before(:, source), weight)
+            new%slip_path(k, cell) = dot_product(old%slip_path(:, source), weight)
+            new%opened(k, cell) = max(0.0_rk, dot_product(old%opened(:, source), weight))
+         end do
+      end do
+
+   contains
+
+      !> The old cell at an arc length of a fracture, and the shares of its nodes.
+      pure subroutine find(f, s, source, weight)
+         integer(ik), intent(in) :: f
+         real(rk), intent(in) :: s  !< [m]
+         integer(ik), intent(out) :: source  !< 0: none
+         real(rk), intent(out) :: weight(3)  !< start, end, mid [-]
+         real(rk) :: x
+         integer(ik) :: i
+
+         source = 0
+         weight = 0.0_rk
+         do i = 1, fine_old%fracture%n_cells
+            if (fine_old%fracture%cell_fracture(i) /= f) cycle
+            x = (s - fine_old%face_s(1, i))/(fine_old%face_s(2, i) - fine_old%face_s(1, i))
+            if (x < -same_place .or. x > 1.0_rk + same_place) cycle
+            source = i
+            x = line_parameter(min(1.0_rk, max(0.0_rk, x)), fine_old%face_tip(i))
+            weight = line_shapes(x)
+            return
+         end do
+      end subroutine find
+
+   end subroutine transfer_contact
 
 end module fine_contact

@@ -3,18 +3,29 @@
 !! The error of an element is estimated by the energy of the difference between its stress and the
 !! recovered one (Zienkiewicz and Zhu 1987, 1992), the energy norm of a stress being the root of
 !! int s C^-1 s dA.
+!!
+!! The error of stress intensity factors from that of the whole solution.
+!!
+!! K is a linear function of the displacement (fine_tip_interaction), z the displacement that its
+!! nodal forces cause in the same body. The error of K is then a(e_u, e_z), the energy of the error
+!! of the solution in the strain of that of z (Becker and Rannacher 2001); both are estimated by
+!! recovered stresses.
 module fine_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
+   use fine_element, only: collapsed_rule, triangle_rule_7
+   use fine_faces, only: face_loaded
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, triangle_rule_7
-   use fine_recovery, only: recovered_stress, recovery_t
+   use fine_recovery, only: recover_by_patches, recovered_stress, recovery_t
+   use fine_tip_intensity, only: complete_errors, tip_probe_t
+   use fine_tip_types, only: intensity_t
    implicit none(type, external)
    private
 
-   public :: energy_error_t, error_product, estimate_error, wanted_sizes
+   public :: correct_intensity, energy_error_t, estimate_error, has_dual, wanted_sizes
 
    !> 2 m of wanted_sizes: sizes that grow by 0.3 per distance, as the mesh library makes them, put
    !! 2 pi/(0.3**2 sqrt(3)/4) = 161 elements around a tip for every factor e in distance.
@@ -257,5 +268,39 @@ contains
          end associate
       end do
    end subroutine spread_to_tips
+
+   !> Whether the displacement depends on the loads alone: no face touches another.
+   pure logical function has_dual(model)
+      type(fine_model_t), intent(in) :: model
+
+      has_dual = all(model%conditions%condition == face_loaded)
+   end function has_dual
+
+   !> Add what K_I and K_II lack to their corrected values, and its magnitude to their errors.
+   subroutine correct_intensity(model, displacement, recovery, probe, intensity, error)
+      type(fine_model_t), intent(inout) :: model
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(recovery_t), intent(in) :: recovery  !< of its stresses
+      type(tip_probe_t), intent(in) :: probe  !< of the tip
+      type(intensity_t), intent(inout) :: intensity  !< from tip_intensity
+      type(error_t), allocatable, intent(out) :: error
+      type(recovery_t) :: dual_recovery
+      real(rk), allocatable :: force(:, :, :), dual(:, :)
+      real(rk) :: missing(2)
+      integer(ik) :: mode
+
+      force = probe%interactions%extraction_forces(1_ik, model%mesh%n_nodes)
+      do mode = 1, 2
+         call model%influence(force(:, :, mode), dual, error)
+         if (allocated(error)) return
+         call recover_by_patches(model, dual, dual_recovery)
+         missing(mode) = error_product(model, displacement, recovery, dual, dual_recovery)
+      end do
+      intensity%k1_corrected = intensity%k1 + missing(1)
+      intensity%k2_corrected = intensity%k2 + missing(2)
+      intensity%k1_error = intensity%k1_error + abs(missing(1))
+      intensity%k2_error = intensity%k2_error + abs(missing(2))
+      call complete_errors(probe%frame%rock%crack_modulus(), intensity)
+   end subroutine correct_intensity
 
 end module fine_error

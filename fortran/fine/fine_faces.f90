@@ -17,7 +17,7 @@ module fine_faces
    use base_plane, only: turned_left
    use contact_law, only: contact_law_t, is_valid
    use fine_boundary, only: fine_boundary_t
-   use fine_line, only: line_resultants
+   use fine_element, only: line_resultants
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private

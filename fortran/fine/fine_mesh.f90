@@ -4,8 +4,7 @@ module fine_mesh
    use base_kinds, only: ik, rk
    use base_plane, only: cross
    use base_tolerances, only: same_place
-   use fine_element, only: evaluate_element
-   use fine_line, only: node_within
+   use fine_element, only: evaluate_element, node_within
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private

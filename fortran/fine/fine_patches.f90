@@ -1,12 +1,12 @@
 !> Stress samples in the elements, and polynomials fitted to those around a node. Where rocks meet
 !! at a node each has samples of its own there, for stresses jump across an interface.
 module fine_patches
+   use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
-   use algebra_lapack, only: dpotrf, dpotrs
    use fine_elasticity, only: rocks_t
+   use fine_element, only: triangle_rule_3
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: triangle_rule_3
    implicit none(type, external)
    private
 

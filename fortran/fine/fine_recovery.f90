@@ -9,8 +9,8 @@
 !! Area averaging (Zienkiewicz and Zhu 1987), for comparison, takes the mean stress of the elements
 !! around a node, weighted with their areas, instead of the fit.
 module fine_recovery
-   use base_kinds, only: ik, rk
    use algebra_lapack, only: dpotrf, dpotrs
+   use base_kinds, only: ik, rk
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t

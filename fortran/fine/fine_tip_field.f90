@@ -5,13 +5,11 @@
 !!    2 mu d(u1 + i u2)/dx1 = kappa Phi(z) - Omega(conj z) - (z - conj z) conj(Phi'(z)).
 !! Derivatives along the crack have Phi', Omega' and Phi'' in the place of Phi, Omega and Phi'.
 module fine_tip_field
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    implicit none(type, external)
    private
 
    public :: auxiliary_field, auxiliary_field_t, root_of_place, singular_stress, tip_field_t
-
-   real(rk), parameter :: pi = acos(-1.0_rk)
 
    !> The field at one point.
    type :: auxiliary_field_t

@@ -11,16 +11,26 @@
 !! Then each tip has not advanced and K_i <= K_IC, or has and K_i = K_IC, a linear complementarity
 !! problem. It has one solution where M is negative definite, else others too: here the tips that
 !! exceed their toughness most grow first, and others with them only as far as they must.
+!!
+!! Length control: how far the tips of a group go while the load factor follows them.
+!!
+!! Kinds of tips: those that are alike grow alike, and count as one.
+!!
+!! Tips that have come equally far, and that the errors of their intensities do not tell from each
+!! other, go equally far as long as that is so: else the errors of their meshes would part them.
+!! What is like something alike is alike too, so the order of the tips does not matter.
 module growth_competition
-   use algebra_lapack, only: dgesv
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use algebra_lapack, only: dgesv, dsyev
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
+   public :: better_advances, complementary_advances, corrected_advances, fitted, joined_groups
+   public :: learn_from_trial, likes, matrix_of_kinds, means, numbered, of_kinds, preference
+
    ! Where a tip is within its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
-
-   public :: complementary_advances, corrected_advances, learn_from_trial, preference
 
 contains
 
@@ -176,32 +186,152 @@ contains
       preference = largest_eigenvalue(turned(2:, 2:))
    end function preference
 
-   !> Of a symmetric matrix, by Jacobi's rotations.
+   !> Of a symmetric matrix; without a number where LAPACK finds none.
    pure real(rk) function largest_eigenvalue(matrix)
       real(rk), intent(in) :: matrix(:, :)
-      integer, parameter :: sweeps = 30
-      real(rk) :: a(size(matrix, 1), size(matrix, 1)), angle, rotation(2, 2), rest
-      integer :: i, j, k, n, sweep
+      real(rk) :: a(size(matrix, 1), size(matrix, 1)), eigenvalues(size(matrix, 1))
+      real(rk) :: work(3*size(matrix, 1))
+      integer(ik) :: info, n
 
       a = matrix
-      n = size(a, 1)
-      do sweep = 1, sweeps
-         rest = sum(a**2) - sum([(a(i, i)**2, i=1, n)])
-         if (.not. rest > epsilon(1.0_rk)**2*sum(a**2)) exit
-         do i = 1, n - 1
-            do j = i + 1, n
-               angle = 0.5_rk*atan2(2.0_rk*a(i, j), a(j, j) - a(i, i))
-               rotation = reshape([cos(angle), -sin(angle), sin(angle), cos(angle)], [2, 2])
-               do k = 1, n
-                  a(k, [i, j]) = matmul(a(k, [i, j]), rotation)
-               end do
-               do k = 1, n
-                  a([i, j], k) = matmul(transpose(rotation), a([i, j], k))
-               end do
+      n = size(a, 1, kind=ik)
+      call dsyev("N", "L", n, a, n, eigenvalues, work, size(work, kind=ik), info)
+      largest_eigenvalue = merge(eigenvalues(n), ieee_value(1.0_rk, ieee_quiet_nan), info == 0)
+   end function largest_eigenvalue
+
+   !> Better advances of tips that grow in kinds. Tips that would go back go back in steps.
+   subroutine better_advances(kind, lack, matrix, slope, room, tolerance, advance)
+      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
+      real(rk), intent(in) :: matrix(:, :)  !< M of growth_competition [Pa m^-1/2]
+      real(rk), intent(in) :: slope(:)  !< dK_eq/df [Pa m^1/2]
+      real(rk), intent(in) :: room(:)  !< to the ends of the pieces [m]
+      real(rk), intent(in) :: tolerance  !< on the lack of tips that have advanced [Pa m^1/2]
+      real(rk), intent(inout) :: advance(:)  !< [m]
+      real(rk), parameter :: back = 0.25_rk  ! of an advance is left at least
+      real(rk), dimension(maxval(kind)) :: gain, lack_of, room_of, slope_of
+      real(rk) :: of_all(maxval(kind), maxval(kind))
+      real(rk), allocatable :: change(:)
+      integer(ik), allocatable :: free(:)
+      logical :: is_free(maxval(kind))
+      integer(ik) :: k, leader
+
+      of_all = matrix_of_kinds(kind, matrix)
+      lack_of = of_kinds(kind, means(kind, lack))
+      slope_of = of_kinds(kind, means(kind, slope))
+      room_of = of_kinds(kind, room)
+      gain = of_kinds(kind, means(kind, advance))
+      ! One that stays goes on again where it is not behind.
+      is_free = gain > 0.0_rk .or. lack_of <= tolerance
+      free = pack([(k, k=1, size(gain, kind=ik))], is_free)
+      leader = minloc(lack_of(free), dim=1, kind=ik)  ! has no need to go back
+      allocate (change(size(free)))
+      call corrected_advances(lack_of(free), of_all(free, free), slope_of(free), leader, change)
+      ! The matrix may be that of quite other places: back in steps.
+      gain(free) = min(room_of(free), max(gain(free) + change, back*gain(free)))
+      advance = gain(kind)
+   end subroutine better_advances
+
+   !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
+   !! mesh is none, nor what hardly changes the intensities.
+   pure function fitted(advance, room, accepted, shortest) result(fit)
+      real(rk), intent(in) :: advance(:), room(:), accepted(:)  !< [m]
+      real(rk), intent(in) :: shortest  !< of a piece, what the mesh can hold [m]
+      real(rk) :: fit(size(advance))
+      real(rk), parameter :: negligible = 1.0e-3_rk  ! of the room
+
+      fit = room
+      if (.not. maxval(advance/room) > 0.0_rk) return
+      fit = advance/maxval(advance/room)
+      where (accepted + fit < shortest .or. fit < negligible*room) fit = 0.0_rk
+      where (fit > 0.999_rk*room) fit = room
+   end function fitted
+
+   !> All tips of two groups, in their order.
+   pure function joined_groups(a, b) result(group)
+      integer(ik), intent(in) :: a(:), b(:)
+      integer(ik), allocatable :: group(:)
+      integer(ik) :: i
+
+      group = pack([(i, i=1, max(maxval(a), maxval(b)))], &
+                   [(any(a == i) .or. any(b == i), i=1, max(maxval(a), maxval(b)))])
+   end function joined_groups
+
+   !> The first tip that is like each, itself if there is none before it, by what is alike in pairs
+   !! and all that follows from that.
+   pure function likes(alike) result(first)
+      logical, intent(in) :: alike(:, :)  !< (tips, tips)
+      integer(ik) :: first(size(alike, 1))
+      integer(ik) :: before(size(first)), i, j
+
+      first = [(i, i=1, size(first, kind=ik))]
+      do
+         before = first
+         do j = 1, size(first, kind=ik)
+            do i = 1, size(first, kind=ik)
+               if (alike(i, j) .or. alike(j, i)) first([i, j]) = min(first(i), first(j))
             end do
          end do
+         if (all(first == before)) exit
       end do
-      largest_eigenvalue = maxval([(a(i, i), i=1, n)])
-   end function largest_eigenvalue
+   end function likes
+
+   !> Marks as numbers from 1, in the order in which they come.
+   pure function numbered(marks) result(number)
+      integer(ik), intent(in) :: marks(:)
+      integer(ik) :: number(size(marks))
+      integer(ik) :: k, n
+
+      n = 0
+      do k = 1, size(marks, kind=ik)
+         number(k) = findloc(marks, marks(k), dim=1, kind=ik)
+         if (number(k) == k) then
+            n = n + 1
+            number(k) = n
+         else
+            number(k) = number(number(k))
+         end if
+      end do
+   end function numbered
+
+   !> The means over each kind, for all of it.
+   pure function means(kind, values)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: values(:)
+      real(rk) :: means(size(values))
+      integer :: k
+
+      do k = 1, size(values)
+         means(k) = sum(values, mask=kind == kind(k))/count(kind == kind(k))
+      end do
+   end function means
+
+   !> The matrix between kinds of tips, all of which go equally far.
+   pure function matrix_of_kinds(kind, matrix) result(reduced)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: matrix(:, :)
+      real(rk) :: reduced(maxval(kind), maxval(kind))
+      integer :: i, j
+
+      reduced = 0.0_rk
+      do j = 1, size(kind)
+         do i = 1, size(kind)
+            reduced(kind(i), kind(j)) = reduced(kind(i), kind(j)) &
+                                        + matrix(i, j)/count(kind == kind(i))
+         end do
+      end do
+   end function matrix_of_kinds
+
+   !> A value of each kind: that of its first tip.
+   pure function of_kinds(kind, values) result(each)
+      integer(ik), intent(in) :: kind(:)  !< from 1
+      real(rk), intent(in) :: values(:)
+      real(rk) :: each(maxval(kind))
+      integer :: k
+
+      do k = 1, size(each)
+         each(k) = values(findloc(kind, k, dim=1))
+      end do
+   end function of_kinds
 
 end module growth_competition

@@ -1,15 +1,20 @@
 !> The free tips of a network and how they grow together: the one loop that both levels use.
 !!
 !! Each increment is one step of the growth law (growth_law), taken in the direction in which the
-!! path goes on straight: the tips advance where they will probably have to (growth_path), are
+!! path goes on straight: the tips advance where they will probably have to (growth_tip), are
 !! evaluated there, and turn until the criterion holds at the end of the increment.
+!!
+!! One increment of growth of many tips, on whichever level they were evaluated: which of them grow,
+!! and how far each.
+!!
+!! Pieces of a path that a mesh has cells for already, though the tip has not gone along them: tries
+!! of a step that were not taken have begun them, and the next ones go the same way.
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_place, same_value
-   use growth_increment, only: plan_increment, tips_at_onset
-   use growth_law, only: new_tip
+   use growth_law, only: advances, carry_over, in_grains, new_tip
    use growth_network, only: end_gain, extend, move_end
    use growth_targets, only: find_ahead, find_target, target_none
    use growth_tip, only: tip_t
@@ -17,7 +22,7 @@ module growth_front
    implicit none(type, external)
    private
 
-   public :: front_t, growth_rules_t
+   public :: front_t, growth_rules_t, plan_increment, prepared_t, tips_at_onset
 
    !> How tips grow.
    type :: growth_rules_t
@@ -73,6 +78,23 @@ module growth_front
          type(error_t), allocatable, intent(out) :: error
       end subroutine evaluate_tips
    end interface
+
+   !> A piece of a path.
+   type :: piece_t
+      type(tip_t) :: tip  !< as it was when the piece was begun, with its direction
+      real(rk) :: to(2) = 0.0_rk  !< where the piece ends [m]
+   end type piece_t
+
+   !> The pieces of one tip, one after the other, those that it has gone along included.
+   type :: prepared_t
+      type(piece_t), allocatable, private :: piece(:)
+   contains
+      procedure :: add
+      procedure :: find
+      procedure :: tip_of
+      procedure :: end_of
+      procedure :: length_from
+   end type prepared_t
 
 contains
 
@@ -415,5 +437,98 @@ contains
       tip%target = target
       if (tip%joined) to = at
    end subroutine meet_target
+
+   !> The tips that grow: those whose equivalent intensity reaches the toughness. Where one does,
+   !! those grow along that the error of their intensities does not tell from it: wings of equal
+   !! rank would otherwise drift apart by chance.
+   pure function tips_at_onset(tips, toughness, together) result(grows)
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: together  !< share of the toughness that a tip may lack [-]
+      logical :: grows(size(tips))
+
+      grows = tips%drive%intensity >= (1.0_rk - same_value)*toughness .and. .not. tips%arrested
+      if (.not. any(grows)) return
+      grows = tips%drive%intensity >= (1.0_rk - together)*toughness .and. .not. tips%arrested
+   end function tips_at_onset
+
+   !> How far each tip goes: as far as its energy release rate beside the largest says (model.md
+   !! section 5). Advances too short for the mesh are kept for the next increment, and their tips do
+   !! not grow in this one.
+   pure subroutine plan_increment(tips, grows, increment, exponent, advance)
+      type(tip_t), intent(inout) :: tips(:)
+      logical, intent(in) :: grows(:)  !< those at their toughness
+      real(rk), intent(in) :: increment  !< l_max [m]
+      real(rk), intent(in) :: exponent  !< of the growth law [-]
+      real(rk), intent(out) :: advance(size(tips))  !< 0: does not grow now [m]
+      real(rk) :: left, wanted(size(tips))
+      integer(ik) :: i
+
+      advance = 0.0_rk
+      if (.not. any(grows)) return
+      wanted = in_grains(advances(tips%drive%energy, grows, increment, exponent), increment)
+      do i = 1, size(tips, kind=ik)
+         if (.not. grows(i)) cycle
+         call carry_over(wanted(i), tips(i)%carried, tips(i)%rosette_radius, advance(i), left)
+         tips(i)%carried = left
+      end do
+   end subroutine plan_increment
+
+   !> One more piece, from where the last one ends.
+   pure subroutine add(self, tip, to)
+      class(prepared_t), intent(inout) :: self
+      type(tip_t), intent(in) :: tip  !< its origin is where the piece begins
+      real(rk), intent(in) :: to(2)  !< [m]
+
+      if (.not. allocated(self%piece)) allocate (self%piece(0))
+      self%piece = [self%piece, piece_t(tip=tip, to=to)]
+   end subroutine add
+
+   !> The number of the piece that begins at a place; 0: none does.
+   pure integer(ik) function find(self, from, within)
+      class(prepared_t), intent(in) :: self
+      real(rk), intent(in) :: from(2)  !< [m]
+      real(rk), intent(in) :: within  !< [m]
+      integer(ik) :: k
+
+      find = 0
+      if (.not. allocated(self%piece)) return
+      do k = size(self%piece, kind=ik), 1, -1
+         if (norm2(self%piece(k)%tip%origin - from) > within) cycle
+         find = k
+         return
+      end do
+   end function find
+
+   !> The tip at the beginning of a piece.
+   pure type(tip_t) function tip_of(self, number)
+      class(prepared_t), intent(in) :: self
+      integer(ik), intent(in) :: number
+
+      tip_of = self%piece(number)%tip
+   end function tip_of
+
+   !> Where a piece ends [m].
+   pure function end_of(self, number) result(to)
+      class(prepared_t), intent(in) :: self
+      integer(ik), intent(in) :: number
+      real(rk) :: to(2)
+
+      to = self%piece(number)%to
+   end function end_of
+
+   !> The length of a piece and all that follow it [m]; 0 beyond the last one.
+   pure function length_from(self, number) result(length)
+      class(prepared_t), intent(in) :: self
+      integer(ik), intent(in) :: number
+      real(rk) :: length
+      integer(ik) :: k
+
+      length = 0.0_rk
+      if (.not. allocated(self%piece)) return
+      do k = number, size(self%piece, kind=ik)
+         length = length + norm2(self%piece(k)%to - self%piece(k)%tip%origin)
+      end do
+   end function length_from
 
 end module growth_front

@@ -1,6 +1,6 @@
 !> Whether, where to and how far a tip grows.
 module growth_law
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    implicit none(type, external)
    private
 

@@ -1,6 +1,6 @@
 !> Where a growing tip meets another fracture or the outer boundary.
 module growth_targets
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_plane, only: crosses, meeting, nearest_place, nearest_share, point_distance
    use base_tolerances, only: same_place
    use mesh_types, only: network_t
@@ -16,7 +16,7 @@ module growth_targets
    real(rk), parameter :: snap = 0.3_rk
    !> Sine of the smallest angle at which a segment may meet its target; a shallower one goes
    !! straight to the nearest place, for the mesh library refuses angles below 3 degrees.
-   real(rk), parameter :: shallow = sin(5.0_rk*acos(-1.0_rk)/180.0_rk)
+   real(rk), parameter :: shallow = sin(5.0_rk*pi/180.0_rk)
 
 contains
 

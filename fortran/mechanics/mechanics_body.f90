@@ -4,28 +4,25 @@ module mechanics_body
    use base_kinds, only: ik, rk
    use base_timers, only: phase_assemble, phase_factorize, phase_mesh, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
-   use fine_contact, only: contact_t, new_contact
-   use fine_contact_transfer, only: transfer_contact
+   use fine_boundary, only: add_side_springs
+   use fine_contact, only: contact_t, new_contact, transfer_contact
    use fine_elasticity, only: elasticity_t
+   use fine_error, only: correct_intensity, energy_error_t, estimate_error, has_dual, wanted_sizes
    use fine_loads, only: fine_loads_t
-   use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
-   use fine_springs, only: add_side_springs
    use fine_recovery, only: recover_by_patches, recovery_t
+   use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
-   use mechanics_faces, only: face_conditions, face_pressure, given_slip
-   use mechanics_loads, only: body_loads, held_boundary
-   use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
+   use mechanics_faces, only: body_loads, face_conditions, given_slip, held_boundary
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
+   use report_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
+                           regions_of_other_rock
+   use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use scene_types, only: material_t, scene_t
-   use simulation_rocks, only: follow_outlines, interface_distance, keep_off, place_rocks, &
-                               regions_of_other_rock
-   use tips_dual, only: correct_intensity, has_dual
-   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
-   use tips_types, only: intensity_t
    implicit none(type, external)
    private
 

@@ -8,7 +8,7 @@ module mechanics_dead_load
    use base_timers, only: timers_t
    use mechanics_equilibrium, only: increment_t
    use mechanics_state, only: loaded_body_t
-   use results_chronicle, only: event_unstable
+   use report_rows, only: event_unstable
    implicit none(type, external)
    private
 

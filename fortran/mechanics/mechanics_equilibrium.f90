@@ -9,15 +9,12 @@ module mechanics_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use growth_competition, only: learn_from_trial, preference
-   use growth_control, only: better_advances, fitted, joined_groups
-   use growth_kinds, only: matrix_of_kinds, means, numbered, of_kinds
+   use growth_competition, only: better_advances, fitted, joined_groups, learn_from_trial, &
+                                 matrix_of_kinds, means, numbered, of_kinds, preference
    use growth_tip, only: tip_t
-   use mechanics_balance, only: balance_load
-   use mechanics_loose, only: run_loosely
-   use mechanics_misfit, only: needed_intensity, share_misfit, together, tolerance
-   use mechanics_state, only: loaded_body_t
-   use mechanics_tries, only: least, tries_t
+   use mechanics_balance, only: balance_load, needed_intensity, share_misfit, tolerance
+   use mechanics_state, only: loaded_body_t, together
+   use mechanics_tries, only: least, run_loosely, tries_t
    implicit none(type, external)
    private
 

@@ -3,11 +3,10 @@ module mechanics_fields
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, turned_left
    use fine_elasticity, only: elasticity_t
-   use fine_element, only: shape_values
+   use fine_element, only: line_parameter, line_shapes, shape_values
    use fine_faces, only: face_contact
-   use fine_line, only: line_parameter, line_shapes
+   use fine_tip_domain, only: face_traction
    use mechanics_body, only: body_t
-   use tips_faces, only: face_traction
    implicit none(type, external)
    private
 

@@ -1,21 +1,27 @@
 !> The state of a loaded body as files show it: its row of the history, fields, probes.
+!!
+!! What the limits of a run watch in a body without fluid (report_limits).
 module mechanics_results
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
-   use contact_states, only: state_open, state_slip, state_stick
+   use base_kinds, only: degrees, ik, rk
+   use base_number, only: brief_text
+   use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: total_length
    use mechanics_fields, only: cell_displacement, cell_stress, fracture_jump, fracture_traction, &
                                point_state
    use mechanics_state, only: loaded_body_t
    use mesh_builder, only: locate
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: point_boundary, point_interior, point_tip
-   use results_rows, only: history_row_t, probe_row_t
+   use report_limits, only: limit_angle, limit_contact, limit_jump, limit_strain
+   use report_rows, only: history_row_t, probe_row_t
+   use report_simulation, only: snapshot_t
+   use report_watch, only: worst_place
    use scene_types, only: fracture_t
-   use simulation_types, only: snapshot_t
    implicit none(type, external)
    private
 
-   public :: body_snapshot, history_of_body, probes_of_body, touches
+   public :: body_snapshot, history_of_body, probes_of_body, touches, watch_body
 
 contains
 
@@ -103,5 +109,33 @@ contains
                           row%stress(:, i))
       end do
    end subroutine probes_of_body
+
+   !> Take note of a state in equilibrium, before it is accepted.
+   subroutine watch_body(self)
+      class(loaded_body_t), intent(inout) :: self
+      character(len=:), allocatable :: when
+      real(rk), allocatable :: jump(:, :), ratio(:), strain(:)
+      integer(ik) :: i
+
+      when = "load factor "//brief_text(self%factor, 6)
+      associate (body => self%body, watch => self%watch, fracture => self%body%mesh%fracture)
+         call watch%see(limit_contact, body%contact%residual, when)
+         call watch%see(limit_angle, body%smallest_angle*degrees, when)
+         strain = (maxval(body%displacement, dim=2) - minval(body%displacement, dim=2)) &
+                  /(maxval(body%model%mesh%xy, dim=2) - minval(body%model%mesh%xy, dim=2))
+         call watch%see(limit_strain, strain(worst_place(strain)), when)
+         if (fracture%n_cells > 0) then
+            jump = fracture_jump(body)
+            ratio = norm2(jump, dim=1)/body%model%mesh%face_length
+            i = worst_place(ratio)
+            call watch%see(limit_jump, ratio(i), when, &
+                           fracture_cell_centre(fracture, i))
+         end if
+         if (self%scene%growth%intensities) then
+            call watch%see_tips(self%tip, self%scene%material%toughness, &
+                                self%scene%growth%enabled, when)
+         end if
+      end associate
+   end subroutine watch_body
 
 end module mechanics_results

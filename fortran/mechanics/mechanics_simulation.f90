@@ -7,19 +7,15 @@ module mechanics_simulation
    use base_timers, only: timers_t
    use mechanics_dead_load, only: dead_load_t
    use mechanics_equilibrium, only: increment_t
-   use mechanics_misfit, only: together
-   use mechanics_limits, only: watch_body
    use mechanics_programme, only: programme_t
-   use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches
-   use mechanics_rise, only: rise
-   use mechanics_state, only: loaded_body_t
-   use mechanics_turn, only: go_to_peak
+   use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches, watch_body
+   use mechanics_rise, only: go_to_peak, rise
+   use mechanics_state, only: loaded_body_t, together
    use mesh_types, only: mesh_t, network_t
-   use results_chronicle, only: event_bifurcation
-   use results_rows, only: history_row_t, probe_row_t
+   use report_rows, only: event_bifurcation, history_row_t, probe_row_t
+   use report_simulation, only: snapshot_t
+   use report_watch, only: doubtful, stop_on_doubt
    use scene_types, only: scene_t
-   use simulation_doubt, only: doubtful, stop_on_doubt
-   use simulation_types, only: snapshot_t
    implicit none(type, external)
    private
 

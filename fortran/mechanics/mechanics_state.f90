@@ -1,24 +1,27 @@
 !> A body under a load factor: its state on a mesh that follows growth and error, and its tips.
+!!
+!! Whether fractures have cut the body to pieces.
 module mechanics_state
    use base_errors, only: error_t
+   use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use fine_elasticity, only: elasticity_t, is_same
+   use fine_tip_types, only: frame_of_tip, tip_frame_t
    use growth_front, only: growth_rules_t
    use growth_law, only: growth_drive
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_t
-   use mechanics_onset, only: reading_t
+   use mechanics_programme, only: reading_t
+   use mesh_types, only: fracture_mesh_t, point_boundary
+   use report_scene, only: relative_toughness
+   use report_simulation, only: simulation_t
    use scene_outline, only: outline_of_scene, outline_t
-   use mechanics_pieces, only: cuts_through
    use scene_types, only: scene_t
-   use simulation_rocks, only: relative_toughness
-   use simulation_types, only: simulation_t
-   use tips_types, only: frame_of_tip, tip_frame_t
    implicit none(type, external)
    private
 
-   public :: loaded_body_t
+   public :: cuts_through, loaded_body_t, together
 
    !> Share of the toughness that tips may lack to grow together with the first: about the error of
    !! the intensities, so that equal tips stay equal.
@@ -234,5 +237,28 @@ contains
                           /self%scene%material%toughness - 1.0_rk
       end if
    end function largest_excess
+
+   !> Fractures, with the outer boundary as one more, form a ring: they cut a piece off the body.
+   !! Without a mesh nothing is known to.
+   pure logical function cuts_through(fracture)
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(groups_t) :: groups
+      integer(ik) :: cell, i, outer
+      logical :: were_joined
+
+      cuts_through = .false.
+      if (.not. allocated(fracture%cell_points)) return
+      groups = single_groups(fracture%n_points)
+      outer = findloc(fracture%point_kind, point_boundary, dim=1)
+      do i = 1, fracture%n_points
+         if (fracture%point_kind(i) == point_boundary) call groups%join(outer, i)
+      end do
+      do cell = 1, fracture%n_cells
+         associate (ends => fracture%cell_points(:, cell))
+            call groups%join(ends(1), ends(2), were_joined)
+         end associate
+         cuts_through = cuts_through .or. were_joined
+      end do
+   end function cuts_through
 
 end module mechanics_state

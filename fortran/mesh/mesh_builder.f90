@@ -1,31 +1,38 @@
 !> Meshes for the other rooms, made by the C++ library.
+!!
+!! Whether a body and its fractures can be meshed, judged by the C++ library without meshing.
 module mesh_builder
+   use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use mesh_c_binding, only: cm_create, cm_create_sized, cm_destroy, cm_grow, cm_locate, &
-                             cm_move_tips, cm_network_t, cm_quality, cm_remesh, cm_spec_t
-   use mesh_c_inputs, only: c_network_arrays_t, mesh_spec_t, prepare_network, prepare_spec
-   use mesh_c_outputs, only: copy_map, copy_mesh
-   use mesh_faults, only: raise_library_error
+   use mesh_c_arrays, only: c_network_arrays_t, copy_map, copy_mesh, mesh_spec_t, &
+                            prepare_network, prepare_spec
+   use mesh_c_binding, only: cm_check, cm_create, cm_create_sized, cm_destroy, cm_grow, &
+                             cm_joint_t, cm_locate, cm_move_tips, cm_network_t, cm_quality, &
+                             cm_remesh, cm_spec_t
+   use mesh_faults, only: fault_t, last_fault, raise_library_error
    use mesh_types, only: mesh_map_t, mesh_t, network_t
-   use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    implicit none(type, external)
    private
 
-   public :: mesh_spec_t, mesher_t
-   public :: build_mesh, build_mesh_sized, grow_mesh, locate, mesh_quality, move_tips
-   public :: remesh, transfer_mesher
+   public :: build_mesh, build_mesh_sized, check_mesh_input, grow_mesh, joint_t, locate
+   public :: mesh_quality, mesh_spec_t, mesher_t, move_tips, remesh, transfer_mesher
 
    !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
    !! empty; use transfer_mesher to move one.
    type :: mesher_t
-      private
       type(c_ptr) :: handle = c_null_ptr
    contains
       procedure, private :: assign_nothing
       generic :: assignment(=) => assign_nothing
       final :: destroy_mesher
    end type mesher_t
+
+   !> A place inside the body where fractures meet.
+   type :: joint_t
+      integer(ik) :: fractures(2) = 0  !< twice the same one that meets itself
+      real(rk) :: xy(2) = 0.0_rk  !< [m]
+   end type joint_t
 
 contains
 
@@ -239,5 +246,44 @@ contains
 
       if (c_associated(self%handle)) call cm_destroy(self%handle)
    end subroutine destroy_mesher
+
+   !> Judge what build_mesh would mesh, by the same code.
+   subroutine check_mesh_input(spec, network, joints, fault)
+      type(mesh_spec_t), intent(in) :: spec
+      type(network_t), intent(in) :: network
+      type(joint_t), allocatable, intent(out) :: joints(:)  !< none if there is a fault
+      type(fault_t), allocatable, intent(out) :: fault  !< unallocated: it can be meshed
+      type(error_t), allocatable :: error
+      type(cm_spec_t) :: c_spec
+      type(cm_network_t) :: c_network
+      type(mesh_spec_t), target :: kept
+      type(c_network_arrays_t), target :: arrays
+      type(cm_joint_t), allocatable :: found(:)
+      integer(ik) :: i, n
+
+      kept = spec
+      allocate (joints(0), found(0))
+      call prepare_network(network, arrays, c_network, error)
+      if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
+      if (allocated(error)) then
+         fault = fault_t(reason=error%message)
+         allocate (fault%culprits(0))
+         return
+      end if
+      if (cm_check(c_spec, c_network, 0_ik, found, n) /= 0) then
+         fault = last_fault()
+         return
+      end if
+      if (n == 0) return
+      deallocate (found, joints)
+      allocate (found(n), joints(n))
+      if (cm_check(c_spec, c_network, n, found, n) /= 0) then
+         fault = last_fault()
+         return
+      end if
+      do i = 1, n
+         joints(i) = joint_t(fractures=found(i)%fracture + 1, xy=[found(i)%x, found(i)%y])
+      end do
+   end subroutine check_mesh_input
 
 end module mesh_builder

@@ -1,11 +1,11 @@
 !> What the C++ mesh library refuses, who is to blame, and the sentence that says so.
 module mesh_faults
+   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_ptr
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik
    use base_number, only: integer_text
    use mesh_c_binding, only: c_string_length, cm_fault_t, cm_last_error, cm_last_fault
    use mesh_types, only: network_t
-   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_ptr
    implicit none(type, external)
    private
 

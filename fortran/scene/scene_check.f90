@@ -1,24 +1,25 @@
 !> Checks values against each other: first those that a sheet tells by what it gives and what not,
 !> then those that need the numbers.
+!!
+!! Checks what the table of parameters says of the names of one group among each other.
+!!
+!! Checks the weight of rock and fluid in a scene with a fluid against each other.
 module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_tolerances, only: round_off
-   use scene_check_column, only: check_column
-   use scene_check_faces, only: check_faces
-   use scene_check_fluid, only: check_fluid, check_given_fluid
+   use scene_check_fluid, only: check_fluid, check_given_fluid, check_given_wells, check_wells
    use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_permeability, only: check_given_permeability, check_tensor
    use scene_check_regions, only: check_given_regions, check_regions
-   use scene_check_sides, only: check_parts, check_sides
-   use scene_check_table, only: check_table
-   use scene_check_wells, only: check_given_wells, check_wells
-   use scene_parameters, only: groups
-   use scene_sheet, only: line_text, parameter_index, refuse, sheet_t
-   use scene_storage, only: least_compressibility, skempton, storage
+   use scene_check_sides, only: check_faces, check_parts, check_sides
+   use scene_fluid_law, only: least_compressibility, skempton, storage
+   use scene_parameters, only: choice_name, choice_value, groups, parameters
+   use scene_sheet, only: line_text, parameter_index, record_t, refuse, sheet_t
    use scene_types, only: scene_t
+   use scene_values, only: value_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
@@ -175,5 +176,142 @@ contains
                      "window, "//rounded_text(0.5_rk*scene%discretization%window))
       end if
    end subroutine check_levels
+
+   !> Every name belongs to the choice that its group makes, stands together with those that go with
+   !! it, and is at most what bounds it.
+   pure subroutine check_table(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+      integer :: i, item
+
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            do item = lbound(record%values, 1), ubound(record%values, 1)
+               call find_fault(record, item, reason)
+               if (.not. allocated(reason)) cycle
+               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_table
+
+   !> What is wrong with a name, given or not.
+   pure subroutine find_fault(record, item, reason)
+      type(record_t), intent(in) :: record
+      integer, intent(in) :: item
+      character(len=:), allocatable, intent(out) :: reason  !< unallocated: nothing is
+      type(value_t) :: bound, choice
+      integer :: other
+
+      associate (rule => parameters(item), value => record%values(item))
+         if (value%line > 0 .and. .not. record%suits(item)) then
+            choice = record%value(choice_name(rule))
+            reason = "is given, but only the "//choice_name(rule)//" '"//choice_value(rule)// &
+                     "' has it, and not '"//choice%text//"'"
+            return
+         end if
+         if (rule%with /= "") then
+            other = parameter_index(record%group, rule%with)
+            if (value%line == 0 .and. record%values(other)%line > 0) then
+               reason = "is missing but must be given with "//trim(rule%with)
+            end if
+         end if
+         if (rule%at_most /= "" .and. value%is_set) then
+            bound = record%value(trim(rule%at_most))
+            if (.not. bound%is_set) return
+            if (value%reals(1) <= bound%reals(1)) return
+            reason = "is "//real_text(value%reals(1))//" but must be at most "// &
+                     trim(rule%at_most)//", "//real_text(bound%reals(1))
+         end if
+      end associate
+   end subroutine find_fault
+
+   !> A fluid with a density has weight, along y, and the rock is no lighter than what fills it.
+   pure subroutine check_column(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: least  ! [kg/m3]
+
+      call check_layers(sheet, scene, error)
+      if (allocated(error)) return
+      associate (density => scene%fluid%density, rock => scene%material, gravity => scene%gravity)
+         if (.not. density > 0.0_rk) return
+         call check_region_weights(sheet, scene, error)
+         if (allocated(error)) return
+         least = rock%porosity*density
+         if (.not. any(abs(gravity) > 0.0_rk)) then
+            call refuse(error, sheet, sheet%find("fluid"), "density", "is "//real_text(density)// &
+                        " but nothing gives the fluid weight; give &gravity y, on earth "// &
+                        "-9.81, or leave the density out")
+         else if (abs(gravity(1)) > 0.0_rk) then
+            call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
+                        " but must be 0, for the pressure of a fluid with a density changes "// &
+                        "with y alone")
+         else if (.not. rock%density >= least) then
+            call refuse(error, sheet, sheet%find("material"), "density", "is "// &
+                        real_text(rock%density)//" but must be at least that of the fluid in "// &
+                        "its pores, porosity times density of &fluid: "//rounded_text(least))
+         end if
+      end associate
+   end subroutine check_column
+
+   !> Rock of several densities has a weight that one gradient of stress does not carry, and that
+   !! windows do not know; it is no lighter than what fills it.
+   pure subroutine check_layers(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+      integer :: i
+
+      if (.not. allocated(scene%regions)) return
+      do i = 1, size(scene%regions)
+         associate (rock => scene%regions(i)%material, all => scene%material)
+            if (.not. abs(rock%density - all%density) > 0.0_rk) cycle
+            if (.not. any(abs(scene%gravity) > 0.0_rk)) then
+               reason = "but nothing gives it weight; give &gravity, or leave the density out"
+            else if (any(abs(scene%in_situ%per_y) > 0.0_rk)) then
+               reason = "but must be that of &material, "//real_text(all%density)// &
+                        ", beside a stress in situ that changes with y: one gradient does not "// &
+                        "carry two weights; leave sxx_per_y and syy_per_y out, and the body "// &
+                        "settles under its weight"
+            else if (scene%growth%intensities) then
+               reason = "but must be that of &material, "//real_text(all%density)// &
+                        ", beside stress intensity factors and growth: windows have one weight"
+            else if (.not. rock%density >= rock%porosity*scene%fluid%density) then
+               reason = "but must be at least that of the fluid in its pores, porosity times "// &
+                        "density of &fluid: "//rounded_text(rock%porosity*scene%fluid%density)
+            else
+               cycle
+            end if
+            call refuse(error, sheet, sheet%find("region", i), "density", "is "// &
+                        real_text(rock%density)//" "//reason)
+            return
+         end associate
+      end do
+   end subroutine check_layers
+
+   !> Without a stress in situ the fluid at rest presses on rock of one Biot coefficient.
+   pure subroutine check_region_weights(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (.not. allocated(scene%regions)) return
+      if (any(abs(scene%in_situ%stress) > 0.0_rk) .or. &
+          any(abs(scene%in_situ%per_y) > 0.0_rk)) return
+      do i = 1, size(scene%regions)
+         if (.not. abs(scene%regions(i)%material%biot - scene%material%biot) > 0.0_rk) cycle
+         call refuse(error, sheet, sheet%find("region", i), "biot", "is "// &
+                     real_text(scene%regions(i)%material%biot)//" but must be that of "// &
+                     "&material, "//real_text(scene%material%biot)//", where a fluid with a "// &
+                     "density has no stress in situ beside it; give &in_situ")
+         return
+      end do
+   end subroutine check_region_weights
 
 end module scene_check

@@ -1,17 +1,21 @@
 !> Checks the laws of a fluid whose density or viscosity follows its pressure.
+!!
+!! Checks what a scene says of its wells.
 module scene_check_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use scene_check_geometry, only: contains_point, distance_to, point_text
    use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law
-   use scene_sheet, only: record_t, refuse, sheet_t
-   use scene_types, only: fluid_t
+   use scene_parameters, only: groups
+   use scene_sheet, only: group_index, parameter_index, record_t, refuse, sheet_t
+   use scene_types, only: fluid_t, injection_t, name_length, scene_t
    use scene_values, only: value_t
-   use scene_words, only: real_text, rounded_text
+   use scene_words, only: nearest_word, real_text, rounded_text
    implicit none(type, external)
    private
 
-   public :: check_fluid, check_given_fluid
+   public :: check_fluid, check_given_fluid, check_given_wells, check_wells
 
    !> The rock has the values of the table at the reference pressure, but for rounding of both [-].
    real(rk), parameter :: rounding = 0.02_rk
@@ -166,5 +170,204 @@ contains
                      ", which the rock takes")
       end if
    end subroutine check_rock
+
+   !> What is given of each: a fracture of the scene or a point, a rate or a pressure.
+   pure subroutine check_given_wells(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (groups(record%group)%name /= "injection") cycle
+            if (record%is_given("fracture")) then
+               call check_target(sheet, i, error)
+               if (allocated(error)) return
+               if (record%is_given("radius")) then
+                 call refuse(error, sheet, i, "radius", "is given, but only a well in the rock "// &
+                              "has one, and this one is in a fracture")
+               end if
+            else if (.not. record%is_given("x")) then
+             call refuse(error, sheet, i, "fracture", "is missing: a well needs a fracture, or "// &
+                           "x and y in the rock")
+            end if
+            if (allocated(error)) return
+            if (.not. (record%is_set("rate") .or. record%is_set("pressure"))) then
+               call refuse(error, sheet, i, "rate", "is missing: a well needs a rate, a "// &
+                           "pressure, or both")
+            else if (record%is_given("time") .and. record%is_given("start")) then
+               call refuse(error, sheet, i, "start", "is given beside time, whose first value "// &
+                           "it would be, but must not be")
+            end if
+            if (allocated(error)) return
+         end associate
+      end do
+   end subroutine check_given_wells
+
+   !> The fracture that a well names is one of the scene.
+   pure subroutine check_target(sheet, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: well  !< index into sheet%records
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: wanted
+      character(len=name_length), allocatable :: names(:)
+      character(len=:), allocatable :: reason, likely
+      integer :: group, i, item, n
+
+      group = group_index("fracture")
+      item = parameter_index(group, "name")
+      allocate (names(count(sheet%records(:sheet%length)%group == group)))
+      n = 0
+      do i = 1, sheet%length
+         if (sheet%records(i)%group /= group) cycle
+         n = n + 1
+         names(n) = sheet%records(i)%values(item)%text
+      end do
+      wanted = sheet%records(well)%value("fracture")
+      if (size(names) == 0) then
+         call refuse(error, sheet, well, "fracture", "is '"//wanted%text// &
+                     "', but the scene has no fracture")
+      else if (.not. any(names == wanted%text)) then
+         reason = "is '"//wanted%text//"', which is no fracture of the scene"
+         likely = nearest_word(wanted%text, names)
+         if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
+         call refuse(error, sheet, well, "fracture", reason)
+      end if
+   end subroutine check_target
+
+   !> Stages go on in time, and a well is where the scene says.
+   pure subroutine check_wells(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      do i = 1, size(scene%injections)
+         record = sheet%find("injection", i)
+         call check_stages(sheet, record, scene%injections(i), error)
+         if (.not. allocated(error)) call check_pressure(sheet, record, scene, i, error)
+         if (.not. allocated(error)) call check_place(sheet, record, scene, i, error)
+         if (.not. allocated(error) .and. any(scene%injections(:i - 1)%name &
+                                              == scene%injections(i)%name)) then
+            call refuse(error, sheet, record, "name", "is '"//trim(scene%injections(i)%name)// &
+                        "', as another well is called, but must be unique")
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine check_wells
+
+   pure subroutine check_stages(sheet, record, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(injection_t), intent(in) :: well
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: k, n
+      character(len=:), allocatable :: last
+
+      n = well%stage_count()
+      if (allocated(well%rate)) call check_count(sheet, record, "rate", size(well%rate, kind=ik), &
+                                                 n, error)
+      if (allocated(well%pressure) .and. .not. allocated(error)) then
+         call check_count(sheet, record, "pressure", size(well%pressure, kind=ik), n, error)
+      end if
+      if (allocated(error)) return
+      do k = 2, n
+         if (well%time(k) > well%time(k - 1)) cycle
+         call refuse(error, sheet, record, "time", "goes back: stage "//integer_text(k)// &
+                     " begins at "//real_text(well%time(k))//", but must begin after stage "// &
+                     integer_text(k - 1_ik)//", "//real_text(well%time(k - 1)))
+         return
+      end do
+      if (well%end > well%stage_start(n)) return
+      last = "start, "
+      if (n > 1) last = "the beginning of the last stage, "
+      call refuse(error, sheet, record, "end", "is "//real_text(well%end)//" but must be after "// &
+                  last//real_text(well%stage_start(n)))
+   end subroutine check_stages
+
+   !> A fracture bears no pressure below that of vapour, so no well there can have or reach one.
+   pure subroutine check_pressure(sheet, record, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< well
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (well => scene%injections(i), lowest => scene%fluid%vapour_pressure)
+         if (well%fracture == 0 .or. .not. allocated(well%pressure)) return
+         if (.not. any(well%pressure < lowest)) return
+         call refuse(error, sheet, record, "pressure", "is "//real_text(minval(well%pressure))// &
+                     " but must be at least the vapour pressure, "//real_text(lowest))
+      end associate
+   end subroutine check_pressure
+
+   !> One value for all stages, or one each.
+   pure subroutine check_count(sheet, record, name, given, stages, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: given, stages
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: right
+
+      if (given == stages) return
+      right = "one"
+      if (stages > 1) right = "as many as time, "//integer_text(stages)
+      call refuse(error, sheet, record, name, "has "//integer_text(given)// &
+                  " values but must have "//right)
+   end subroutine check_count
+
+   !> A point lies on its fracture, within a cell, or in the rock.
+   pure subroutine check_place(sheet, record, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< well
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: distance
+
+      associate (well => scene%injections(i))
+         if (.not. well%at_point) return
+         if (well%fracture == 0) then
+            if (.not. contains_point(scene%domain, well%x, well%y)) then
+               call refuse(error, sheet, record, "x", "and y are "//point_text(well%x, well%y)// &
+                           " but must lie within the domain")
+            else if (well%is_controlled()) then
+               call check_radius(sheet, record, scene, well, error)
+            end if
+            return
+         end if
+         distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
+         if (distance <= scene%discretization%size_fracture) return
+         call refuse(error, sheet, record, "x", "and y are "// &
+                     point_text(well%x, well%y)//", "//rounded_text(distance)// &
+                     " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
+                     "', but must be within size_fracture, "// &
+                     real_text(scene%discretization%size_fracture)//" m")
+      end associate
+   end subroutine check_place
+
+   !> A well in the rock whose rate follows from pressures is thinner than what its cell stands for,
+   !! and its losses are linear (coarse_wells).
+   pure subroutine check_radius(sheet, record, scene, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(scene_t), intent(in) :: scene
+      type(injection_t), intent(in) :: well
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: share = 0.05_rk  ! of a cell; its radius is 0.1 of a usual one
+      real(rk) :: size
+
+      size = scene%discretization%size_boundary
+      if (scene%has_fractures()) size = scene%discretization%size_fracture
+      if (well%turbulence > 0.0_rk) then
+       call refuse(error, sheet, record, "turbulence", "is given, but a well in the rock whose "// &
+                     "rate follows from pressures must not have it")
+      else if (well%radius > share*size) then
+      call refuse(error, sheet, record, "radius", "is "//real_text(well%radius)//" but must be "// &
+                     "at most a twentieth of the smallest cells, "//rounded_text(share*size)// &
+                     ", where the rate follows from pressures")
+      end if
+   end subroutine check_radius
 
 end module scene_check_fluid

@@ -1,12 +1,14 @@
 !> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates;
 !! and where wells and probes are. Whether body and fractures can be meshed is for the mesh library
 !! to judge.
+!!
+!! Whether a polygon, given by its corners, holds a point.
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use base_plane, only: point_distance, triangle_area
    use base_tolerances, only: same_place
-   use scene_polygon, only: holds_point
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: real_text, rounded_text
@@ -14,7 +16,7 @@ module scene_check_geometry
    private
 
    public :: check_domain, check_fractures, check_least_size, check_probes, contains_point
-   public :: distance_to, point_text
+   public :: distance_to, holds_point, point_text
 
    !> Smaller elements, over the body's diagonal, drown in the rounding of coordinates.
    real(rk), parameter :: least_size = 1.0e-8_rk
@@ -219,5 +221,29 @@ contains
 
       text = "("//real_text(x)//", "//real_text(y)//")"
    end function point_text
+
+   !> A point lies inside or, up to rounding, on the boundary.
+   pure logical function holds_point(x, y, point)
+      real(rk), intent(in) :: x(:), y(:)  !< corners [m]
+      real(rk), intent(in) :: point(2)  !< [m]
+      real(rk) :: extent, edge(2, 2)
+      integer(ik) :: n, k, next
+      logical :: is_inside
+
+      n = size(x, kind=ik)
+      extent = max(maxval(x) - minval(x), maxval(y) - minval(y))
+      holds_point = .true.
+      is_inside = .false.
+      do k = 1, n
+         next = mod(k, n) + 1_ik
+         edge = reshape([x(k), y(k), x(next), y(next)], [2, 2])
+         if (point_distance(point, edge) <= same_place*extent) return
+         ! A ray to the right meets the outline an odd number of times (Shimrat 1962).
+         if ((edge(2, 1) > point(2)) .eqv. (edge(2, 2) > point(2))) cycle
+         if ((triangle_area(reshape([edge(:, 1), edge(:, 2), point], [2, 3])) > 0.0_rk) .eqv. &
+             edge(2, 2) > edge(2, 1)) is_inside = .not. is_inside
+      end do
+      holds_point = is_inside
+   end function holds_point
 
 end module scene_check_geometry

@@ -6,10 +6,10 @@ module scene_check_regions
    use base_plane, only: cross, crosses, polygon_area
    use base_tolerances, only: round_off, same_place
    use scene_check_permeability, only: check_tensor
+   use scene_fluid_law, only: least_compressibility, skempton, storage
    use scene_parameters, only: groups
    use scene_region_outline, only: body_part, region_outline
    use scene_sheet, only: refuse, sheet_t
-   use scene_storage, only: least_compressibility, skempton, storage
    use scene_types, only: material_t, region_t, scene_t
    use scene_values, only: value_t
    use scene_words, only: real_text, rounded_text

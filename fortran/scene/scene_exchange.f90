@@ -2,15 +2,14 @@
 !>
 !> One list serves both directions, so that what is read and what is written cannot drift apart.
 module scene_exchange
-   use base_kinds, only: ik, rk
-   use scene_exchange_boundary, only: exchange_part, exchange_point_load, exchange_restraint, &
-                                      exchange_side
-   use scene_exchange_rock, only: exchange_material, exchange_region
-   use scene_exchange_values, only: exchange, exchange_word, radians, set_text, to_degrees
+   use base_kinds, only: ik, radians, rk
+   use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
+                                    exchange_point_load, exchange_region, exchange_restraint, &
+                                    exchange_side, exchange_word, set_text, to_degrees
    use scene_parameters, only: applies, groups, parameters, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t
-   use scene_types, only: probe_t, scene_t
+   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t, probe_t, &
+                          scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -27,9 +26,7 @@ contains
       type(scene_t), intent(out) :: scene
       type(record_t) :: record
       type(value_t) :: value
-      integer :: i, n_fractures, n_injections, n_parts, n_point_loads, n_probes, n_regions
-      integer :: n_restraints, side
-      logical :: is_rectangle
+      integer :: f, i, n(size(groups))
 
       allocate (scene%fractures(count_of(sheet, "fracture")))
       allocate (scene%injections(count_of(sheet, "injection")))
@@ -38,61 +35,19 @@ contains
       allocate (scene%point_loads(count_of(sheet, "point_load")))
       if (sheet%has("region")) allocate (scene%regions(count_of(sheet, "region")))
       value = sheet%records(sheet%find("domain"))%value("shape")
-      is_rectangle = value%text == "rectangle"
-      allocate (scene%parts(merge(0, count_of(sheet, "side"), is_rectangle)))
-      n_parts = 0
-      n_fractures = 0
-      n_injections = 0
-      n_probes = 0
-      n_regions = 0
-      n_restraints = 0
-      n_point_loads = 0
+      allocate (scene%parts(merge(0, count_of(sheet, "side"), value%text == "rectangle")))
+      n = 0
       do i = 1, sheet%length
          record = sheet%records(i)
-         select case (groups(record%group)%name)
-         case ("fracture")
-            n_fractures = n_fractures + 1
-            call exchange_fracture(record, scene%fractures(n_fractures), .true.)
-         case ("region")
-            n_regions = n_regions + 1
-            call exchange_region(record, scene%regions(n_regions), .true.)
-         case ("side")
-            if (is_rectangle) then
-               value = record%value("name")
-               side = findloc(side_names == value%text, .true., dim=1)
-               call exchange_side(record, scene%sides(side), .true.)
-            else
-               n_parts = n_parts + 1
-               call exchange_part(record, scene%parts(n_parts), .true.)
-            end if
-         case ("restraint")
-            n_restraints = n_restraints + 1
-            associate (restraint => scene%restraints(n_restraints))
-               restraint%displacement_given = [record%is_set("x_displacement"), &
-                                               record%is_set("y_displacement")]
-               call exchange_restraint(record, restraint, .true.)
-            end associate
-         case ("point_load")
-            n_point_loads = n_point_loads + 1
-            call exchange_point_load(record, scene%point_loads(n_point_loads), .true.)
-         case ("injection")
-            n_injections = n_injections + 1
-            scene%injections(n_injections)%at_point = record%is_set("x")
-            call exchange_injection(record, scene%injections(n_injections), .true.)
-         case ("probe")
-            n_probes = n_probes + 1
-            call exchange_probe(record, scene%probes(n_probes), .true.)
-         case default
-            call exchange_single(record, scene, .true.)
-         end select
+         record%reading = .true.
+         n(record%group) = n(record%group) + 1
+         call exchange_group(record, scene, n(record%group))
       end do
       do i = 1, size(scene%injections)  ! the fractures may come after the wells
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
-         do n_fractures = 1, size(scene%fractures)
-            if (scene%fractures(n_fractures)%name == value%text) then
-               scene%injections(i)%fracture = int(n_fractures, ik)
-            end if
+         do f = 1, size(scene%fractures)
+            if (scene%fractures(f)%name == value%text) scene%injections(i)%fracture = int(f, ik)
          end do
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
@@ -107,75 +62,98 @@ contains
       integer :: group, i
 
       source = scene  ! exchange takes what it may write to
-      if (.not. allocated(source%restraints)) allocate (source%restraints(0))
-      if (.not. allocated(source%point_loads)) allocate (source%point_loads(0))
-      if (.not. allocated(source%parts)) allocate (source%parts(0))
       sheet%path = ""
       do group = 1, size(groups)
          if (.not. applies(groups(group)%scenes, source%has_fluid())) cycle
-         select case (groups(group)%name)
-         case ("fracture")
-            do i = 1, size(source%fractures)
-               record = empty_record(group, 0_ik)
-               call exchange_fracture(record, source%fractures(i), .false.)
-               call drop_foreign(record, source%has_fluid())
-               call add_record(sheet, record)
-            end do
-         case ("region")
-            if (.not. allocated(source%regions)) cycle
-            do i = 1, size(source%regions)
-               record = empty_record(group, 0_ik)
-               call exchange_region(record, source%regions(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case ("side")
-            do i = 1, size(source%parts)
-               record = empty_record(group, 0_ik)
-               call exchange_part(record, source%parts(i), .false.)
-               call add_record(sheet, record)
-            end do
-            if (source%domain%shape /= "rectangle") cycle
-            do i = 1, size(source%sides)
-               record = empty_record(group, 0_ik)
-               call set_text(record, "name", trim(side_names(i)))
-               call exchange_side(record, source%sides(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case ("restraint")
-            do i = 1, size(source%restraints)
-               record = empty_record(group, 0_ik)
-               call exchange_restraint(record, source%restraints(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case ("point_load")
-            do i = 1, size(source%point_loads)
-               record = empty_record(group, 0_ik)
-               call exchange_point_load(record, source%point_loads(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case ("injection")
-            do i = 1, size(source%injections)
-               record = empty_record(group, 0_ik)
-               if (source%injections(i)%fracture > 0) call set_text(record, "fracture", &
-                  & trim(source%fractures(source%injections(i)%fracture)%name))
-               call exchange_injection(record, source%injections(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case ("probe")
-            do i = 1, size(source%probes)
-               record = empty_record(group, 0_ik)
-               call exchange_probe(record, source%probes(i), .false.)
-               call add_record(sheet, record)
-            end do
-         case default
-            if (groups(group)%name == "fluid" .and. .not. source%has_fluid()) cycle
+         do i = 1, count_in(scene, groups(group)%name)
             record = empty_record(group, 0_ik)
-            call exchange_single(record, source, .false.)
-            call drop_foreign(record, source%has_fluid())
+            call exchange_group(record, source, i)
+            if (groups(group)%name == "fracture" .or. .not. groups(group)%repeated) then
+               call drop_foreign(record, source%has_fluid())
+            end if
             call add_record(sheet, record)
-         end select
+         end do
       end do
    end subroutine scene_to_sheet
+
+   !> How often a scene has a group.
+   pure integer function count_in(scene, group) result(n)
+      type(scene_t), intent(in) :: scene
+      character(len=*), intent(in) :: group
+
+      n = 0
+      select case (group)
+      case ("fracture")
+         n = size(scene%fractures)
+      case ("region")
+         if (allocated(scene%regions)) n = size(scene%regions)
+      case ("side")
+         if (allocated(scene%parts)) n = size(scene%parts)
+         if (scene%domain%shape == "rectangle") n = size(scene%sides)
+      case ("restraint")
+         if (allocated(scene%restraints)) n = size(scene%restraints)
+      case ("point_load")
+         if (allocated(scene%point_loads)) n = size(scene%point_loads)
+      case ("injection")
+         n = size(scene%injections)
+      case ("probe")
+         n = size(scene%probes)
+      case ("fluid")
+         n = merge(1, 0, scene%has_fluid())
+      case default
+         n = 1
+      end select
+   end function count_in
+
+   !> The i-th group of a name.
+   pure subroutine exchange_group(record, scene, i)
+      type(record_t), intent(inout) :: record
+      type(scene_t), intent(inout) :: scene
+      integer, intent(in) :: i
+      type(value_t) :: name
+      integer :: side
+
+      select case (groups(record%group)%name)
+      case ("fracture")
+         call exchange_fracture(record, scene%fractures(i))
+      case ("region")
+         call exchange_region(record, scene%regions(i))
+      case ("side")
+         if (has_parts(scene)) then
+            call exchange_part(record, scene%parts(i))
+            return
+         end if
+         if (.not. record%reading) call set_text(record, "name", trim(side_names(i)))
+         name = record%value("name")
+         side = findloc(side_names == name%text, .true., dim=1)
+         call exchange_side(record, scene%sides(side))
+      case ("restraint")
+         if (record%reading) scene%restraints(i)%displacement_given = &
+            [record%is_set("x_displacement"), record%is_set("y_displacement")]
+         call exchange_restraint(record, scene%restraints(i))
+      case ("point_load")
+         call exchange_point_load(record, scene%point_loads(i))
+      case ("injection")
+         associate (well => scene%injections(i))
+            if (record%reading) well%at_point = record%is_set("x")
+            if (.not. record%reading .and. well%fracture > 0) call set_text(record, "fracture", &
+               & trim(scene%fractures(well%fracture)%name))
+            call exchange_injection(record, well)
+         end associate
+      case ("probe")
+         call exchange_probe(record, scene%probes(i))
+      case default
+         call exchange_single(record, scene)
+      end select
+   end subroutine exchange_group
+
+   !> The body is no rectangle: what is said of its boundary is said of parts.
+   pure logical function has_parts(scene)
+      type(scene_t), intent(in) :: scene
+
+      has_parts = .false.
+      if (allocated(scene%parts)) has_parts = size(scene%parts) > 0
+   end function has_parts
 
    !> Leave out what a scene of this kind or a group with this choice must not give, and halves of
    !! pairs.
@@ -194,232 +172,219 @@ contains
    end subroutine drop_foreign
 
    !> The groups that a scene has once.
-   pure subroutine exchange_single(record, scene, reading)
+   pure subroutine exchange_single(record, scene)
       type(record_t), intent(inout) :: record
       type(scene_t), intent(inout) :: scene
-      logical, intent(in) :: reading
 
       select case (groups(record%group)%name)
       case ("scene")
-         call exchange(record, "name", scene%name, reading)
-         call exchange(record, "title", scene%title, reading)
+         call exchange(record, "name", scene%name)
+         call exchange(record, "title", scene%title)
       case ("domain")
-         call exchange_domain(record, scene%domain, reading)
+         call exchange_domain(record, scene%domain)
       case ("material")
-         call exchange_material(record, scene%material, reading)
+         call exchange_material(record, scene%material)
       case ("fluid")
-         call exchange(record, "compressibility", scene%fluid%compressibility, reading)
-         call exchange(record, "viscosity", scene%fluid%viscosity, reading)
-         call exchange(record, "density", scene%fluid%density, reading, nothing=0.0_rk)
-         call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, reading, &
+         call exchange(record, "compressibility", scene%fluid%compressibility)
+         call exchange(record, "viscosity", scene%fluid%viscosity)
+         call exchange(record, "density", scene%fluid%density, nothing=0.0_rk)
+         call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, nothing=-unlimited)
+         call exchange(record, "viscosity_law", scene%fluid%viscosity_law)
+         call exchange(record, "viscosity_exponent", scene%fluid%viscosity_exponent)
+         call exchange(record, "density_law", scene%fluid%density_law)
+         call exchange(record, "reference_pressure", scene%fluid%reference_pressure, &
                        nothing=-unlimited)
-         call exchange(record, "viscosity_law", scene%fluid%viscosity_law, reading)
-         call exchange(record, "viscosity_exponent", scene%fluid%viscosity_exponent, reading)
-         call exchange(record, "density_law", scene%fluid%density_law, reading)
-         call exchange(record, "reference_pressure", scene%fluid%reference_pressure, reading, &
-                       nothing=-unlimited)
-         call exchange_list(record, "table_pressure", scene%fluid%table_pressure, reading)
-         call exchange_list(record, "table_viscosity", scene%fluid%table_viscosity, reading)
-         call exchange_list(record, "table_density", scene%fluid%table_density, reading)
+         call exchange_list(record, "table_pressure", scene%fluid%table_pressure)
+         call exchange_list(record, "table_viscosity", scene%fluid%table_viscosity)
+         call exchange_list(record, "table_density", scene%fluid%table_density)
       case ("initial")
-         call exchange(record, "fracture_pressure", scene%initial%fracture_pressure, reading)
-         call exchange(record, "pressure", scene%initial%pressure, reading)
+         call exchange(record, "fracture_pressure", scene%initial%fracture_pressure)
+         call exchange(record, "pressure", scene%initial%pressure)
       case ("time")
-         call exchange(record, "end", scene%time%end, reading)
-         call exchange(record, "step", scene%time%step, reading, nothing=0.0_rk)
-         call exchange(record, "tolerance", scene%time%tolerance, reading)
-         call exchange(record, "growth_factor", scene%time%share_after_growth, reading)
-         call exchange(record, "smallest_factor", scene%time%smallest_factor, reading)
+         call exchange(record, "end", scene%time%end)
+         call exchange(record, "step", scene%time%step, nothing=0.0_rk)
+         call exchange(record, "tolerance", scene%time%tolerance)
+         call exchange(record, "growth_factor", scene%time%share_after_growth)
+         call exchange(record, "smallest_factor", scene%time%smallest_factor)
       case ("adaptive")
-         call exchange(record, "enabled", scene%adaptive%enabled, reading)
-         call exchange(record, "tolerance", scene%adaptive%tolerance, reading)
-         call exchange(record, "passes", scene%adaptive%passes, reading)
+         call exchange(record, "enabled", scene%adaptive%enabled)
+         call exchange(record, "tolerance", scene%adaptive%tolerance)
+         call exchange(record, "passes", scene%adaptive%passes)
       case ("in_situ")
-         call exchange(record, "sxx", scene%in_situ%stress(1), reading)
-         call exchange(record, "syy", scene%in_situ%stress(2), reading)
-         call exchange(record, "sxy", scene%in_situ%stress(3), reading)
-         call exchange(record, "sxx_per_y", scene%in_situ%per_y(1), reading)
-         call exchange(record, "syy_per_y", scene%in_situ%per_y(2), reading)
-         call exchange(record, "y_datum", scene%in_situ%y_datum, reading)
+         call exchange(record, "sxx", scene%in_situ%stress(1))
+         call exchange(record, "syy", scene%in_situ%stress(2))
+         call exchange(record, "sxy", scene%in_situ%stress(3))
+         call exchange(record, "sxx_per_y", scene%in_situ%per_y(1))
+         call exchange(record, "syy_per_y", scene%in_situ%per_y(2))
+         call exchange(record, "y_datum", scene%in_situ%y_datum)
       case ("gravity")
-         call exchange(record, "x", scene%gravity(1), reading)
-         call exchange(record, "y", scene%gravity(2), reading)
+         call exchange(record, "x", scene%gravity(1))
+         call exchange(record, "y", scene%gravity(2))
       case ("load")
-         call exchange(record, "from", scene%load%from, reading)
-         if (reading .or. .not. allocated(scene%load%factors)) then
-            call exchange(record, "to", scene%load%to, reading)
+         call exchange(record, "from", scene%load%from)
+         if (record%reading .or. .not. allocated(scene%load%factors)) then
+            call exchange(record, "to", scene%load%to)
          end if
-         if (reading .or. allocated(scene%load%factors)) then
-            call exchange(record, "factors", scene%load%factors, reading)
+         if (record%reading .or. allocated(scene%load%factors)) then
+            call exchange(record, "factors", scene%load%factors)
          end if
-         call exchange(record, "steps", scene%load%steps, reading)
-         call exchange(record, "control", scene%load%control, reading)
+         call exchange(record, "steps", scene%load%steps)
+         call exchange(record, "control", scene%load%control)
       case ("coarse", "fe", "fine")
-         call exchange_discretization(record, scene%discretization, reading)
+         call exchange_discretization(record, scene%discretization)
       case ("growth")
-         call exchange_growth(record, scene%growth, reading)
+         call exchange_growth(record, scene%growth)
       case ("output")
-         call exchange(record, "vtu", scene%output%vtu, reading)
-         call exchange(record, "interval", scene%output%interval, reading, nothing=0.0_rk)
-         call exchange(record, "growth_states", scene%output%growth_states, reading)
-         call exchange(record, "stimulated_jump", scene%output%stimulated_jump, reading)
-         call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length, reading)
-         call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate, reading)
-      case default  ! the repeated groups
+         call exchange(record, "vtu", scene%output%vtu)
+         call exchange(record, "interval", scene%output%interval, nothing=0.0_rk)
+         call exchange(record, "growth_states", scene%output%growth_states)
+         call exchange(record, "stimulated_jump", scene%output%stimulated_jump)
+         call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length)
+         call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate)
+      case default  ! the repeated groups, each a procedure of its own
          return
       end select
    end subroutine exchange_single
 
-   pure subroutine exchange_domain(record, domain, reading)
+   pure subroutine exchange_domain(record, domain)
       type(record_t), intent(inout) :: record
       type(domain_t), intent(inout) :: domain
-      logical, intent(in) :: reading
 
-      call exchange(record, "shape", domain%shape, reading)
+      call exchange(record, "shape", domain%shape)
       select case (domain%shape)
       case ("disc")
-         call exchange(record, "x_centre", domain%x_centre, reading)
-         call exchange(record, "y_centre", domain%y_centre, reading)
-         call exchange(record, "radius", domain%radius, reading)
+         call exchange(record, "x_centre", domain%x_centre)
+         call exchange(record, "y_centre", domain%y_centre)
+         call exchange(record, "radius", domain%radius)
          domain%x_min = domain%x_centre - domain%radius
          domain%x_max = domain%x_centre + domain%radius
          domain%y_min = domain%y_centre - domain%radius
          domain%y_max = domain%y_centre + domain%radius
       case ("polygon")
-         call exchange(record, "x", domain%x, reading)
-         call exchange(record, "y", domain%y, reading)
+         call exchange(record, "x", domain%x)
+         call exchange(record, "y", domain%y)
          domain%x_min = minval(domain%x)
          domain%x_max = maxval(domain%x)
          domain%y_min = minval(domain%y)
          domain%y_max = maxval(domain%y)
       case default
-         call exchange(record, "x_min", domain%x_min, reading)
-         call exchange(record, "x_max", domain%x_max, reading)
-         call exchange(record, "y_min", domain%y_min, reading)
-         call exchange(record, "y_max", domain%y_max, reading)
+         call exchange(record, "x_min", domain%x_min)
+         call exchange(record, "x_max", domain%x_max)
+         call exchange(record, "y_min", domain%y_min)
+         call exchange(record, "y_max", domain%y_max)
       end select
    end subroutine exchange_domain
 
-   pure subroutine exchange_fracture(record, fracture, reading)
+   pure subroutine exchange_fracture(record, fracture)
       type(record_t), intent(inout) :: record
       type(fracture_t), intent(inout) :: fracture
-      logical, intent(in) :: reading
       real(rk) :: dilation_deg
 
-      call exchange(record, "name", fracture%name, reading)
-      call exchange(record, "x", fracture%x, reading)
-      call exchange(record, "y", fracture%y, reading)
-      call exchange(record, "law", fracture%law, reading)
-      call exchange(record, "slip", fracture%slip, reading)
-      call exchange(record, "slip_taper", fracture%slip_taper, reading, nothing=0.0_rk)
-      call exchange(record, "friction", fracture%friction, reading)
-      call exchange(record, "friction_residual", fracture%friction_residual, reading)
-      call exchange(record, "weakening_slip", fracture%weakening_slip, reading, nothing=0.0_rk)
-      call exchange(record, "dilation_slip", fracture%dilation_slip, reading, nothing=unlimited)
-      call exchange(record, "normal_stiffness", fracture%normal_stiffness, reading, nothing=0.0_rk)
-      call exchange(record, "closure", fracture%closure, reading, nothing=0.0_rk)
-      call exchange(record, "cohesion", fracture%cohesion, reading, nothing=0.0_rk)
-      call exchange(record, "tensile_strength", fracture%tensile_strength, reading, nothing=0.0_rk)
-      call exchange(record, "opening_weakening", fracture%opening_weakening, reading, &
-                    nothing=0.0_rk)
-      call exchange(record, "toughness", fracture%toughness, reading, nothing=huge(1.0_rk))
-      call exchange(record, "skin", fracture%skin, reading, nothing=0.0_rk)
+      call exchange(record, "name", fracture%name)
+      call exchange(record, "x", fracture%x)
+      call exchange(record, "y", fracture%y)
+      call exchange(record, "law", fracture%law)
+      call exchange(record, "slip", fracture%slip)
+      call exchange(record, "slip_taper", fracture%slip_taper, nothing=0.0_rk)
+      call exchange(record, "friction", fracture%friction)
+      call exchange(record, "friction_residual", fracture%friction_residual)
+      call exchange(record, "weakening_slip", fracture%weakening_slip, nothing=0.0_rk)
+      call exchange(record, "dilation_slip", fracture%dilation_slip, nothing=unlimited)
+      call exchange(record, "normal_stiffness", fracture%normal_stiffness, nothing=0.0_rk)
+      call exchange(record, "closure", fracture%closure, nothing=0.0_rk)
+      call exchange(record, "cohesion", fracture%cohesion, nothing=0.0_rk)
+      call exchange(record, "tensile_strength", fracture%tensile_strength, nothing=0.0_rk)
+      call exchange(record, "opening_weakening", fracture%opening_weakening, nothing=0.0_rk)
+      call exchange(record, "toughness", fracture%toughness, nothing=huge(1.0_rk))
+      call exchange(record, "skin", fracture%skin, nothing=0.0_rk)
       dilation_deg = to_degrees(fracture%dilation)
-      call exchange(record, "dilation_deg", dilation_deg, reading)
+      call exchange(record, "dilation_deg", dilation_deg)
       fracture%dilation = dilation_deg*radians
-      call exchange(record, "held_closed", fracture%held_closed, reading)
-      call exchange(record, "face_pressure", fracture%face_pressure, reading)
-      call exchange(record, "aperture", fracture%aperture, reading, nothing=0.0_rk)
+      call exchange(record, "held_closed", fracture%held_closed)
+      call exchange(record, "face_pressure", fracture%face_pressure)
+      call exchange(record, "aperture", fracture%aperture, nothing=0.0_rk)
    end subroutine exchange_fracture
 
    !> Without the fracture, which the scene knows by index and the sheet by name.
-   pure subroutine exchange_injection(record, injection, reading)
+   pure subroutine exchange_injection(record, injection)
       type(record_t), intent(inout) :: record
       type(injection_t), intent(inout) :: injection
-      logical, intent(in) :: reading
 
-      call exchange(record, "name", injection%name, reading)
-      call exchange_list(record, "time", injection%time, reading)
-      call exchange_list(record, "rate", injection%rate, reading)
-      call exchange_list(record, "pressure", injection%pressure, reading)
-      if (reading .or. .not. allocated(injection%time)) then
-         call exchange(record, "start", injection%start, reading)
+      call exchange(record, "name", injection%name)
+      call exchange_list(record, "time", injection%time)
+      call exchange_list(record, "rate", injection%rate)
+      call exchange_list(record, "pressure", injection%pressure)
+      if (record%reading .or. .not. allocated(injection%time)) then
+         call exchange(record, "start", injection%start)
       end if
-      call exchange(record, "end", injection%end, reading, nothing=unlimited)
-      call exchange(record, "storage", injection%storage, reading)
-      call exchange(record, "friction", injection%friction, reading)
-      call exchange(record, "turbulence", injection%turbulence, reading)
+      call exchange(record, "end", injection%end, nothing=unlimited)
+      call exchange(record, "storage", injection%storage)
+      call exchange(record, "friction", injection%friction)
+      call exchange(record, "turbulence", injection%turbulence)
       if (injection%at_point) then
-         call exchange(record, "x", injection%x, reading)
-         call exchange(record, "y", injection%y, reading)
+         call exchange(record, "x", injection%x)
+         call exchange(record, "y", injection%y)
       end if
-      if (injection%fracture == 0) call exchange(record, "radius", injection%radius, reading)
+      if (injection%fracture == 0) call exchange(record, "radius", injection%radius)
    end subroutine exchange_injection
 
    !> A list that may be absent.
-   pure subroutine exchange_list(record, name, list, reading)
+   pure subroutine exchange_list(record, name, list)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       real(rk), allocatable, intent(inout) :: list(:)  !< [unit of the name]
-      logical, intent(in) :: reading
 
-      if (reading .or. allocated(list)) call exchange(record, name, list, reading)
+      if (record%reading .or. allocated(list)) call exchange(record, name, list)
    end subroutine exchange_list
 
-   pure subroutine exchange_discretization(record, discretization, reading)
+   pure subroutine exchange_discretization(record, discretization)
       type(record_t), intent(inout) :: record
       type(discretization_t), intent(inout) :: discretization
-      logical, intent(in) :: reading
 
       select case (groups(record%group)%name)
       case ("coarse")
-         call exchange(record, "size_fracture", discretization%size_fracture, reading, &
-                       nothing=0.0_rk)
-         call exchange(record, "size_boundary", discretization%size_boundary, reading)
-         call exchange(record, "newton_max", discretization%newton_max, reading)
-         call exchange(record, "newton_tolerance", discretization%newton_tolerance, reading)
-         call exchange(record, "condensation", discretization%condensation, reading)
+         call exchange(record, "size_fracture", discretization%size_fracture, nothing=0.0_rk)
+         call exchange(record, "size_boundary", discretization%size_boundary)
+         call exchange(record, "newton_max", discretization%newton_max)
+         call exchange(record, "newton_tolerance", discretization%newton_tolerance)
+         call exchange(record, "condensation", discretization%condensation)
       case ("fe")
-         call exchange(record, "size_fracture", discretization%size_fracture, reading, &
-                       nothing=0.0_rk)
-         call exchange(record, "size_boundary", discretization%size_boundary, reading)
-         call exchange(record, "rosette_radius", discretization%rosette_radius, reading, &
-                       nothing=0.0_rk)
-         call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
-         call exchange(record, "element", discretization%element, reading)
+         call exchange(record, "size_fracture", discretization%size_fracture, nothing=0.0_rk)
+         call exchange(record, "size_boundary", discretization%size_boundary)
+         call exchange(record, "rosette_radius", discretization%rosette_radius, nothing=0.0_rk)
+         call exchange(record, "rosette_sectors", discretization%rosette_sectors)
+         call exchange(record, "element", discretization%element)
       case default  ! fine
-         call exchange(record, "window", discretization%window, reading, nothing=0.0_rk)
-         call exchange_word(record, "window", "body", discretization%window_is_body, reading)
-         call exchange(record, "size_ratio", discretization%fine_ratio, reading)
-         call exchange(record, "rosette_sectors", discretization%rosette_sectors, reading)
-         call exchange(record, "face_condition", discretization%face_condition, reading)
+         call exchange(record, "window", discretization%window, nothing=0.0_rk)
+         call exchange_word(record, "window", "body", discretization%window_is_body)
+         call exchange(record, "size_ratio", discretization%fine_ratio)
+         call exchange(record, "rosette_sectors", discretization%rosette_sectors)
+         call exchange(record, "face_condition", discretization%face_condition)
       end select
    end subroutine exchange_discretization
 
-   pure subroutine exchange_growth(record, growth, reading)
+   pure subroutine exchange_growth(record, growth)
       type(record_t), intent(inout) :: record
       type(growth_t), intent(inout) :: growth
-      logical, intent(in) :: reading
 
-      call exchange(record, "enabled", growth%enabled, reading)
-      call exchange(record, "intensities", growth%intensities, reading)
-      call exchange(record, "law", growth%law, reading)
-      call exchange(record, "increment", growth%increment, reading, nothing=0.0_rk)
-      call exchange(record, "exponent", growth%exponent, reading)
-      call exchange(record, "threshold", growth%threshold, reading)
-      call exchange(record, "new_aperture", growth%new_aperture, reading)
-      call exchange(record, "new_volume", growth%new_volume, reading)
-      call exchange(record, "stop_gain", growth%stop_gain, reading, nothing=unlimited)
+      call exchange(record, "enabled", growth%enabled)
+      call exchange(record, "intensities", growth%intensities)
+      call exchange(record, "law", growth%law)
+      call exchange(record, "increment", growth%increment, nothing=0.0_rk)
+      call exchange(record, "exponent", growth%exponent)
+      call exchange(record, "threshold", growth%threshold)
+      call exchange(record, "new_aperture", growth%new_aperture)
+      call exchange(record, "new_volume", growth%new_volume)
+      call exchange(record, "stop_gain", growth%stop_gain, nothing=unlimited)
    end subroutine exchange_growth
 
-   pure subroutine exchange_probe(record, probe, reading)
+   pure subroutine exchange_probe(record, probe)
       type(record_t), intent(inout) :: record
       type(probe_t), intent(inout) :: probe
-      logical, intent(in) :: reading
 
-      call exchange(record, "name", probe%name, reading)
-      call exchange(record, "x", probe%x, reading)
-      call exchange(record, "y", probe%y, reading)
+      call exchange(record, "name", probe%name)
+      call exchange(record, "x", probe%x)
+      call exchange(record, "y", probe%y)
    end subroutine exchange_probe
 
    pure integer function count_of(sheet, name) result(n)

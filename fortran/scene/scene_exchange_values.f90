@@ -1,14 +1,25 @@
 !> Carries single values between a group of a sheet and the components of a scene, either way.
+!!
+!! Carries the rock, that of the whole body and that of regions, between the groups of a sheet and a
+!! scene, either way.
+!!
+!! Carries what holds and loads a body between the groups of a sheet and a scene, either way.
 module scene_exchange_values
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: ik, lk, radians, rk
    use scene_sheet, only: parameter_index, record_t
+   use scene_sides, only: boundary_side_t, of_inflow, of_normal_traction, of_pressure, &
+                          of_shear_traction, of_x_displacement, of_x_traction, of_y_displacement, &
+                          of_y_traction, side_course_t, side_quantities
+   use scene_types, only: boundary_part_t, material_t, name_length, point_load_t, region_t, &
+                          restraint_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
-   public :: exchange, exchange_word, radians, set_text, to_degrees
+   public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
+   public :: exchange_restraint, exchange_side, exchange_word, not_given, set_text, to_degrees
 
-   !> Copy one value: into the scene if `reading` and the sheet has it, else into the sheet.
+   !> Copy one value: into the scene if that reads and the sheet has it, else into the sheet.
    !> A component that equals `nothing` stays out of the sheet.
    interface exchange
       module procedure exchange_real
@@ -19,19 +30,19 @@ module scene_exchange_values
       module procedure exchange_text
    end interface exchange
 
-   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  !< [rad/degree]
+   !> What stands for a number of a region's rock that the region does not give: no rock has it.
+   real(rk), parameter :: not_given = huge(1.0_rk)
 
 contains
 
-   pure subroutine exchange_real(record, name, component, reading, nothing)
+   pure subroutine exchange_real(record, name, component, nothing)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       real(rk), intent(inout) :: component  !< [unit of the name]
-      logical, intent(in) :: reading
       real(rk), intent(in), optional :: nothing  !< what an absent value is [unit of the name]
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
+         if (record%reading) then
             if (value%is_set .and. .not. allocated(value%text)) component = value%reals(1)
          else
             value%is_set = .true.
@@ -41,14 +52,13 @@ contains
       end associate
    end subroutine exchange_real
 
-   pure subroutine exchange_reals(record, name, component, reading)
+   pure subroutine exchange_reals(record, name, component)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       real(rk), allocatable, intent(inout) :: component(:)  !< [unit of the name]
-      logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
+         if (record%reading) then
             if (value%is_set) component = value%reals
          else
             value%is_set = .true.
@@ -57,14 +67,13 @@ contains
       end associate
    end subroutine exchange_reals
 
-   pure subroutine exchange_wholes(record, name, component, reading)
+   pure subroutine exchange_wholes(record, name, component)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       integer(ik), allocatable, intent(inout) :: component(:)
-      logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
+         if (record%reading) then
             if (value%is_set) component = nint(value%reals, ik)
          else
             value%is_set = .true.
@@ -73,14 +82,13 @@ contains
       end associate
    end subroutine exchange_wholes
 
-   pure subroutine exchange_integer(record, name, component, reading)
+   pure subroutine exchange_integer(record, name, component)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       integer(ik), intent(inout) :: component
-      logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
+         if (record%reading) then
             if (value%is_set) component = value%whole
          else
             value%is_set = .true.
@@ -89,14 +97,13 @@ contains
       end associate
    end subroutine exchange_integer
 
-   pure subroutine exchange_logical(record, name, component, reading)
+   pure subroutine exchange_logical(record, name, component)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       logical, intent(inout) :: component
-      logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (reading) then
+         if (record%reading) then
             if (value%is_set) component = value%flag
          else
             value%is_set = .true.
@@ -105,15 +112,14 @@ contains
       end associate
    end subroutine exchange_logical
 
-   pure subroutine exchange_text(record, name, component, reading)
+   pure subroutine exchange_text(record, name, component)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       ! allow(C072)
       character(len=*), intent(inout) :: component
-      logical, intent(in) :: reading
       type(value_t) :: value
 
-      if (reading) then
+      if (record%reading) then
          value = record%value(name)
          if (value%is_set) component = value%text
       else
@@ -122,14 +128,13 @@ contains
    end subroutine exchange_text
 
    !> Whether a word stands in the place of a number.
-   pure subroutine exchange_word(record, name, word, is_said, reading)
+   pure subroutine exchange_word(record, name, word, is_said)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name, word
       logical, intent(inout) :: is_said
-      logical, intent(in) :: reading
 
       associate (value => record%values(parameter_index(record%group, name)))
-         if (.not. reading) then
+         if (.not. record%reading) then
             if (is_said) call set_text(record, name, word)
          else if (value%is_set .and. allocated(value%text)) then
             is_said = value%text == word
@@ -175,5 +180,174 @@ contains
 
       same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
    end function same_bits
+
+   pure subroutine exchange_material(record, material)
+      type(record_t), intent(inout) :: record
+      type(material_t), intent(inout) :: material
+      character(len=name_length) :: plane
+
+      call exchange(record, "young", material%young)
+      call exchange(record, "poisson", material%poisson)
+      call exchange(record, "biot", material%biot)
+      call exchange(record, "porosity", material%porosity)
+      call exchange_permeability(record, material)
+      call exchange(record, "density", material%density, nothing=0.0_rk)
+      call exchange(record, "toughness", material%toughness, nothing=huge(1.0_rk))
+      call exchange(record, "radiation_damping", material%radiation_damping)
+      plane = merge("stress", "strain", material%plane_stress)
+      call exchange(record, "plane", plane)
+      material%plane_stress = plane == "stress"
+      call exchange(record, "storage", material%storage)
+   end subroutine exchange_material
+
+   !> What the region does not give itself is left to scene_namelist.
+   pure subroutine exchange_region(record, region)
+      type(record_t), intent(inout) :: record
+      type(region_t), intent(inout) :: region
+
+      call exchange(record, "name", region%name)
+      call exchange(record, "shape", region%shape)
+      if (region%shape == "parabola") then
+         call exchange(record, "x_vertex", region%x_vertex)
+         call exchange(record, "y_vertex", region%y_vertex)
+         call exchange(record, "curvature", region%curvature)
+      else
+         call exchange(record, "x", region%x)
+         call exchange(record, "y", region%y)
+      end if
+      if (region%shape == "band") then
+         call exchange(record, "x_other", region%x_other)
+         call exchange(record, "y_other", region%y_other)
+      end if
+      associate (own => region%material)
+         if (record%reading) then
+            own%young = not_given
+            own%poisson = not_given
+            own%biot = not_given
+            own%porosity = not_given
+            own%density = not_given
+            own%toughness = not_given
+         end if
+         call exchange(record, "young", own%young)
+         call exchange(record, "poisson", own%poisson)
+         call exchange(record, "biot", own%biot)
+         call exchange(record, "porosity", own%porosity)
+         call exchange_permeability(record, own)
+         call exchange(record, "density", own%density, nothing=0.0_rk)
+         call exchange(record, "toughness", own%toughness, nothing=huge(1.0_rk))
+      end associate
+   end subroutine exchange_region
+
+   !> Isotropic, or the components of a tensor.
+   pure subroutine exchange_permeability(record, material)
+      type(record_t), intent(inout) :: record
+      type(material_t), intent(inout) :: material
+
+      if (record%reading .and. record%is_set("permeability")) then
+         call exchange(record, "permeability", material%permeability_xx)
+         material%permeability_yy = material%permeability_xx
+      end if
+      call exchange(record, "permeability_xx", material%permeability_xx, nothing=0.0_rk)
+      call exchange(record, "permeability_yy", material%permeability_yy, nothing=0.0_rk)
+      call exchange(record, "permeability_xy", material%permeability_xy, nothing=0.0_rk)
+   end subroutine exchange_permeability
+
+   !> A part of the boundary of a polygon or a disc.
+   pure subroutine exchange_part(record, part)
+      type(record_t), intent(inout) :: record
+      type(boundary_part_t), intent(inout) :: part
+      real(rk) :: arc_deg(2)
+
+      call exchange(record, "name", part%name)
+      if (record%reading) part%whole_rim = .not. (record%is_set("edges") .or. &
+                                                  record%is_set("arc_from_deg"))
+      if (record%reading .or. allocated(part%edges)) call exchange(record, "edges", part%edges)
+      if (.not. (part%whole_rim .or. allocated(part%edges))) then
+         arc_deg = [to_degrees(part%arc(1)), to_degrees(part%arc(2))]
+         call exchange(record, "arc_from_deg", arc_deg(1))
+         call exchange(record, "arc_to_deg", arc_deg(2))
+         part%arc = arc_deg*radians
+      end if
+      call exchange_side(record, part%boundary_side_t)
+   end subroutine exchange_part
+
+   !> Without the side's name, which its place in scene_t%sides gives.
+   pure subroutine exchange_side(record, side)
+      type(record_t), intent(inout) :: record
+      type(boundary_side_t), intent(inout) :: side
+
+      if (record%reading) then
+         side%displacement_given = [record%is_set("x_displacement"), &
+                                    record%is_set("y_displacement")]
+         side%pressure_given = record%is_set("pressure")
+      end if
+      if (record%reading .or. side%changes()) call exchange(record, "time", side%course%time)
+      if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, &
+                                                   side%course)
+      call exchange_value(record, of_inflow, side%inflow, side%course, nothing=0.0_rk)
+      call exchange_value(record, of_normal_traction, side%normal_traction, side%course, &
+                          nothing=0.0_rk)
+      call exchange_value(record, of_shear_traction, side%shear_traction, side%course, &
+                          nothing=0.0_rk)
+      call exchange(record, "x_spring", side%spring(1), nothing=0.0_rk)
+      call exchange(record, "y_spring", side%spring(2), nothing=0.0_rk)
+      if (record%is_set("normal_traction") .or. record%is_set("shear_traction")) return
+      if (side%displacement_given(1)) then
+         call exchange_value(record, of_x_displacement, side%displacement(1), side%course)
+      else
+         call exchange_value(record, of_x_traction, side%traction(1), side%course)
+      end if
+      if (side%displacement_given(2)) then
+         call exchange_value(record, of_y_displacement, side%displacement(2), side%course)
+      else
+         call exchange_value(record, of_y_traction, side%traction(2), side%course)
+      end if
+   end subroutine exchange_side
+
+   !> A quantity of a side: one value, or one per time.
+   pure subroutine exchange_value(record, quantity, value, course, nothing)
+      type(record_t), intent(inout) :: record
+      integer, intent(in) :: quantity  !< index into side_quantities
+      real(rk), intent(inout) :: value  !< [unit of the quantity]
+      type(side_course_t), intent(inout) :: course
+      real(rk), intent(in), optional :: nothing  !< what an absent value is
+      real(rk), allocatable :: list(:)
+      character(len=:), allocatable :: name
+
+      name = trim(side_quantities(quantity))
+      if (.not. record%reading .and. allocated(course%values(quantity)%of)) then
+         call exchange(record, name, course%values(quantity)%of)
+         return
+      end if
+      call exchange(record, name, value, nothing)
+      if (.not. record%reading) return
+      call exchange(record, name, list)
+      if (.not. allocated(list)) return
+      if (size(list) > 1) call move_alloc(list, course%values(quantity)%of)
+   end subroutine exchange_value
+
+   pure subroutine exchange_restraint(record, restraint)
+      type(record_t), intent(inout) :: record
+      type(restraint_t), intent(inout) :: restraint
+      character(len=1), parameter :: axes(2) = ["x", "y"]
+      integer :: axis
+
+      call exchange(record, "x", restraint%x)
+      call exchange(record, "y", restraint%y)
+      do axis = 1, 2
+         if (.not. restraint%displacement_given(axis)) cycle
+         call exchange(record, axes(axis)//"_displacement", restraint%displacement(axis))
+      end do
+   end subroutine exchange_restraint
+
+   pure subroutine exchange_point_load(record, point_load)
+      type(record_t), intent(inout) :: record
+      type(point_load_t), intent(inout) :: point_load
+
+      call exchange(record, "x", point_load%x)
+      call exchange(record, "y", point_load%y)
+      call exchange(record, "x_force", point_load%force(1))
+      call exchange(record, "y_force", point_load%force(2))
+   end subroutine exchange_point_load
 
 end module scene_exchange_values

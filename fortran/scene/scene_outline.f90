@@ -1,6 +1,6 @@
 !> The outer boundary of the body as a closed polygon.
 module scene_outline
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_plane, only: polygon_area
    use scene_sides, only: boundary_side_t
    use scene_types, only: boundary_part_t, domain_t, scene_t
@@ -8,8 +8,6 @@ module scene_outline
    private
 
    public :: outline_of_scene, outline_t, scene_corner, scene_edge, sides_of_scene
-
-   real(rk), parameter :: pi = acos(-1.0_rk)
 
    !> Counter-clockwise polygon.
    type :: outline_t

@@ -1,19 +1,16 @@
-!> The one table of everything a scene file can say: its groups, and the names of the modules
-!> scene_parameters_*.
+!> The one table of everything a scene file can say: its groups, and the names of
+!> scene_parameter_table.
 !>
 !> Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
 !> A new parameter is one entry there and one line in scene_exchange.
 module scene_parameters
-   use scene_parameter_types, only: group_t, in_all, in_fluid, in_mechanics, kind_choice, &
-                                    kind_integer, kind_logical, kind_name, kind_real, &
-                                    kind_reals, kind_text, kind_wholes, need_always, &
-                                    need_choice, need_fluid, need_fracture, need_growth, &
-                                    need_never, need_tips, parameter_t, text_length
-   use scene_parameters_body, only: body_parameters
-   use scene_parameters_fracture, only: fracture_parameters
-   use scene_parameters_numerics, only: numerics_parameters
-   use scene_parameters_process, only: process_parameters
-   use scene_parameters_rock, only: rock_parameters
+   use scene_parameter_table, only: body_parameters, fracture_parameters, group_t, in_all, &
+                                    in_fluid, in_mechanics, kind_choice, kind_integer, &
+                                    kind_logical, kind_name, kind_real, kind_reals, kind_text, &
+                                    kind_wholes, need_always, need_choice, need_fluid, &
+                                    need_fracture, need_growth, need_never, need_tips, &
+                                    numerics_parameters, parameter_t, process_parameters, &
+                                    rock_parameters, text_length
    implicit none(type, external)
    private
 

@@ -1,23 +1,31 @@
 !> What a scene says that can be simulated but is hardly meant: values out of the usual range, as
 !> wrong units give, and values that do not go together. These are warnings; what cannot be
 !> simulated is refused (scene_check).
+!!
+!! What decides about the growth of a fracture that a well feeds: the toughness of the rock or the
+!! viscosity of the fluid.
+!!
+!! In plane strain, at a constant rate Q and without leak-off, that is the dimensionless toughness
+!! K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu
+!! (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
+!!
+!! Ends of fractures that almost touch another fracture or a side of the body, or that lie just past
+!! one that they cross: hardly meant, where fractures grow.
 module scene_plausible
-   use base_kinds, only: ik, rk
-   use base_plane, only: polygon_area
+   use base_kinds, only: degrees, ik, pi, rk
+   use base_plane, only: meeting, nearest_share, point_distance, polygon_area
    use base_texts, only: add_text, text_t
-   use base_tolerances, only: round_off, same_time
+   use base_tolerances, only: round_off, same_place, same_time
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
-   use scene_growth_regime, only: find_regime, least_verified
-   use scene_near_ends, only: near_end_t, near_ends
+   use scene_fluid_law, only: skempton
    use scene_region_outline, only: body_part
-   use scene_storage, only: skempton
-   use scene_types, only: fracture_t, scene_t
+   use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
    private
 
-   public :: doubt_t, doubts, doubts_of_scene
+   public :: doubt_t, doubts, doubts_of_scene, find_regime, regime_words
 
    !> A value that is doubted, and why.
    type :: doubt_t
@@ -129,6 +137,17 @@ module scene_plausible
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
+   real(rk), parameter, public :: least_verified = 1.0_rk  !< K_m, verification/kgd
+
+   !> An end, and what it is near to.
+   type :: near_end_t
+      integer :: fracture = 0  !< whose end it is
+      integer :: other = 0  !< the fracture that it is near to, or 0 for a side
+      integer :: side = 0  !< left, right, bottom, top
+      real(rk) :: distance = 0.0_rk  !< [m]
+      logical :: is_past = .false.  !< the fracture crosses the other one and ends behind it
+   end type near_end_t
+
 contains
 
    !> A sentence for each doubt about a scene.
@@ -189,7 +208,6 @@ contains
       type(fracture_t), intent(in) :: fractures(:)
       logical, intent(in) :: has_fluid
       type(text_t), allocatable, intent(inout) :: list(:)
-      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
       integer :: i
 
       do i = 1, size(fractures)
@@ -369,5 +387,133 @@ contains
       call add_text(list, place//": "//trim(d%name)//" is "//rounded_text(value)//unit//": "// &
                     trim(d%usual))
    end subroutine add
+
+   !> The smallest K_m of the wells with a rate in a fracture, if the scene grows.
+   pure subroutine find_regime(scene, dimensionless_toughness, well)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(out) :: dimensionless_toughness  !< [-]
+      integer, intent(out) :: well  !< which one has it; 0: there is none
+      real(rk) :: modulus, rate, toughness, value
+      integer :: i
+
+      dimensionless_toughness = huge(1.0_rk)
+      well = 0
+      if (.not. (scene%growth%enabled .and. scene%has_fluid() .and. &
+                 allocated(scene%injections))) return
+      modulus = scene%material%young
+      if (.not. scene%material%plane_stress) modulus = modulus/(1.0_rk - scene%material%poisson**2)
+      do i = 1, size(scene%injections)
+         if (scene%injections(i)%fracture == 0 .or. .not. allocated(scene%injections(i)%rate)) cycle
+         rate = maxval(scene%injections(i)%rate)
+         if (.not. rate > 0.0_rk) cycle
+         toughness = min(scene%material%toughness, &
+                         scene%fractures(scene%injections(i)%fracture)%toughness)
+         value = sqrt(32.0_rk/pi)*toughness &
+                 /(modulus**3*12.0_rk*scene%fluid%viscosity*rate)**0.25_rk
+         if (value >= dimensionless_toughness) cycle
+         dimensionless_toughness = value
+         well = i
+      end do
+   end subroutine find_regime
+
+   !> What decides: viscosity up to a K_m of 1, toughness from 4 on.
+   pure function regime_words(dimensionless_toughness) result(words)
+      real(rk), intent(in) :: dimensionless_toughness  !< [-]
+      character(len=:), allocatable :: words
+
+      if (dimensionless_toughness > 3.99_rk) then
+         words = "toughness decides about growth"
+      else if (dimensionless_toughness > 1.01_rk) then
+         words = "toughness and viscosity decide about growth"
+      else
+         words = "viscosity decides about growth"
+      end if
+   end function regime_words
+
+   !> All ends that are nearer than that to something that they do not touch. Two ends that are near
+   !! to each other are told once.
+   pure function near_ends(fractures, domain, near) result(list)
+      type(fracture_t), intent(in) :: fractures(:)
+      type(domain_t), intent(in) :: domain  !< its sides count if it is a rectangle
+      real(rk), intent(in) :: near  !< [m]
+      type(near_end_t), allocatable :: list(:)
+      real(rk) :: distance, last(2, 2), room(4)
+      integer :: end, i, j, side
+      logical :: is_at_end, is_past
+
+      allocate (list(0))
+      do i = 1, size(fractures)
+         do end = 1, 2
+            last = last_segment(fractures(i), end)
+            room = [last(1, 1) - domain%x_min, domain%x_max - last(1, 1), &
+                    last(2, 1) - domain%y_min, domain%y_max - last(2, 1)]
+            do side = 1, merge(4, 0, domain%shape == "rectangle")
+               if (is_near(room(side))) list = [list, near_end_t(i, 0, side, room(side))]
+            end do
+            do j = 1, size(fractures)
+               if (j == i) cycle
+               call look_at(last, fractures(j), distance, is_at_end, is_past)
+               if (.not. is_near(distance)) cycle
+               if (is_at_end .and. j < i .and. .not. is_past) cycle
+               list = [list, near_end_t(i, j, 0, distance, is_past)]
+            end do
+         end do
+      end do
+
+   contains
+
+      pure logical function is_near(distance)
+         real(rk), intent(in) :: distance  !< [m]
+
+         is_near = distance > same_place*fractures(i)%length() .and. distance < near
+      end function is_near
+
+   end function near_ends
+
+   !> The segment that a fracture ends with, from its end inwards [m].
+   pure function last_segment(fracture, end) result(ends)
+      type(fracture_t), intent(in) :: fracture
+      integer, intent(in) :: end  !< 1 or 2
+      real(rk) :: ends(2, 2)
+      integer :: first, next
+
+      first = merge(1, size(fracture%x), end == 1)
+      next = merge(2, size(fracture%x) - 1, end == 1)
+      ends(:, 1) = [fracture%x(first), fracture%y(first)]
+      ends(:, 2) = [fracture%x(next), fracture%y(next)]
+   end function last_segment
+
+   !> How near an end is to a fracture, or how far past it.
+   pure subroutine look_at(last, other, distance, is_at_end, is_past)
+      real(rk), intent(in) :: last(2, 2)  !< the segment with the end, which comes first [m]
+      type(fracture_t), intent(in) :: other
+      real(rk), intent(out) :: distance  !< [m]
+      logical, intent(out) :: is_at_end  !< of the other one
+      logical, intent(out) :: is_past
+      real(rk) :: ends(2, 2), here, length, place, share(2)
+      integer(ik) :: n, v
+
+      distance = huge(1.0_rk)
+      is_at_end = .false.
+      is_past = .false.
+      length = norm2(last(:, 2) - last(:, 1))
+      n = size(other%x, kind=ik)
+      do v = 1, n - 1
+         ends = reshape([other%x(v), other%y(v), other%x(v + 1), other%y(v + 1)], [2, 2])
+         here = point_distance(last(:, 1), ends)
+         share = meeting(last, ends)
+         if (all(share >= 0.0_rk .and. share <= 1.0_rk) .and. &
+             here > same_place*length .and. share(1)*length < distance) then
+            distance = share(1)*length
+            is_past = .true.
+            is_at_end = .false.
+         else if (here < distance) then
+            distance = here
+            is_past = .false.
+            place = nearest_share(last(:, 1), ends)
+            is_at_end = (v == 1 .and. place <= 0.0_rk) .or. (v == n - 1 .and. place >= 1.0_rk)
+         end if
+      end do
+   end subroutine look_at
 
 end module scene_plausible

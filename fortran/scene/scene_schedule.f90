@@ -7,21 +7,25 @@
 !! commas, numbers may have a decimal comma, as spreadsheets write them in many countries. Rows that
 !! begin with # are comments. What a table says becomes values of the group, so that all that
 !! follows, scene.nml as well, knows of lists alone.
+!!
+!! The bytes of files that a scene names, or is.
+!!
+!! A scene may come from anybody, and names any file of this machine. So nothing that a file holds
+!! goes into a message before the file has the form of a scene or of its table.
 module scene_schedule
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
    use base_texts, only: text_t
-   use scene_files, only: load_file
+   use scene_expression, only: token_list_t, tokenize
    use scene_parameters, only: groups, kind_reals, parameter_t, parameters
    use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
-   use scene_tokens, only: token_list_t, tokenize
    use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
    implicit none(type, external)
    private
 
-   public :: load_schedules
+   public :: load_file, load_schedules
 
    !> What some programs put before a text in UTF-8.
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
@@ -39,6 +43,9 @@ module scene_schedule
                               [unit_t("min", "s", 60.0_rk), unit_t("h", "s", 3600.0_rk), &
                                unit_t("d", "s", 86400.0_rk), unit_t("kpa", "pa", 1.0e3_rk), &
                                unit_t("mpa", "pa", 1.0e6_rk), unit_t("bar", "pa", 1.0e5_rk)]
+
+   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene, and no table
+   integer(lk), parameter :: largest_scene = 10000000_lk  !< [byte] of all its files
 
 contains
 
@@ -330,5 +337,41 @@ contains
       end if
       if (allocated(reason)) reason = column_name(parameter)//" "//reason
    end subroutine read_cell
+
+   !> Read a whole file. What has no size, as a pipe or a device, is not opened: it may never end.
+   subroutine load_file(path, n_read, source, fault)
+      character(len=*), intent(in) :: path
+      integer(lk), intent(inout) :: n_read  !< [byte] of all files of the scene so far
+      character(len=:), allocatable, intent(out) :: source  !< its bytes
+      character(len=:), allocatable, intent(out) :: fault  !< what it is instead
+      character(len=256) :: reason
+      integer(lk) :: n_bytes
+      integer :: unit, status
+      logical :: is_folder
+
+      inquire (file=path, size=n_bytes)
+      inquire (file=path//"/.", exist=is_folder)
+      if (n_bytes < 0 .or. is_folder) then
+         fault = "no file that can be read"
+      else if (n_bytes == 0) then
+         fault = "empty, a pipe or a device, but must be a file with text"
+      else if (n_bytes > largest_file) then
+         fault = "larger than the 4 MB that a file of a scene may have"
+      else if (n_read + n_bytes > largest_scene) then
+         fault = "one more file than the 10 MB that all files of a scene may have together"
+      end if
+      if (allocated(fault)) return
+      open (newunit=unit, file=path, action="read", status="old", access="stream", &
+            form="unformatted", iostat=status)
+      if (status /= 0) then
+         fault = "no file that can be read"
+         return
+      end if
+      allocate (character(len=n_bytes) :: source)
+      read (unit, iostat=status, iomsg=reason) source
+      n_read = n_read + n_bytes
+      if (status /= 0) fault = "a file that cannot be read: "//trim(reason)
+      close (unit)
+   end subroutine load_file
 
 end module scene_schedule

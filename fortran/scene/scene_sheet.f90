@@ -21,6 +21,7 @@ module scene_sheet
       integer(ik) :: line = 0  !< of `&group`; 0: not in the file, all values are defaults
       character(len=:), allocatable :: path  !< of the file, which may be an included one
       type(value_t), allocatable :: values(:)  !< the group's; indexed as scene_parameters
+      logical :: reading = .false.  !< a scene takes its values, rather than gives them
    contains
       procedure :: value => value_of
       procedure :: is_set

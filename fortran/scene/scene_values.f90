@@ -2,14 +2,13 @@
 module scene_values
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use base_utf8, only: is_printable
-   use scene_intervals, only: holds, in_words
+   use base_texts, only: is_printable
+   use scene_expression, only: token_comma, token_list_t, token_t, token_text, token_word, &
+                               tokenize, unquoted
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
                                kind_reals, kind_text, kind_wholes, parameter_t, text_length
-   use scene_tokens, only: token_comma, token_list_t, token_t, token_text, token_word, tokenize, &
-                           unquoted
    use scene_types, only: name_length
-   use scene_words, only: is_identifier, lower_case
+   use scene_words, only: holds, in_words, is_identifier, lower_case
    implicit none(type, external)
    private
 

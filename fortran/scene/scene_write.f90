@@ -3,8 +3,8 @@ module scene_write
    use base_kinds, only: ik
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
-   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, kind_reals, &
-                               kind_wholes, parameter_t, parameters
+   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, &
+                               kind_reals, kind_wholes, parameter_t, parameters
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t

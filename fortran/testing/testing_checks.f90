@@ -1,8 +1,8 @@
 !> What the test programs need: named checks that count failures and set the exit status.
 module testing_checks
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use base_errors, only: error_t
    use base_kinds, only: rk
-   use, intrinsic :: iso_fortran_env, only: error_unit
    implicit none(type, external)
    private
 

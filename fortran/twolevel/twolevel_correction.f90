@@ -6,9 +6,9 @@ module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: corner_tractions
-   use coarse_nodes, only: curved_displacement
    use coarse_layout, only: block_count, end_block
-   use mesh_types, only: mesh_t
+   use coarse_nodes, only: curved_displacement
+   use mesh_geometry, only: cell_centre
    use twolevel_faces, only: coarse_jumps
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -61,7 +61,7 @@ contains
       associate (mesh => self%mesh, fracture => self%mesh%fracture)
          allocate (speaker(block_count(mesh)))
          do cell = 1, mesh%n_cells
-            speaker(cell) = nearest_window(self, spread(centre_of(mesh, cell), 2, 2))
+            speaker(cell) = nearest_window(self, spread(cell_centre(mesh, cell), 2, 2))
          end do
          do cell = 1, fracture%n_cells
             speaker(end_block(mesh, cell, [1_ik, 2_ik])) = &
@@ -69,14 +69,6 @@ contains
          end do
       end associate
    end function speakers
-
-   pure function centre_of(mesh, cell) result(centre)
-      type(mesh_t), intent(in) :: mesh
-      integer(ik), intent(in) :: cell
-      real(rk) :: centre(2)  !< [m]
-
-      centre = sum(mesh%xy(:, mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
-   end function centre_of
 
    !> Of the windows that hold both points, the one whose tip is nearest, else 0.
    pure function nearest_window(self, points) result(nearest)
@@ -140,7 +132,7 @@ contains
             if (.not. self%windows%is_asked(w, self%tip)) cycle
             associate (window => self%windows%window(w))
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
-               xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
+               xy = reshape([(cell_centre(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
                displacement = xy
                call window%displacement_at(xy, displacement, error)
                if (allocated(error)) return

@@ -9,9 +9,8 @@ module twolevel_doubt
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
-   use growth_tip, only: tip_t
-   use results_chronicle, only: event_window
-   use simulation_doubt, only: doubtful, stop_on_doubt, uncertainty
+   use report_rows, only: event_window
+   use report_watch, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private

@@ -6,21 +6,19 @@
 !! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a
 !! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips);
 !! so the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps.
-!! A piece begins in the direction in which K_II vanishes at its end (growth_path).
+!! A piece begins in the direction in which K_II vanishes at its end (growth_tip).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_guess, only: guess_t
-   use coarse_state, only: step_report_t
-   use growth_company, only: company_t
+   use coarse_state, only: guess_t, step_report_t
    use growth_network, only: total_length
-   use growth_rivals, only: rivals_t
+   use growth_rivals, only: company_t, rivals_t
    use growth_segment, only: segment_t
    use growth_targets, only: target_none
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
-   use simulation_doubt, only: doubtful
+   use report_watch, only: doubtful
    use twolevel_certainty, only: certainty_t
    use twolevel_doubt, only: improve_windows
    use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, tolerance
@@ -28,11 +26,11 @@ module twolevel_equilibrium
    use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
+   use twolevel_schedule, only: last_switch
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
-   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 

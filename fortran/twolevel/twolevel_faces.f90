@@ -12,11 +12,10 @@ module twolevel_faces
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t
    use fine_contact, only: contact_t, new_contact
+   use fine_element, only: gauss_rule, line_parameter, line_shapes
    use fine_faces, only: face_conditions_t, face_contact, face_jump, loaded_everywhere
-   use fine_line, only: line_parameter, line_shapes
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
-   use fine_quadrature, only: gauss_rule
    use mesh_types, only: mesh_t
    use twolevel_pressure, only: match_pressure, pressure_map_t
    implicit none(type, external)
@@ -209,7 +208,7 @@ contains
       end do
    end function coarse_jumps
 
-   !> Share of a face's length from its start at a parameter (fine_line).
+   !> Share of a face's length from its start at a parameter (fine_element).
    elemental real(rk) function line_place(x, tip_end) result(share)
       real(rk), intent(in) :: x  !< 0 to 1 [-]
       integer(ik), intent(in) :: tip_end

@@ -4,14 +4,13 @@ module twolevel_fed
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t
-   use coarse_rock_wells, only: well_index
    use coarse_state, only: state_t
-   use coarse_wells, only: control_rate
+   use coarse_wells, only: control_rate, well_index
    use mesh_builder, only: locate, mesher_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
-   use simulation_types, only: simulation_t
+   use report_simulation, only: simulation_t
    use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
                              rate
    implicit none(type, external)

@@ -1,15 +1,16 @@
-!> What the limits of a run watch in a scene with a fluid (simulation_limits).
+!> What the limits of a run watch in a scene with a fluid (report_limits).
 module twolevel_limits
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degrees, ik, rk
    use base_number, only: brief_text
    use coarse_state, only: step_report_t
    use mesh_builder, only: mesh_quality
-   use simulation_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                                limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
-                                limit_loop_flow, limit_mass, limit_pressure_load, &
-                                limit_pressure_stiffness, limit_strain, limit_table
-   use simulation_watch, only: worst_place
+   use mesh_geometry, only: cell_centre, fracture_cell_centre
+   use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_fluid_in_rock, &
+                            limit_forward_error, limit_jump, limit_keq, limit_layering, &
+                            limit_loop_flow, limit_mass, limit_pressure_load, &
+                            limit_pressure_stiffness, limit_strain, limit_table
+   use report_watch, only: worst_place
    use twolevel_scales, only: pressure_scale
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -61,14 +62,14 @@ contains
       associate (mesh => self%mesh, p => self%rock_pressure())
          i = worst_place(abs(p))
          pressure = abs(p(i))
-         xy = sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk
+         xy = cell_centre(mesh, i)
       end associate
       if (self%mesh%fracture%n_cells > 0) then
          associate (p => self%fracture_pressure())
             i = worst_place(abs(p))
             if (.not. abs(p(i)) <= pressure) then
                pressure = abs(p(i))
-               xy = middle(self, i)
+               xy = fracture_cell_centre(self%mesh%fracture, i)
             end if
          end associate
       end if
@@ -89,14 +90,15 @@ contains
          differs = abs(law%thickness_at(self%rock_pressure()) - 1.0_rk)
          i = worst_place(differs)
          call self%watch%see(limit_fluid_in_rock, differs(i), when, &
-                             sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk)
+                             cell_centre(mesh, i))
       end associate
       if (.not. allocated(self%scene%fluid%table_pressure)) return
       if (self%mesh%fracture%n_cells == 0) return
       associate (range => self%scene%fluid%table_pressure, p => self%fracture_pressure())
          beyond = max(range(1) - p, p - range(size(range)), 0.0_rk)/(range(size(range)) - range(1))
          i = worst_place(beyond)
-         call self%watch%see(limit_table, beyond(i), when, middle(self, i))
+         call self%watch%see(limit_table, beyond(i), when, &
+                             fracture_cell_centre(self%mesh%fracture, i))
       end associate
    end subroutine watch_fluid
 
@@ -112,10 +114,11 @@ contains
          i = worst_place(state%aperture)
          call self%watch%see(limit_aperture, &
                              state%aperture(i)/min(d%x_max - d%x_min, d%y_max - d%y_min), when, &
-                             middle(self, i))
+                             fracture_cell_centre(self%mesh%fracture, i))
          ratio = maxval(norm2(state%jump, dim=1), dim=1)/length
          i = worst_place(ratio)
-         call self%watch%see(limit_jump, ratio(i), when, middle(self, i))
+         call self%watch%see(limit_jump, ratio(i), when, &
+                             fracture_cell_centre(self%mesh%fracture, i))
       end associate
    end subroutine watch_fractures
 
@@ -123,28 +126,18 @@ contains
    subroutine watch_mesh(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: degrees = 180.0_rk/acos(-1.0_rk)  ! per radian
       real(rk) :: angle
       integer(ik) :: cell
 
       call mesh_quality(self%mesher, angle, cell, error)
       if (allocated(error)) return
-      call self%watch%see(limit_angle, angle*degrees, present_time(self), middle_of(cell))
+      call self%watch%see(limit_angle, angle*degrees, present_time(self), cell_centre(self%mesh, &
+                                                                                      cell))
       associate (rock => self%model%rock)
          if (rock%most_layered_cell == 0) return
          call self%watch%see(limit_layering, rock%most_layered, present_time(self), &
-                             middle_of(rock%most_layered_cell))
+                             cell_centre(self%mesh, rock%most_layered_cell))
       end associate
-
-   contains
-
-      !> Of a cell [m].
-      pure function middle_of(cell) result(xy)
-         integer(ik), intent(in) :: cell
-         real(rk) :: xy(2)
-
-         xy = sum(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
-      end function middle_of
 
    end subroutine watch_mesh
 
@@ -165,17 +158,6 @@ contains
          call self%watch%see(limit_keq, drive(i)/toughness, when, self%tip(i)%xy)
       end associate
    end subroutine watch_windows
-
-   !> Of a fracture cell [m].
-   pure function middle(self, cell) result(xy)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: cell
-      real(rk) :: xy(2)
-
-      associate (fracture => self%mesh%fracture)
-         xy = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
-      end associate
-   end function middle
 
    pure function present_time(self) result(words)
       class(two_levels_t), intent(in) :: self

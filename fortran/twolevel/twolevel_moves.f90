@@ -2,8 +2,8 @@
 !! have to together.
 module twolevel_moves
    use base_kinds, only: ik, rk
-   use growth_company, only: lags_behind
-   use growth_kinds, only: numbered
+   use growth_competition, only: numbered
+   use growth_rivals, only: lags_behind
    use growth_tip, only: tip_t
    use twolevel_excess, only: excesses, shared_excesses, tolerance
    use twolevel_pieces, only: have_come

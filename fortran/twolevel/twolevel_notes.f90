@@ -3,9 +3,9 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
-   use growth_company, only: could_part
    use growth_network, only: total_length
-   use results_chronicle, only: event_bifurcation, event_growth_onset, event_unstable
+   use growth_rivals, only: could_part
+   use report_rows, only: event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths

@@ -6,17 +6,15 @@ module twolevel_results
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stress, cell_stresses
    use coarse_nodes, only: nodal_values, node_values
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
-   use results_fields, only: matrix_fields_t
-   use results_rows, only: history_row_t, probe_row_t
-   use results_summary, only: summary_t
-   use simulation_types, only: snapshot_t
-   use twolevel_places, only: end_cell
+   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
+   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
+   use report_simulation, only: snapshot_t
    use twolevel_fed, only: cell_heights
+   use twolevel_places, only: end_cell
    use twolevel_state, only: two_levels_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)

@@ -1,6 +1,6 @@
 !> What size the results of a scene with a fluid can be expected to have.
 module twolevel_scales
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use scene_types, only: scene_t
    implicit none(type, external)
@@ -15,7 +15,7 @@ contains
    !! toughness [Pa]; 0 if it has none of these.
    pure real(rk) function pressure_scale(scene) result(scale)
       type(scene_t), intent(in) :: scene
-      real(rk), parameter :: half_pi = 0.5_rk*acos(-1.0_rk)
+      real(rk), parameter :: half_pi = 0.5_rk*pi
       type(in_situ_state_t), allocatable :: in_situ
       real(rk) :: extent, longest
       integer :: i

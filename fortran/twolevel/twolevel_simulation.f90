@@ -1,15 +1,15 @@
 !> A scene with a fluid in progress: time steps, and growth of the tips in each of them.
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_solid, only: shear_beside
    use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
-   use results_rows, only: history_row_t, probe_row_t, well_row_t
+   use report_rows, only: history_row_t, probe_row_t, well_row_t
+   use report_simulation, only: snapshot_t
    use scene_types, only: scene_t
-   use simulation_types, only: snapshot_t
    use twolevel_doubt, only: improve_windows
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess

@@ -3,29 +3,25 @@
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_place
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
-   use coarse_geometry, only: cell_area
+   use base_tolerances, only: same_place
    use coarse_model, only: new_state, rest_fluid
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use growth_company, only: company_t
-   use growth_front, only: growth_rules_t
+   use growth_front, only: growth_rules_t, prepared_t
    use growth_network, only: network_of_scene
-   use growth_prepared, only: prepared_t
-   use growth_rivals, only: rivals_t
+   use growth_rivals, only: company_t, rivals_t
    use growth_segment, only: segment_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_map_t, mesh_t, network_t
+   use report_scene, only: follow_outlines, law_of_fracture, shape_body
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
-   use simulation_body, only: shape_body
-   use simulation_laws, only: law_of_fracture
-   use twolevel_handover, only: hand_over
    use twolevel_certainty, only: certainty_t
    use twolevel_fed, only: fed_level_t
-   use simulation_rocks, only: follow_outlines
+   use twolevel_handover, only: hand_over
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch

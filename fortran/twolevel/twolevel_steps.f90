@@ -6,16 +6,15 @@ module twolevel_steps
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_guess, only: guess_t
-   use coarse_state, only: step_report_t
-   use results_chronicle, only: event_step_cut, event_unstable
-   use simulation_limits, only: limit_time_error
+   use coarse_state, only: guess_t, step_report_t
+   use report_limits, only: limit_time_error
+   use report_rows, only: event_step_cut, event_unstable
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_notes, only: notes_t
+   use twolevel_schedule, only: last_switch, next_switch
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_well_limits, only: note_wells, share_before_switch
-   use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
    private
 

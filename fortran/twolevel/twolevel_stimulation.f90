@@ -12,9 +12,8 @@ module twolevel_stimulation
    use base_kinds, only: ik, rk
    use growth_network, only: fracture_length, total_length
    use mesh_types, only: fracture_mesh_t
-   use results_rows, only: history_row_t
-   use simulation_reach, only: cluster_count, connections_per_branch, reached_cells
-   use simulation_stretches, only: stretches_t
+   use report_rows, only: history_row_t
+   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
    use twolevel_results, only: end_at_tips, fracture_volume
    use twolevel_state, only: two_levels_t
    use twolevel_well_rows, only: well_flows

@@ -8,9 +8,9 @@
 !! none that is worth counting ("conserved"), or it is open and comes along filled ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
-   use coarse_geometry, only: cell_area
    use coarse_layout, only: block_count, end_block
    use coarse_state, only: fracture_cells_t, state_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: fracture_mesh_t, mesh_map_t, mesh_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)

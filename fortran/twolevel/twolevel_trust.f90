@@ -21,7 +21,7 @@
 !! arrangements of one or two cracks and windows as large as these; in networks and smaller windows
 !! 54 to 62 % do (verification/windows_of_scenes).
 !!
-!! What passes by itself, and no window could mend, is no reason not to grow (simulation_doubt): it
+!! What passes by itself, and no window could mend, is no reason not to grow (report_watch): it
 !! is stated and warned of. What the coarse level gets wrong in the fractures' pressure is not seen.
 module twolevel_trust
    use base_errors, only: error_t

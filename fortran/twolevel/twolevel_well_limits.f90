@@ -10,13 +10,12 @@ module twolevel_well_limits
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_guess, only: guess_t
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: guess_t, state_t, step_report_t
    use coarse_wells, only: control_limited, control_pressure, control_rate
-   use results_chronicle, only: event_well
+   use report_rows, only: event_well
    use scene_types, only: injection_t
-   use twolevel_state, only: two_levels_t
    use twolevel_schedule, only: last_switch
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 

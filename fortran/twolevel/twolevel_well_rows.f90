@@ -1,9 +1,9 @@
 !> What wells do, well by well: rows of wells.csv.
 module twolevel_well_rows
    use base_kinds, only: ik, rk
-   use coarse_rock_wells, only: well_index
-   use coarse_geometry, only: cell_area
-   use results_rows, only: well_row_t
+   use coarse_wells, only: well_index
+   use mesh_geometry, only: cell_area
+   use report_rows, only: well_row_t
    use twolevel_state, only: two_levels_t
    use twolevel_wells, only: between_cells, rate
    implicit none(type, external)

@@ -1,12 +1,13 @@
 !> Wells: which fracture cells they feed, what they are asked for, and when that changes.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_tolerances, only: same_place, same_time, same_value
+   use base_plane, only: nearest_place
+   use base_tolerances, only: same_place, same_value
    use coarse_joints, only: joints_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
-   use base_plane, only: nearest_place
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
-   use scene_types, only: injection_t, scene_t
+   use scene_types, only: injection_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)
    private
@@ -34,8 +35,7 @@ contains
                distance(i) = huge(1.0_rk)
                if (fracture%cell_fracture(i) /= well%fracture) cycle
                share(i, w) = fracture%cell_s(2, i) - fracture%cell_s(1, i)
-               distance(i) = norm2(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), &
-                                              dim=2) - [well%x, well%y])
+               distance(i) = norm2(fracture_cell_centre(fracture, i) - [well%x, well%y])
             end do
             ! Between two cells: else the last bits of the mesh would decide which way fluid goes.
             if (well%at_point) share(:, w) = merge(1.0_rk, 0.0_rk, distance &

@@ -8,31 +8,28 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use contact_law, only: contact_law_t, is_same
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, rock_t
    use coarse_state, only: state_t
+   use contact_law, only: contact_law_t, is_same
+   use fine_contact, only: contact_t, transfer_contact
    use fine_elasticity, only: elasticity_t
-   use fine_contact, only: contact_t
-   use fine_contact_transfer, only: transfer_contact
    use fine_faces, only: face_conditions_t
-   use fine_in_situ, only: add_in_situ_tractions, set_in_situ_stress
-   use fine_loads, only: fine_loads_t, no_loads
+   use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
+   use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips, transfer_mesher
    use mesh_types, only: mesh_t, network_t
+   use report_scene, only: place_rocks, regions_of_other_rock, shape_body
    use scene_types, only: scene_t
-   use simulation_body, only: shape_body
-   use simulation_rocks, only: place_rocks, regions_of_other_rock
-   use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
-   use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_map, only: window_map_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
-   use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t
+   use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private

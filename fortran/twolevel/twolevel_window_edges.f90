@@ -1,7 +1,7 @@
 !> Where the edges of a window can be: no good elements fit where one passes close to a vertex of a
 !! fracture, or a fracture crosses it at a small angle, beside a corner or beside another one.
 module twolevel_window_edges
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use mesh_types, only: network_t
    implicit none(type, external)
    private
@@ -106,7 +106,7 @@ contains
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: axis  !< across the edge
       real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), parameter :: shallow = tan(5.0_rk*acos(-1.0_rk)/180.0_rk)
+      real(rk), parameter :: shallow = tan(5.0_rk*pi/180.0_rk)
       integer(ik) :: f, v
 
       is_cut_aslant = .false.

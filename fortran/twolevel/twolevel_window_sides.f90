@@ -1,11 +1,10 @@
 !> Where the edge of a window lies on sides of the body: what the scene prescribes there.
 module twolevel_window_sides
    use base_kinds, only: ik, rk
-   use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, &
-                            fine_boundary_t, free_boundary, hold_side, nearest_node, &
-                            stand_on_springs
+   use fine_boundary, only: add_point_force, add_side_springs, add_side_stress, &
+                            add_side_traction, fine_boundary_t, free_boundary, hold_side, &
+                            nearest_node, stand_on_springs
    use fine_mesh, only: fine_mesh_t
-   use fine_springs, only: add_side_springs
    use scene_outline, only: sides_of_scene
    use scene_sides, only: boundary_side_t
    use scene_types, only: point_load_t, restraint_t, scene_t

@@ -3,13 +3,13 @@
 module twolevel_window_spec
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, rock_t
    use fine_elasticity, only: elasticity_t
    use growth_network, only: end_pieces
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: network_t
+   use report_scene, only: follow_outlines, keep_off, regions_of_other_rock
    use scene_types, only: material_t, scene_t
-   use simulation_rocks, only: follow_outlines, keep_off, regions_of_other_rock
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private

@@ -2,9 +2,9 @@
 !! can be trusted.
 module twolevel_window_tip
    use base_kinds, only: ik, rk
+   use fine_tip_intensity, only: complete_errors
+   use fine_tip_types, only: intensity_t
    use scene_types, only: scene_t
-   use tips_intensity, only: complete_errors
-   use tips_types, only: intensity_t
    implicit none(type, external)
    private
 

@@ -8,13 +8,13 @@ module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
+   use fine_tip_types, only: intensity_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
+   use report_scene, only: has_other_toughness, relative_toughness
    use scene_types, only: scene_t
-   use simulation_rocks, only: has_other_toughness, relative_toughness
-   use tips_types, only: intensity_t
    use twolevel_window, only: coarse_values_t, window_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)

@@ -5,20 +5,19 @@
 !! Euler is exact: what is left is the error in space.
 program biot_manufactured
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
-   use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
-   use fine_quadrature, only: triangle_rule_7
+   use fine_element, only: triangle_rule_7
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_types, only: initial_t, scene_t
    use verification_files, only: finish, integer_argument, real_argument, stop_on, table_t
    use verification_meshes, only: cell_centre, plain_rectangle
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: young = 1.0e9_rk  ! E [Pa]
    real(rk), parameter :: viscosity = 1.0e-3_rk  ! mu [Pa s]
    real(rk), parameter :: length = 1.0e-3_rk  ! displacement per second [m/s]

@@ -4,7 +4,7 @@
 !! that the discretization must reproduce them to round-off.
 program coarse_patch
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t, new_state
@@ -120,7 +120,7 @@ contains
    !! hold it, and the other two are streamlines.
    subroutine flow(pressure_error, flux_error)
       real(rk), intent(out) :: pressure_error, flux_error  !< relative
-      real(rk), parameter :: angle = acos(-1.0_rk)/6.0_rk
+      real(rk), parameter :: angle = pi/6.0_rk
       real(rk), parameter :: along = 5.0e-14_rk, across = 2.0e-16_rk  ! [m2]
       type(scene_t) :: scene
       type(mesh_t) :: mesh

@@ -9,7 +9,7 @@
 !!   slip        the faces' jump is given: elliptical slip of 10 um            (catalogue 3.6)
 !! Intensities are in units of 1 MPa sqrt(pi a), of 1 MPa m^1/2 for kinds frictional and slip.
 program fine_crack
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, pi, rk
    use exact_cracks, only: centre_crack, uniform_field
    use fine_faces, only: face_conditions_t, face_jump, face_slip, loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
@@ -19,7 +19,6 @@ program fine_crack
    use verification_meshes, only: network_of
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
    real(rk), parameter :: a = 0.05_rk  ! half-length [m]
    real(rk), parameter :: megapascal = 1.0e6_rk
    type(fine_model_t) :: model

@@ -10,7 +10,7 @@
 !!                           by DEGREES
 !! Intensities are in units of 1 MPa sqrt(pi 1 m), of 1 MPa sqrt(pi 0.5 m) for collinear cracks.
 program fine_network
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, pi, rk
    use fine_faces, only: face_conditions_t, face_slip, loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
@@ -20,7 +20,6 @@ program fine_network
    use verification_meshes, only: network_of
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
    real(rk), parameter :: megapascal = 1.0e6_rk
    real(rk), parameter :: half_width = 200.0_rk  ! of the window: an error of order (1/200)**2 [m]
    type(network_t) :: network

@@ -1,12 +1,11 @@
 !> Kink angles, equivalent intensities, energy release and increments (verification/kink_angles),
 !! for the rows of the catalogue's tables 2.1, 2.3 and 2.4.
 program growth_laws
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, rk
    use growth_law, only: advances, energy_release_rate, equivalent_intensity, kink_angle
    use verification_files, only: finish, table_t
    implicit none(type, external)
 
-   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
    real(rk), parameter :: k1(14) = [1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 0.5_rk, &
                                     0.2_rk, 0.0_rk, 0.0_rk, 1.0_rk, -0.2_rk, -1.0_rk, -2.0_rk]
    real(rk), parameter :: k2(14) = [0.0_rk, 1.0e-9_rk, 0.1_rk, 0.25_rk, 0.5_rk, 1.0_rk, 1.0_rk, &

@@ -7,9 +7,10 @@
 !! Each file stands on disk while it is judged: one that ends the process is still there, and its
 !! name has its number. An alarm ends the process if a file takes too long.
 program mutated_scenes
-   use app_check, only: describe_scene
+   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use app_geometry, only: check_geometry
-   use app_size, only: check_size
+   use app_size, only: check_size, describe_scene
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
@@ -20,8 +21,6 @@ program mutated_scenes
    use scene_types, only: scene_t
    use scene_write, only: scene_text
    use verification_files, only: integer_argument, text_argument
-   use, intrinsic :: iso_c_binding, only: c_int
-   use, intrinsic :: iso_fortran_env, only: error_unit
    implicit none(type, external)
 
    interface

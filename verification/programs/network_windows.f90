@@ -8,17 +8,17 @@
 !! Argument: `few` networks or `all`. Writes values.csv, a row per tip and window, and summary.csv,
 !! a row per window: 0 stands for the body.
 program network_windows
+   use, intrinsic :: iso_fortran_env, only: int64
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
+   use fine_tip_types, only: intensity_t
    use mechanics_simulation, only: mechanics_simulation_t
+   use report_simulation, only: simulation_t
    use scene_namelist, only: read_scene
    use scene_types, only: scene_t
-   use simulation_types, only: simulation_t
-   use tips_types, only: intensity_t
    use twolevel_simulation, only: twolevel_simulation_t
    use verification_files, only: finish, stop_on, table_t, text_argument
-   use, intrinsic :: iso_fortran_env, only: int64
    implicit none(type, external)
 
    character(len=*), parameter :: group = "(a,*(g0))"  !< format of lines of a scene's file
@@ -154,7 +154,7 @@ contains
       real(rk) :: ends(4)
       real(rk) :: half(2)
 
-      associate (angle => deg*acos(-1.0_rk)/180.0_rk)
+      associate (angle => deg*pi/180.0_rk)
          half = 0.5_rk*length*[cos(angle), sin(angle)]
       end associate
       ends = [centre - half, centre + half]

@@ -10,19 +10,18 @@
 !!
 !! Writes values.csv, a row for each K_I and K_II that is not zero, and summary.csv.
 program trust_in_k
+   use, intrinsic :: iso_fortran_env, only: int64
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, rk
    use base_timers, only: timers_t
    use mechanics_simulation, only: mechanics_simulation_t
+   use report_simulation, only: simulation_t
    use scene_namelist, only: read_scene
    use scene_types, only: scene_t
-   use simulation_types, only: simulation_t
    use twolevel_simulation, only: twolevel_simulation_t
    use verification_files, only: finish, stop_on, table_t, text_argument
-   use, intrinsic :: iso_fortran_env, only: int64
    implicit none(type, external)
 
-   real(rk), parameter :: degree = acos(-1.0_rk)/180.0_rk
    real(rk), parameter :: length = 0.1_rk  !< of a crack [m]
    real(rk), parameter :: side = 2.0_rk  !< of the body [m]
    character(len=*), parameter :: group = "(a,*(g0))"  !< format of lines of a scene's file

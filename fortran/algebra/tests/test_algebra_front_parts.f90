@@ -1,9 +1,9 @@
 !> Parts of a tree of fronts: subtrees that share nothing and hold most of the work, and none where
 !! they would not pay.
 program test_algebra_front_parts
-   use testing_checks, only: checks_t
-   use algebra_front_parts, only: find_parts, parts_t
+   use algebra_fronts, only: find_parts, parts_t
    use base_kinds, only: ik, rk
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,8 +1,8 @@
 !> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses.
 program test_algebra_lapack
-   use testing_checks, only: checks_t
-   use base_kinds, only: ik, rk
    use algebra_lapack, only: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
+   use base_kinds, only: ik, rk
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: tolerance = 1.0e-14_rk  !< relative to solutions of size 3

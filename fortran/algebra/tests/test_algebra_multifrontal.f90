@@ -1,13 +1,13 @@
 !> Multifrontal elimination: known solutions, Schur complements against springs in series and dense
 !! elimination, singular matrices.
 program test_algebra_multifrontal
-   use testing_checks, only: checks_t
-   use testing_random, only: random_t
    use algebra_lapack, only: dgesv
    use algebra_multifrontal, only: multifrontal_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use sample_elements, only: chain, matrices_t
+   use testing_checks, only: checks_t
+   use testing_random, only: random_t
    implicit none(type, external)
 
    type(checks_t) :: checks

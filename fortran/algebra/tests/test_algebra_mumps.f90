@@ -1,11 +1,10 @@
 !> MUMPS wrapper: known solutions, the Schur complement against dense elimination, singular
 !! matrices.
 program test_algebra_mumps
-   use testing_checks, only: checks_t
+   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_pord, mumps_t, mumps_unsymmetric
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_mumps, only: mumps_definite, mumps_indefinite, mumps_pord, mumps_t, &
-                            mumps_unsymmetric
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

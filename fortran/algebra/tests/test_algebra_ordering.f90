@@ -1,12 +1,12 @@
 !> Orders of unknowns: permutations, the same every time; of a grid, with the fill that nested
 !! dissection is known for; and MUMPS, which takes them.
 program test_algebra_ordering
-   use testing_checks, only: checks_t
+   use algebra_mumps, only: mumps_indefinite, mumps_t
+   use algebra_ordering, only: dissect, expand_order, neighbours_of
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-   use algebra_mumps, only: mumps_indefinite, mumps_t
-   use algebra_ordering, only: dissect, expand_order, neighbours_of
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

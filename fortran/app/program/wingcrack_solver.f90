@@ -1,23 +1,21 @@
 !> wingcrack-solver: reads a scene and runs it. The launcher `wingcrack` calls it.
 program wingcrack_solver
-   use algebra_ranks, only: begin_ranks
-   use app_check, only: describe_scene
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use algebra_mumps, only: begin_ranks
    use app_geometry, only: check_geometry
-   use app_interrupts, only: catch_interrupts, interrupt_status
-   use app_memory, only: machine_memory, prepare_memory
+   use app_interrupts, only: catch_interrupts, interrupt_status, machine_memory, prepare_memory
    use app_run, only: run_scene
    use app_simulations, only: simulates_fluids
-   use app_size, only: check_size
+   use app_size, only: check_size, describe_scene
    use app_version, only: version
    use base_errors, only: error_t
-   use simulation_describe, only: describe_limits
-   use simulation_types, only: simulation_t
-   use output_describe, only: describe_output
+   use report_describe, only: describe_output
+   use report_limits, only: describe_limits
+   use report_simulation, only: simulation_t
    use scene_describe, only: describe_input
    use scene_namelist, only: read_scene
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    implicit none(type, external)
 
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3

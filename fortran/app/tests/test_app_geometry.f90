@@ -1,12 +1,12 @@
 !> Scenes whose geometry cannot be simulated: refused with file, line, group, names and place.
 program test_app_geometry
    use app_geometry, only: check_geometry
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_sheet, only: sheet_t
    use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_app_geometry.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

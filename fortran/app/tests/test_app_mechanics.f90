@@ -1,13 +1,13 @@
 !> Mechanics-only runs that end before their load programme: what they leave on disk.
 program test_app_mechanics
    use app_run, only: run_scene
-   use testing_files, only: file_text
-   use simulation_types, only: simulation_t
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
-   use scene_defaults, only: resolve_defaults
+   use report_simulation, only: simulation_t
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
+   use testing_files, only: file_text
    implicit none(type, external)
 
    type(checks_t) :: checks

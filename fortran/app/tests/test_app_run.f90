@@ -2,14 +2,14 @@
 !! their reason and the last good state on disk.
 program test_app_run
    use app_run, only: run_scene
-   use testing_files, only: file_exists, file_text
-   use simulation_types, only: simulation_t
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
+   use report_simulation, only: simulation_t
    use sample_scenes, only: add_fracture, squeezed_body
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: injection_t, scene_t
+   use testing_checks, only: checks_t
+   use testing_files, only: file_exists, file_text
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,9 +1,8 @@
 !> Polygons cut by a line, in whole numbers, where every result is exact.
 program test_base_clip
-   use testing_checks, only: checks_t
-   use base_clip, only: left_part
    use base_kinds, only: rk
-   use base_plane, only: polygon_area
+   use base_plane, only: left_part, polygon_area
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: square(2, 4) = reshape([0, 0, 4, 0, 4, 4, 0, 4]*1.0_rk, [2, 4])

@@ -1,8 +1,8 @@
 !> Groups of members joined in various orders.
 program test_base_groups
-   use testing_checks, only: checks_t
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,8 +1,8 @@
 !> Lists of different lengths: the example of the module's header, and tables turned into lists.
 program test_base_lists
-   use testing_checks, only: checks_t
    use base_kinds, only: ik
    use base_lists, only: inverted, lists_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,12 +1,11 @@
 !> Plane geometry in whole numbers, where every result is exact, and where it degenerates.
 program test_base_plane
-   use testing_checks, only: checks_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use base_plane, only: barycentric, cross, crosses, meeting, nearest_place, nearest_share, &
                          point_distance, polygon_area, triangle_area, turned, turned_left
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    !> Far from the origin: whole numbers up to here, and their differences, are exact.
    real(rk), parameter :: far = 2.0_rk**40
    real(rk), parameter :: none = 0.0_rk

@@ -1,9 +1,9 @@
 !> Tests of base_timers: what a phase is charged with, and what it is not.
 program test_base_timers
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use base_timers, only: phase_contact, phase_count, phase_names, phase_output, phase_solve, &
-      & phase_tips, timers_t
+                          phase_tips, timers_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,7 +1,7 @@
 !> Characters of one to four bytes, and bytes that are none (RFC 3629).
 program test_base_utf8
+   use base_texts, only: is_printable, utf8_length
    use testing_checks, only: checks_t
-   use base_utf8, only: is_printable, utf8_length
    implicit none(type, external)
 
    type(checks_t) :: checks

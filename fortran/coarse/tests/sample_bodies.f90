@@ -1,18 +1,18 @@
 !> Small bodies, fracture networks and helpers for the tests of the coarse level and of both levels.
 module sample_bodies
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use contact_law, only: contact_law_t
-   use coarse_geometry, only: face_length
    use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t
+   use contact_law, only: contact_law_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
+   use mesh_geometry, only: face_length
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    private
 

@@ -1,18 +1,17 @@
 !> Blocks of a body that a fracture cuts in two: they stick, slide and separate exactly as they
 !! should.
 program test_coarse_blocks
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t
    use coarse_state, only: state_t, step_report_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use mesh_types, only: mesh_t
    use sample_bodies, only: cut_square, load_sides, porous_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: young = 40.0e9_rk  !< [Pa]

@@ -1,20 +1,19 @@
 !> The rock condensed onto its fractures: the same solution as that of the whole system, for any
 !! tractions and fluxes on the fractures, for several time steps, and without fractures.
 program test_coarse_condensed
-   use testing_checks, only: checks_t
+   use algebra_lapack, only: dgesv
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_lapack, only: dgesv
    use coarse_condensed, only: condensed_t
    use coarse_layout, only: condensed_layout, condensed_layout_t
    use coarse_matrix, only: discretize, matrix_t
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, regions_t, rock_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: dense_matrix, mesh_square, porous_body, scattered, shake, &
                             straight_network
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

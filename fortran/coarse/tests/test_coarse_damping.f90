@@ -3,7 +3,7 @@ program test_coarse_damping
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_damping, only: dampers, jumps_of
+   use coarse_tips, only: dampers, jumps_of
    use coarse_layout, only: condensed_layout
    implicit none(type, external)
 

@@ -1,9 +1,9 @@
 !> Elimination of two unknowns that two global ones act on, against the solution by hand.
 program test_coarse_elimination
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

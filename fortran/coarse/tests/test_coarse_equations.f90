@@ -1,25 +1,24 @@
 !> The equations on the fractures: all derivatives against central differences, in states without
 !! any pattern; flow along fractures takes from one cell what it gives to the next.
 program test_coarse_equations
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
-   use coarse_equations, only: equations_t
    use coarse_fractures, only: newton_settings_t, prepare
    use coarse_full_step, only: full_slopes
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_newton, only: equations_t
    use coarse_state, only: state_t
-   use contact_law, only: contact_law_t
+   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
+   use contact_law, only: contact_law_t, state_open, state_stick
    use contact_newton, only: step_quality_t
-   use contact_states, only: state_open, state_stick
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
    use scene_fluid_law, only: new_fluid_law
    use scene_types, only: fluid_t, initial_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: dt = 10.0_rk  !< [s]
@@ -187,10 +186,10 @@ contains
       type(newton_settings_t) :: settings
 
       settings = model%settings
-      settings%equilibrate = equilibrate
-      settings%vapour_pressure = vapour_pressure
-      call prepare(model%condensed, model%cells, model%connections, model%joints, model%wells, &
-                   settings, dt, g, state, eq)
+      model%settings%equilibrate = equilibrate
+      model%settings%vapour_pressure = vapour_pressure
+      call prepare(model%fracture_problem_t, dt, g, state, eq)
+      model%settings = settings
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

@@ -1,21 +1,20 @@
 !> Fields from the unknowns: exact where displacement and pressure are linear, also at loaded
 !! corners of the body, beside fractures, and where blocks of the body move against each other.
 program test_coarse_fields
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
-   use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_nodes, only: nodal_values, node_values
    use coarse_own_pressure, only: own_pressure
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, regions_t, rock_t
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
                             porous_body, shake, straight_network
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk

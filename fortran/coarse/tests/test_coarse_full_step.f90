@@ -2,11 +2,11 @@
 !! a small part in them: the step fulfils the equations as they are, where that part is small, where
 !! it is not, and where only that of a face's own pressure is.
 program test_coarse_full_step
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use coarse_full_step, only: find_full_step, full_slopes, kinds_t
    use coarse_slopes, only: slopes_t
    use contact_newton, only: step_quality_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    integer(ik), parameter :: n = 5  !< two faces, two cells of fluid, a flow between them

@@ -1,9 +1,9 @@
 !> Where an iteration begins: changes of the last step in proportion to time, but not too far, and
 !! only for the same unknowns.
 program test_coarse_guess
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_guess, only: guess_t
+   use coarse_state, only: guess_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: start(2) = [10.0_rk, -4.0_rk], x(2) = [12.0_rk, -5.0_rk]

@@ -1,19 +1,18 @@
 !> The state in situ on the coarse level: where it comes from in a scene, a body at rest under its
 !! weight, a column that its weight compresses, and what the fluid of fractures bears at depth.
 program test_coarse_in_situ
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_stick
+   use contact_law, only: contact_law_t, state_stick
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: porous_body, straight_network
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: g = 9.81_rk  !< [m/s2]

@@ -1,27 +1,25 @@
 !> Joints: which points are some; their equations against differences; a linear state passes through
 !! every kind of them; flow through stars and outlets by the cubic law, with all fluid kept.
 program test_coarse_joints
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
-   use coarse_equations, only: equations_t
    use coarse_fields, only: cell_stresses
-   use coarse_nodes, only: nodal_values
    use coarse_fractures, only: prepare
    use coarse_full_step, only: full_slopes
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_newton, only: equations_t
+   use coarse_nodes, only: nodal_values
    use coarse_state, only: state_t, step_report_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_stick
+   use contact_law, only: contact_law_t, state_stick
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: load_sides, mesh_square, porous_body, scattered, straight_network, &
                             uniform_cells
-   use scene_types, only: initial_t, scene_t
+   use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: side_pressure = 2.0e6_rk  !< of the left side, where it has one [Pa]
    type(checks_t) :: checks
 
@@ -170,8 +168,7 @@ contains
       call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
       allocate (g(model%condensed%layout%count()), source=0.0_rk)
-      call prepare(model%condensed, model%cells, model%connections, model%joints, model%wells, &
-                   model%settings, dt, g, state, eq)
+      call prepare(model%fracture_problem_t, dt, g, state, eq)
       x = 4.0e6_rk*scattered(eq%layout%count())
       x(eq%layout%at_flow(1_ik):) = 1.0e-3_rk*x(eq%layout%at_flow(1_ik):)
       below = eq

@@ -1,11 +1,11 @@
 !> Where unknowns stand: each number is taken once, in the order that the modules rely on.
 program test_coarse_layout
-   use testing_checks, only: checks_t
    use base_kinds, only: ik
    use coarse_layout, only: at_component, block_count, condensed_layout, condensed_layout_t, &
                             end_block, end_of_block, fracture_cell_of_block, fracture_layout, &
                             fracture_layout_t
    use mesh_types, only: mesh_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides

@@ -1,11 +1,10 @@
 !> Flows round loops of fractures: where there are loops, outlets included, and what is not known of
 !> their flows.
 program test_coarse_loops
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_joints, only: joints_t
-   use coarse_loops, only: flows_in_loops, unknown_flow
+   use coarse_joints, only: flows_in_loops, joints_t, unknown_flow
    use coarse_slopes, only: slopes_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    !> A ring of three cells and a chain of three.

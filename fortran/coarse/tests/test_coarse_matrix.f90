@@ -1,21 +1,20 @@
 !> The coarse matrix on cells of irregular shape: exact for uniform stress and for linear pressure,
 !! the same as the tractions and fluxes that it stands for, symmetric and quasi-definite.
 program test_coarse_matrix
-   use testing_checks, only: checks_t
+   use algebra_lapack, only: dpotrf
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use algebra_lapack, only: dpotrf
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_geometry, only: cell_area, corner_geometry, face_length
    use coarse_matrix, only: discretize, matrix_t
-   use coarse_regions, only: regions_t, traction_face
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, regions_t, rock_t, traction_face
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, scattered, shake, straight_network
+   use sample_bodies, only: dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body, &
+                            scattered, shake, straight_network
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk

@@ -1,19 +1,18 @@
 !> The coarse level against exact states: uniform stress and pressure, linear pressure, a sticking
 !! fracture, a slipping one, one at the pressure of vapour, fluid mass.
 program test_coarse_model
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_slip, state_stick
    use coarse_fields, only: cell_stresses
-   use coarse_nodes, only: nodal_values
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_nodes, only: nodal_values
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use contact_law, only: contact_law_t, state_slip, state_stick
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: initial_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: undrained_pressure = 6902061.032_rk  !< catalogue 4.0 [Pa]
@@ -306,7 +305,7 @@ contains
       type(timers_t) :: timers
       type(step_report_t) :: report
       type(error_t), allocatable :: error
-      real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk, pi = acos(-1.0_rk)
+      real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk
       real(rk), parameter :: at(2, 2) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2])
       real(rk) :: exact, volume
 

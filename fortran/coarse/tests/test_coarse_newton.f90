@@ -1,17 +1,16 @@
 !> Newton's method on the fractures: the cubic law, pressure equilibrium, quadratic convergence, and
 !! steps that are refused.
 program test_coarse_newton
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t
    use coarse_state, only: state_t, step_report_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_stick
+   use contact_law, only: contact_law_t, state_open, state_stick
    use mesh_types, only: mesh_t
    use sample_bodies, only: cut_square, porous_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: inside(2, 2) = reshape([0.7_rk, 0.8_rk, 1.3_rk, 1.2_rk], [2, 2])

@@ -1,24 +1,23 @@
 !> Regions of permeability on the coarse level: shares of cells, layered means, which region a cell
 !! belongs to, and flow that is exact where the mesh follows the outlines.
 program test_coarse_permeability
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_diffusion, only: cell_outflow, corner_gradient, region_fluxes
-   use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_permeability, only: bearable, conduction_t, layered, place_regions, share_of_cell
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, resistivity_of, rock_t
+   use coarse_regions, only: new_rock, regions_t, resistivity_of, rock_t
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, load_sides, mesh_square, porous_body, &
                             straight_network, uniform_cells
    use scene_types, only: region_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: tiny_error = 1.0e-13_rk

@@ -1,13 +1,13 @@
 !> Interaction regions: what meets around each vertex, at tips, joints, kinks and on the boundary;
 !! corners of cells.
 program test_coarse_regions
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use coarse_geometry, only: corner_geometry, face_length
    use coarse_regions, only: find_regions, fracture_end_region, regions_t, traction_face
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: corner_geometry, face_length
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: mesh_square, shake, straight_network
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,16 +1,15 @@
 !> Springs, tractions along and across the sides, inflow, points that are held and loaded; other
 !! values on the sides are those of a matrix that is made anew.
 program test_coarse_sides
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use coarse_loads, only: add_point_forces, hold_points
    use coarse_matrix, only: discretize, matrix_t, renew_sides
-   use coarse_points, only: add_point_forces, hold_points
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, regions_t, rock_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, dense_matrix, linear_unknowns, porous_body, shake
    use scene_types, only: point_load_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk

@@ -2,19 +2,18 @@
 !! with equal tractions and displacements on their interface, is exact on meshes that follow it;
 !! the constants of cells that an outline cuts are the means that exact integration gives.
 program test_coarse_solid
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
-   use coarse_nodes, only: curved_displacement
-   use coarse_geometry, only: cell_area
    use coarse_matrix, only: discretize, matrix_t
+   use coarse_nodes, only: curved_displacement
    use coarse_permeability, only: place_regions
-   use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, regions_t, rock_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, dense_matrix, porous_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: pressure = 7.0e6_rk

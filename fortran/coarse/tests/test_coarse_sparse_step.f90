@@ -5,18 +5,17 @@
 !! The tolerance 1e-9 is that which was asked for; the linear steps leave 1e-11 of the stress scale
 !! at most, and the condition of these systems is below 1e4.
 program test_coarse_sparse_step
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: same = 1.0e-9_rk  !< relative

@@ -3,9 +3,8 @@
 !! the stress s that it releases; and what leaks off from it, against that of a strip of one
 !! pressure.
 program test_coarse_tips
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
@@ -15,9 +14,9 @@ program test_coarse_tips
    use mesh_types, only: mesh_t
    use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]
    integer(ik), parameter :: n_cells = 20
    type(checks_t) :: checks

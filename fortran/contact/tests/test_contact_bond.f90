@@ -1,12 +1,12 @@
 !> Bonds: derivatives, states, history, the energy that breaking takes, and bodies that a bond lets
 !! go of at once.
 program test_contact_bond
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_law, only: contact_equations, contact_law_t, contact_residual, state_name, &
+                          state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
-   use contact_states, only: state_name, state_open, state_slip, state_stick
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]

@@ -1,12 +1,12 @@
 !> Joints that close under pressure: the hyperbola, derivatives, states with friction, and Newton's
 !! method on one point between springs from far away, in any units.
 program test_contact_closure
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid
+   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid, &
+                          state_name, state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
-   use contact_states, only: state_name, state_open, state_slip, state_stick
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]

@@ -2,11 +2,11 @@
 !! that is known, one that is singular, and none at all; what a step leaves out of its matrix, and
 !! flows that a condition leaves out.
 program test_contact_dense
-   use testing_checks, only: checks_t
+   use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use contact_dense, only: solve_by_parts, solve_full
    use contact_newton, only: step_quality_t
-   use contact_ties, only: new_ties, ties_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -15,7 +15,7 @@ program test_contact_dense
    call notices_singular_matrix()
    call has_nothing_to_solve()
    call leaves_flows_out_of_condition()
-   call leaves_out_ties()
+   call leaves_out_links()
    call solves_by_parts()
    call checks%finish()
 
@@ -127,11 +127,11 @@ contains
 
    !> Three points: one sticks, one opens with its slip, one is open. The step is that of the whole
    !! matrix.
-   subroutine leaves_out_ties()
+   subroutine leaves_out_links()
       real(rk), parameter :: residual(6) = [1.0_rk, -2.0_rk, 3.0_rk, 4.0_rk, -5.0_rk, 6.0_rk]
       type(step_quality_t) :: quality
-      type(ties_t) :: ties
-      real(rk) :: matrix(6, 6), own(2, 2), rest(6), row(6), step(6), whole(6)
+      type(links_t) :: links
+      real(rk) :: matrix(6, 6), own(2, 2), rest(6), row(6), solution(3), step(6), whole(6)
       real(rk), allocatable :: small(:, :), left(:)
       integer(ik), allocatable :: kept(:)
       integer(ik) :: i, k, m
@@ -143,24 +143,27 @@ contains
       end do
       matrix(3:, :2) = 0.0_rk  ! the first point's equations hold its own jumps
       matrix([1, 2, 5, 6], 3) = 0.0_rk  ! the second's opening follows its slip
-      ties = new_ties(6)
+      links = new_links(6)
       do i = 1, 5, 2
          own = transpose(matrix(i:i + 1, i:i + 1))
-         call ties%tie(i, own, [i < 5, i == 1], residual(i:i + 1))
+         call links%link_pair(i, own, [i < 5, i == 1])
       end do
-      kept = ties%kept()
+      call links%take_residual(residual)
+      kept = links%kept_unknowns()
       call checks%is_true(all(kept == [4, 5, 6]), "slip of one point and jumps of another are left")
       allocate (small(3, 3), left(3))
       do k = 1, 3
          row = matrix(:, kept(k))
          left(k) = residual(kept(k))
-         call ties%reduce(row, left(k))
+         call links%reduce(row, left(k))
          small(:, k) = row(kept)
       end do
-      call ties%find_step(small, left, .false., step, quality)
+      call solve_full(small, left, .false., solution, quality)
+      step(kept) = solution
+      call links%complete(step)
       rest = residual
       call solve_full(matrix, rest, .false., whole, quality)
       call checks%is_close(maxval(abs(step - whole)), 0.0_rk, 1.0e-14_rk, "the whole matrix's step")
-   end subroutine leaves_out_ties
+   end subroutine leaves_out_links
 
 end program test_contact_dense

@@ -1,10 +1,10 @@
 !> The law of contact and friction: derivatives, states, what fulfils the law and what does not.
 program test_contact_law
-   use testing_checks, only: checks_t
-   use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid
-   use contact_states, only: state_name, state_open, state_slip, state_stick
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
+   use base_kinds, only: ik, rk
+   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid, &
+                          state_name, state_open, state_slip, state_stick
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]

@@ -1,6 +1,6 @@
 !> Bodies of which no other start is known, for the test below.
 module one_start
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use contact_pairs, only: contact_pairs_t
    implicit none(type, external)
    private
@@ -34,13 +34,12 @@ end module one_start
 !! opening and slip are coupled as strongly as that allows. Reference: the law as it is stated
 !! (docs/theory.md), written out here anew.
 program test_contact_newton
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
-   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
-                             outcome_converged
+   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
    use one_start, only: one_start_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: stiffness = 3.0e12_rk  !< c [Pa/m]

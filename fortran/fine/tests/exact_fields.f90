@@ -5,10 +5,10 @@ module exact_fields
    use base_kinds, only: ik, rk
    use exact_cracks, only: centre_crack
    use fine_elasticity, only: elasticity_t
+   use fine_element, only: collapsed_rule, triangle_rule_7
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
-   use fine_quadrature, only: collapsed_rule, triangle_rule_7
    use fine_recovery, only: recovered_stress, recovery_t
    use mesh_types, only: mesh_t
    implicit none(type, external)

@@ -1,18 +1,18 @@
 !> Bodies held and loaded at their boundary, against exact solutions that the elements contain.
 program test_fine_boundary
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field
-   use fine_boundary, only: add_point_force, add_side_pressure, add_side_traction, &
-                            fine_boundary_t, free_boundary, hold_side, nearest_node
+   use fine_boundary, only: add_point_force, add_side_pressure, add_side_springs, &
+                            add_side_traction, fine_boundary_t, free_boundary, hold_side, &
+                            nearest_node
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_jump, loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
-   use fine_springs, only: add_side_springs
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.)

@@ -1,11 +1,9 @@
 !> Contact on node pairs against fields that fulfil its law exactly, and against cracks that are
 !! closed, slip, or are open in part.
 program test_fine_contact
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use base_kinds, only: ik, pi, rk
+   use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use exact_cracks, only: bent_crack, centre_crack, uniform_field
    use fine_boundary, only: fine_boundary_t, free_boundary, hold_side
    use fine_contact, only: contact_t, new_contact
@@ -15,6 +13,7 @@ program test_fine_contact
    use fine_model, only: fine_model_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.)
@@ -127,7 +126,7 @@ contains
       associate (b => boxes)
          mesh = cracked_rectangle([-2.0_rk, 2.0_rk], [-2.0_rk, 2.0_rk], [4*b, 4*b], 2*b, b + 1, 3*b)
       end associate
-      call rotate_mesh(mesh, 0.25_rk*acos(-1.0_rk), .false.)
+      call rotate_mesh(mesh, 0.25_rk*pi, .false.)
       call model%set_mesh(mesh, rock, error)
       call checks%no_error(error, "cracked plate is numbered")
    end subroutine set_crack

@@ -2,11 +2,9 @@
 !! that the faces can carry, and under loads that change their direction from step to step, when the
 !! law must hold at every pair, with its whole history.
 program test_fine_contact_network
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, contact_residual
-   use contact_states, only: state_open, state_stick
+   use contact_law, only: contact_law_t, contact_residual, state_open, state_stick
    use exact_cracks, only: uniform_field
    use fine_boundary, only: add_side_traction, clamped_boundary, fine_boundary_t, free_boundary, &
                             nearest_node
@@ -18,6 +16,7 @@ program test_fine_contact_network
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4
    real(rk), parameter :: half(2) = [3.5_rk, 2.5_rk]

@@ -3,11 +3,9 @@
 !! traction. Friction from none to 2, with dilation and without, T and X joints, kinks, fractures
 !! that end on the boundary.
 program test_fine_contact_random
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_stick
+   use base_kinds, only: ik, pi, rk
+   use contact_law, only: contact_law_t, state_open, state_stick
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
@@ -16,6 +14,7 @@ program test_fine_contact_random
    use fine_model, only: fine_model_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    integer(ik), parameter :: n_bodies = 6, n_loads = 6, n_laws = 6
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4
@@ -94,7 +93,7 @@ contains
                          *(network%xy(:, 2) - network%xy(:, 1))
          end if
          angle = between(-1.5_rk, 1.5_rk)
-         if (line(1, 1) > 0.0_rk) angle = angle + acos(-1.0_rk)
+         if (line(1, 1) > 0.0_rk) angle = angle + pi
          line(:, 2) = line(:, 1) + between(0.9_rk, 2.6_rk)*[cos(angle), sin(angle)]
          angle = angle + sign(between(0.2_rk, 1.0_rk), between(-1.0_rk, 1.0_rk))
          line(:, 3) = line(:, 2) + between(0.6_rk, 1.5_rk)*[cos(angle), sin(angle)]

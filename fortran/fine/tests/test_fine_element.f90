@@ -1,9 +1,8 @@
 !> The six-node triangle against exact fields and integrals.
 program test_fine_element
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use fine_element, only: evaluate_element, shape_values, stiffness_matrix
-   use fine_quadrature, only: collapsed_rule
+   use fine_element, only: collapsed_rule, evaluate_element, shape_values, stiffness_matrix
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk), parameter :: corners(2, 3) = reshape([0.3_rk, -0.2_rk, 1.4_rk, 0.1_rk, 0.5_rk, &

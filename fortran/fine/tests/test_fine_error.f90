@@ -1,8 +1,7 @@
 !> Recovered stresses and estimated errors against exact fields.
 program test_fine_error
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use exact_fields, only: angle, rock, solve_exact, true_errors
    use fine_error, only: energy_error_t, estimate_error, wanted_sizes
    use fine_faces, only: loaded_everywhere
@@ -11,6 +10,7 @@ program test_fine_error
    use fine_recovery, only: recover_by_averages, recover_by_patches, recovery_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 
@@ -131,7 +131,7 @@ contains
                              "crack: effectivity")
          ! K = sqrt(pi) at both ends; an error of it would only make the rest of the stress rougher.
          do tip = 1, 2
-            call checks%is_close(recovery%tips(tip)%intensity(1), sqrt(acos(-1.0_rk)), 0.04_rk, &
+            call checks%is_close(recovery%tips(tip)%intensity(1), sqrt(pi), 0.04_rk, &
                                  "crack: K_I of the fitted field")
             call checks%is_close(recovery%tips(tip)%intensity(2), 0.0_rk, 0.01_rk, &
                                  "crack: K_II of the fitted field")

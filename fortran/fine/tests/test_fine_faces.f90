@@ -1,7 +1,6 @@
 !> Conditions on fracture faces against fields that hold them exactly: two blocks in contact that
 !! slide and turn on each other under a uniform stress.
 program test_fine_faces
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field
@@ -11,6 +10,7 @@ program test_fine_faces
    use fine_model, only: fine_model_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk), parameter :: angle = 0.4_rk  ! of the crack with the x axis [rad]

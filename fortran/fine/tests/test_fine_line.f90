@@ -1,9 +1,9 @@
 !> The line of three nodes, with its inner node in the middle and at either quarter point.
 program test_fine_line
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use fine_line, only: line_parameter, line_resultants, line_shapes, line_slopes, node_within
-   use fine_quadrature, only: gauss_rule
+   use fine_element, only: gauss_rule, line_parameter, line_resultants, line_shapes, line_slopes, &
+                           node_within
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: round_off = 8.0_rk*epsilon(1.0_rk)

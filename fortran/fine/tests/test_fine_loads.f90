@@ -1,13 +1,13 @@
 !> Forces of an element's volume beside Gauss points of a rule that was not used for them.
 program test_fine_loads
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use fine_element, only: collapsed_rule
    use fine_loads, only: fine_loads_t, no_loads, volume_forces
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
-   use fine_quadrature, only: collapsed_rule
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: biot = 0.7_rk
    type(checks_t) :: checks

@@ -1,12 +1,12 @@
 !> Numbering and placing of the six-node mesh, and what it refuses.
 program test_fine_mesh
-   use testing_checks, only: checks_t
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use fine_mesh, only: build_fine_mesh, fine_mesh_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    type(mesh_t) :: mesh

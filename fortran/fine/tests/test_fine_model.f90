@@ -1,20 +1,19 @@
 !> The fine problem against exact fields: patch tests, convergence, initial stress, refusals.
 program test_fine_model
-   use testing_checks, only: checks_t
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use exact_cracks, only: uniform_field
    use fine_elasticity, only: elasticity_t, rocks_t
-   use fine_element, only: evaluate_element
+   use fine_element, only: evaluate_element, triangle_rule_7
    use fine_error, only: energy_error_t, estimate_error
    use fine_faces, only: loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use fine_quadrature, only: triangle_rule_7
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

@@ -1,8 +1,8 @@
 !> Rules of integration against the integrals of monomials.
 program test_fine_quadrature
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use fine_quadrature, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
+   use fine_element, only: collapsed_rule, gauss_rule, triangle_rule_3, triangle_rule_7
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    real(rk) :: points_3(3, 3), weights_3(3), points_7(3, 7), weights_7(7), points_c(3, 12), &

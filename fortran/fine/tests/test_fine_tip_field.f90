@@ -1,12 +1,12 @@
 !> The field of unit intensity against the polar formulas of Williams (1957) and against
 !! differences.
 program test_fine_tip_field
-   use testing_checks, only: checks_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: pi = acos(-1.0_rk), mu = 0.8_rk, kappa = 1.9_rk
+   real(rk), parameter :: mu = 0.8_rk, kappa = 1.9_rk
    real(rk), parameter :: angles(5) = [-3.1_rk, -1.2_rk, 0.0_rk, 0.7_rk, 2.9_rk], step = 1.0e-5_rk
    integer(ik) :: i, mode
 

@@ -1,10 +1,9 @@
 !> Tips that only chance tells from each other grow as one; those that something real does, do not.
 program test_growth_company
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_company, only: company_t, could_part, lags_behind
-   use growth_rivals, only: rivals_t
+   use growth_rivals, only: company_t, could_part, lags_behind, rivals_t
    use growth_segment, only: segment_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,9 +1,9 @@
 !> Tips that compete: small systems whose answers are written down by hand.
 program test_growth_competition
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use growth_competition, only: complementary_advances, corrected_advances, learn_from_trial, &
                                  preference
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

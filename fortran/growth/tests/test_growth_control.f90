@@ -1,8 +1,8 @@
 !> Tips in length control: small groups whose answers are written down by hand.
 program test_growth_control
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_control, only: better_advances, fitted, joined_groups
+   use growth_competition, only: better_advances, fitted, joined_groups
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

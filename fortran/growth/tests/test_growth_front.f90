@@ -1,7 +1,6 @@
 !> Tips that grow together: which of them and how far, what stops or joins them, and the direction
 !! that the loop settles for, in fields of intensities that are given.
 program test_growth_front
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -10,6 +9,7 @@ program test_growth_front
    use growth_network, only: total_length
    use growth_targets, only: target_boundary
    use sample_fronts, only: sample_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: radius = 0.025_rk  !< of the rosettes [m]
@@ -197,7 +197,7 @@ contains
          if (k == 2) cycle
          call checks%is_close(front%tip(1)%xy(1), lines(1, 1, 1) - gap, 1.0e-12_rk, &
                               "on fracture 2")
-         ! The direction is that of the circle half way, within what growth_path asks for.
+         ! The direction is that of the circle half way, within what growth_tip asks for.
          middle = 0.5_rk*(front%tip(1)%origin + front%tip(1)%xy)
          along = [-middle(2), middle(1)]/norm2(middle)
          call checks%is_close(dot_product(front%tip(1)%direction, along), 1.0_rk, 1.0e-3_rk, &

@@ -1,11 +1,11 @@
 !> One increment of growth of many tips.
 program test_growth_increment
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use mesh_types, only: network_t
-   use growth_increment, only: plan_increment, tips_at_onset
+   use growth_front, only: plan_increment, tips_at_onset
    use growth_network, only: move_end
    use growth_tip, only: tip_t
+   use mesh_types, only: network_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: exact = 1.0e-14_rk

@@ -1,8 +1,8 @@
 !> Tips that are alike count as one, whatever their order.
 program test_growth_kinds
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_kinds, only: likes, matrix_of_kinds, means, numbered, of_kinds
+   use growth_competition, only: likes, matrix_of_kinds, means, numbered, of_kinds
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,13 +1,11 @@
 !> Growth law against closed values (catalogue 2.1, 2.3, 2.4).
 program test_growth_law
-   use testing_checks, only: checks_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: degree => radians, ik, pi, rk
    use growth_law, only: advances, carry_over, energy_release_rate, equivalent_intensity, &
-                         growth_drive, &
-                         growth_drive_t, kink_angle, kinked_intensities, new_tip
+                         growth_drive, growth_drive_t, kink_angle, kinked_intensities, new_tip
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
-   real(rk), parameter :: pi = acos(-1.0_rk), degree = pi/180.0_rk
 
    call angles()
    call maximum()

@@ -1,11 +1,11 @@
 !> Networks that grow: vertices at both ends, arc lengths, gains, straight ends.
 program test_growth_network
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use mesh_types, only: network_t
-   use scene_types, only: scene_t
    use growth_network, only: end_direction, end_gain, end_vertices, extend, network_of_scene, &
                              straighten_end, total_length
+   use mesh_types, only: network_t
+   use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks

@@ -1,9 +1,9 @@
 !> The path of a tip: moving, and the search for the direction in which it goes on straight.
 program test_growth_path
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use growth_law, only: kink_angle
-   use growth_path, only: path_t
+   use growth_tip, only: path_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: degree = 0.0174532925199433_rk

@@ -1,10 +1,10 @@
 !> Pieces that a mesh has cells for before the tip has gone along them: found by where they begin,
 !> each with the tip as it was then, and how long the rest of the path is.
 program test_growth_prepared
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use growth_prepared, only: prepared_t
+   use growth_front, only: prepared_t
    use growth_tip, only: tip_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: within = 1.0e-9_rk

@@ -1,9 +1,9 @@
 !> Tips that act on each other, without a mesh: intensities that are linear in their places.
 program test_growth_rivals
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use growth_rivals, only: rivals_t
    use growth_segment, only: segment_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    integer, parameter :: n = 4

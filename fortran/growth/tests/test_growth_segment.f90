@@ -1,8 +1,8 @@
 !> A tip on the last piece of its path: it goes where its excess vanishes, on each side of it.
 program test_growth_segment
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use growth_segment, only: segment_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: tolerance = 1.0e-3_rk

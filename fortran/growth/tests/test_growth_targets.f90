@@ -1,9 +1,9 @@
 !> Where growing tips meet fractures and the boundary.
 program test_growth_targets
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use growth_targets, only: find_ahead, find_beside, find_target, target_boundary, target_none
    use mesh_types, only: network_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: reach = 0.1_rk, round_off = 1.0e-14_rk
    type(checks_t) :: checks

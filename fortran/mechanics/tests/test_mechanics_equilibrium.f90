@@ -1,18 +1,16 @@
 !> Growth as equilibrium: the load factor follows the closed form down as a crack grows, and does
 !! not depend on where its search begins.
 program test_mechanics_equilibrium
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
-   use mechanics_balance, only: balance_load
-   use mechanics_misfit, only: share_misfit, tolerance
+   use mechanics_balance, only: balance_load, share_misfit, tolerance
    use mechanics_simulation, only: mechanics_simulation_t
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    type(checks_t) :: checks
 
    call check_strip("length")

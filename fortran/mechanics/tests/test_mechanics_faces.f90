@@ -1,14 +1,14 @@
 !> Face laws of a scene: a pressure on the faces does what the opposite stress in the body does
 !! (superposition, exact on any mesh), faces held closed slide and do not part, their wings do.
 program test_mechanics_faces
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use mechanics_rise, only: rise
    use mechanics_simulation, only: mechanics_simulation_t
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-9_rk
    real(rk), parameter :: quadrature = 1.0e-6_rk  !< of the integrals' singular auxiliary fields

@@ -1,8 +1,8 @@
 !> Onsets on straight lines through two states, against closed forms.
 program test_mechanics_onset
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
-   use mechanics_onset, only: foreseen_onset, reading_t
+   use mechanics_programme, only: foreseen_onset, reading_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: round_off = 4.0e-15_rk
    type(checks_t) :: checks

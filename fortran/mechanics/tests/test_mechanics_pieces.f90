@@ -1,9 +1,9 @@
 !> When fractures cut a body to pieces.
 program test_mechanics_pieces
-   use testing_checks, only: checks_t
    use base_kinds, only: ik
-   use mechanics_pieces, only: cuts_through
+   use mechanics_state, only: cuts_through
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

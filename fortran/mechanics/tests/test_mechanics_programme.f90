@@ -1,9 +1,9 @@
 !> The programme of the load: its pieces and steps, loads that fall on the way, what is done of it.
 program test_mechanics_programme
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mechanics_programme, only: programme_t, strongest
    use scene_types, only: load_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

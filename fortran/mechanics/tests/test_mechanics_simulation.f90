@@ -1,13 +1,13 @@
 !> The load programme: the onset of growth is found where linearity says, and never stepped over.
 program test_mechanics_simulation
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use base_timers, only: timers_t
    use mechanics_rise, only: rise
    use mechanics_simulation, only: mechanics_simulation_t
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-8_rk  !< of a factor found from linear responses
    type(checks_t) :: checks
@@ -157,7 +157,7 @@ contains
       type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
-      real(rk), parameter :: pi = acos(-1.0_rk), formula = 1.0e-3_rk
+      real(rk), parameter :: formula = 1.0e-3_rk
       logical :: has_onset, any_grew
       real(rk) :: share, expected
       integer :: increment

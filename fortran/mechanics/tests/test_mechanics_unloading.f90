@@ -1,17 +1,17 @@
 !> Loads that fall: slip and its reversal at a closed crack with friction, onsets on the way down.
 program test_mechanics_unloading
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use mechanics_rise, only: rise
    use mechanics_simulation, only: mechanics_simulation_t
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, restraint_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: half_length = 0.2_rk  !< of the crack [m]
    real(rk), parameter :: half_width = 2.0_rk  !< of the body [m]
-   real(rk), parameter :: young = 1.0e9_rk, poisson = 0.25_rk, pi = acos(-1.0_rk)
+   real(rk), parameter :: young = 1.0e9_rk, poisson = 0.25_rk
    real(rk), parameter :: shear = 1.0e6_rk, pressure = 1.0e6_rk, friction = 0.3_rk
    type(checks_t) :: checks
 

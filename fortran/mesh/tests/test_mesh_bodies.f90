@@ -1,14 +1,13 @@
 !> Whole bodies through the Fortran interface: polygons, fixed points, rosettes, wanted sizes
 !! and quality. The meshes themselves are tested in C++ (cpp_mesh/tests).
 program test_mesh_bodies
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use mesh_builder, only: build_mesh, build_mesh_sized, mesh_quality, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t, point_boundary
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
-   real(rk), parameter :: pi = acos(-1.0_rk)
    type(checks_t) :: checks
 
    call test_disc(checks)

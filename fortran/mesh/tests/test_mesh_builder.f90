@@ -1,13 +1,13 @@
 !> Meshes through the Fortran interface: indices from 1, shapes, maps, ownership. The meshes
 !! themselves are tested in C++ (cpp_mesh/tests).
 program test_mesh_builder
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_texts, only: text_t
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, remesh, transfer_mesher
    use mesh_types, only: mesh_map_t, mesh_t, network_t, point_boundary, point_interior, &
                          point_joint_t, point_joint_x, point_tip, side_count
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -227,7 +227,7 @@ contains
       integer :: k
 
       do k = 0, 11
-         angle = k*acos(-1.0_rk)/6.0_rk
+         angle = k*pi/6.0_rk
          ahead = [cos(angle), sin(angle)]
          call build_mesh(mesh_spec_t(-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk, 0.1_rk, 0.3_rk), &
                          straight_network(reshape([-0.3_rk*ahead, 0.3_rk*ahead], [2, 2, 1])), &

@@ -1,12 +1,12 @@
 !> Polygons, arcs of discs and gravity: what is accepted, and what is refused with which words.
 program test_scene_bodies
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
+   use scene_check_geometry, only: holds_point
    use scene_namelist, only: read_scene
-   use scene_polygon, only: holds_point
    use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_bodies.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

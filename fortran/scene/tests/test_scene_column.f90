@@ -1,12 +1,12 @@
 !> Gravity, densities and a stress in situ in scenes with a fluid: what is accepted, and what is
 !! refused with which words.
 program test_scene_column
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_column.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

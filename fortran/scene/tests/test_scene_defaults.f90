@@ -1,9 +1,9 @@
 !> Defaults that follow from other values: the numbers that they stand for.
 program test_scene_defaults
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
-   use scene_defaults, only: resolve_defaults
+   use scene_namelist, only: resolve_defaults
    use scene_types, only: fracture_t, scene_t, time_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

@@ -1,8 +1,8 @@
 !> docs/input.md is what the table of parameters says.
 program test_scene_describe
-   use testing_checks, only: checks_t
-   use testing_pages, only: check_page
    use scene_describe, only: describe_input
+   use testing_checks, only: checks_t
+   use testing_files, only: check_page
    implicit none(type, external)
    type(checks_t) :: checks
    integer :: code

@@ -1,12 +1,12 @@
 !> Faults in what a scene says of the faces of its fractures: each is refused with file, line and
 !> name, and what would be right; and what is right goes through.
 program test_scene_faces
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_faces.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

@@ -2,11 +2,11 @@
 !>
 !> Each case replaces one line of a good scene; the messages are compared whole.
 program test_scene_faults
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_faults.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

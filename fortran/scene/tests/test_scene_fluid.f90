@@ -1,13 +1,13 @@
 !> Laws of the fluid: densities, potentials and viscosities in closed form, derivatives by
 !! differences, tables, and scenes whose laws are refused.
 program test_scene_fluid
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: fluid_t, scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_fluid.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

@@ -1,13 +1,13 @@
 !> Whatever a file holds, reading it ends with a scene or with a message, never in a crash.
 program test_scene_fuzz
-   use testing_checks, only: checks_t
-   use testing_files, only: file_text
-   use testing_random, only: random_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_bytes, same_scene, source_path
    use scene_types, only: scene_t
    use scene_write, only: scene_text
+   use testing_checks, only: checks_t
+   use testing_files, only: file_text
+   use testing_random, only: random_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_fuzz.nml"
    type(checks_t) :: checks

@@ -1,10 +1,10 @@
 !> Mechanics-only scenes: what they must not say, and what must go together.
 program test_scene_mechanics
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_lines
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_mechanics.nml"
    character(len=80), parameter :: good(*) = [character(len=80) :: &

@@ -1,11 +1,11 @@
 !> What a file says arrives in the scene, and what it leaves out has its default.
 program test_scene_namelist
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_lines, source_path
    use scene_types, only: discretization_t, growth_t, initial_t, output_t, scene_t, time_t
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_namelist.nml"
    type(checks_t) :: checks
@@ -76,7 +76,7 @@ contains
       call exactly(scene%fractures(2)%y, [0.25_rk, 0.25_rk, 0.25_rk], "y of b by a repeat count")
       call exactly([scene%fractures(1)%dilation, scene%fractures(1)%friction], [0.0_rk, 0.6_rk], &
                    "law of a")
-      call checks%is_close(scene%fractures(2)%dilation, acos(-1.0_rk)/4.0_rk, epsilon(1.0_rk), &
+      call checks%is_close(scene%fractures(2)%dilation, pi/4.0_rk, epsilon(1.0_rk), &
                            "45 degrees in radians")
       call checks%is_true(all(scene%sides(1)%displacement_given), "left is held in both directions")
       call checks%is_true(.not. scene%sides(4)%displacement_given(1), "top is free in x")
@@ -207,11 +207,11 @@ contains
       associate (f => scene%fractures(1))
          call checks%is_close(hypot(f%x(2) - f%x(1), f%y(2) - f%y(1)), 0.1_rk, 1.0e-15_rk, &
                               "length 0.1 m")
-         call checks%is_close(atan2(f%y(2) - f%y(1), f%x(2) - f%x(1)), acos(-1.0_rk)/4.0_rk, &
+         call checks%is_close(atan2(f%y(2) - f%y(1), f%x(2) - f%x(1)), pi/4.0_rk, &
                               1.0e-15_rk, "at 45 degrees")
          call checks%is_close(sum(f%x), 2.0_rk, 0.0_rk, "centre in x")
          call checks%is_close(sum(f%y), 2.0_rk, 0.0_rk, "centre in y")
-         call checks%is_close(f%dilation, acos(-1.0_rk)/180.0_rk, 1.0e-17_rk, &
+         call checks%is_close(f%dilation, pi/180.0_rk, 1.0e-17_rk, &
                               "dilation of 1 degree")
       end associate
       call exactly([scene%sides(2)%traction, scene%sides(4)%traction], [-20.0e6_rk, 0.0_rk, &

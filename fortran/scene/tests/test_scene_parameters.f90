@@ -1,13 +1,13 @@
 !> The table of parameters is consistent in itself.
 program test_scene_parameters
-   use testing_checks, only: checks_t
-   use scene_intervals, only: in_words
+   use base_kinds, only: ik
+   use scene_expression, only: token_list_t, tokenize
    use scene_parameters, only: choice_name, choice_value, groups, kind_choice, kind_logical, &
                                kind_name, kind_real, kind_text, need_always, need_choice, &
                                need_never, parameter_t, parameters
    use scene_values, only: default_value, read_value, value_t
-   use scene_tokens, only: token_list_t, tokenize
-   use base_kinds, only: ik
+   use scene_words, only: in_words
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
    integer :: i, first, last

@@ -1,14 +1,13 @@
 !> What a scene says that is hardly meant: each doubt by a value just past its bound and none at it,
 !> and none about a scene as it should be.
 program test_scene_plausible
-   use base_kinds, only: rk
+   use base_kinds, only: radians, rk
    use base_texts, only: text_t
    use scene_plausible, only: doubts, doubts_of_scene
    use scene_types, only: boundary_part_t, fracture_t, injection_t, point_load_t, region_t, &
                           restraint_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
-   real(rk), parameter :: radians = acos(-1.0_rk)/180.0_rk  ! per degree
    type(checks_t) :: checks
    type(scene_t) :: scene, solid
    integer :: provoked = 0

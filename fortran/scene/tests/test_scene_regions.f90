@@ -1,7 +1,6 @@
 !> Regions of the rock: outlines of every shape, what is refused with which words, and that a scene
 !> with regions comes back from its own file.
 program test_scene_regions
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_plane, only: polygon_area
@@ -10,6 +9,7 @@ program test_scene_regions
    use scene_test_files, only: delete_file, put_bytes, put_changed, put_lines, same_scene
    use scene_types, only: scene_t
    use scene_write, only: scene_text
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_regions.nml"
    character(len=*), parameter :: doc = " (see docs/input.md)"

@@ -1,6 +1,5 @@
 !> Sides in the course of time: lists, tables, values between the times, and what is refused.
 program test_scene_sides
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
@@ -8,6 +7,7 @@ program test_scene_sides
    use scene_test_files, only: delete_file, put_bytes, put_lines
    use scene_types, only: scene_t
    use scene_write, only: scene_text
+   use testing_checks, only: checks_t
    implicit none(type, external)
 
    character(len=*), parameter :: path = "test_scene_sides.nml", table = "test_scene_sides.csv", &

@@ -1,9 +1,9 @@
 !> The text of a scene file falls into the right tokens on the right lines.
 program test_scene_tokens
-   use testing_checks, only: checks_t
    use base_kinds, only: ik
-   use scene_tokens, only: token_comma, token_end, token_equals, token_group, token_list_t, &
-                           token_slash, token_text, token_word, tokenize, unquoted
+   use scene_expression, only: token_comma, token_end, token_equals, token_group, token_list_t, &
+                               token_slash, token_text, token_word, tokenize, unquoted
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=1), parameter :: line_feed = achar(10), carriage_return = achar(13)
    type(checks_t) :: checks

@@ -1,13 +1,13 @@
 !> Which words are numbers, logicals and texts, and which are refused.
 program test_scene_values
-   use testing_checks, only: checks_t
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
-   use scene_intervals, only: in_words, interval_t, holds, poisson_range, positive, share
+   use scene_expression, only: token_list_t, tokenize
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
                                kind_reals, kind_text, parameter_t
-   use scene_tokens, only: token_list_t, tokenize
    use scene_values, only: read_value, value_t
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use scene_words, only: holds, in_words, interval_t, poisson_range, positive, share
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

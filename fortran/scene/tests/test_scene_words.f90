@@ -1,9 +1,9 @@
 !> Numbers as texts are exact and short; likeness of words; what a name may be.
 program test_scene_words
-   use testing_checks, only: checks_t
    use base_kinds, only: lk, rk
    use scene_words, only: edit_distance, is_identifier, lower_case, nearest_word, real_text, &
                           rounded_text
+   use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
 

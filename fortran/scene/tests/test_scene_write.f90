@@ -1,6 +1,5 @@
 !> A written scene reads back to the same scene, bit for bit, and names every parameter.
 program test_scene_write
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
@@ -8,6 +7,7 @@ program test_scene_write
    use scene_test_files, only: delete_file, put_bytes, put_lines, same_scene, source_path
    use scene_types, only: point_load_t, restraint_t, scene_t
    use scene_write, only: scene_text
+   use testing_checks, only: checks_t
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_write.nml", &
                                   again = "test_scene_write_again.nml"

@@ -1,8 +1,8 @@
 !> Stated errors of length and pressure: exact for a crack whose K_eq/K_IC and pressure are linear
 !! in its length, and for a pressure with a constant second derivative in time before it grows.
 program test_twolevel_certainty
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
+   use testing_checks, only: checks_t
    use twolevel_certainty, only: certainty_t
    implicit none(type, external)
 

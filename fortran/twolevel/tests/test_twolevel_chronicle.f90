@@ -1,15 +1,14 @@
 !> What a simulation notes of its tips: rows before and after growth, joints, arrests, contact.
 program test_twolevel_chronicle
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: network_of_scene
    use growth_targets, only: target_boundary
    use mesh_types, only: fracture_mesh_t
-   use results_chronicle, only: event_arrest, event_growth, event_joint, event_opening, &
-                                event_slip_onset
+   use report_rows, only: event_arrest, event_growth, event_joint, event_opening, event_slip_onset
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 

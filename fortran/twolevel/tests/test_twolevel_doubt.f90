@@ -4,14 +4,14 @@
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
 !> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
 program test_twolevel_doubt
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
+   use report_watch, only: doubtful
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
-   use simulation_doubt, only: doubtful
+   use testing_checks, only: checks_t
    use twolevel_doubt, only: improve_windows
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_trust, only: estimate_coarse_errors
@@ -20,7 +20,7 @@ program test_twolevel_doubt
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
    real(rk), parameter :: pressure = 6.8e6_rk, friction = 0.5_rk
    real(rk), parameter :: known = (5.0e6_rk - friction*(15.0e6_rk - pressure)) &
-                          *sqrt(acos(-1.0_rk)*a)  !< K_II [Pa m^1/2]
+                          *sqrt(pi*a)  !< K_II [Pa m^1/2]
    !> Share of `known` by which K of the body differs from that of an infinite one: a^2 over the
    !! square of its half-width of 1 m, times less than 1.
    real(rk), parameter :: finite = a**2

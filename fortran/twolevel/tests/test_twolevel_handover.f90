@@ -1,6 +1,5 @@
 !> What the coarse level learns of growth, and the direction that a small scene's tips settle for.
 program test_twolevel_handover
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -12,6 +11,7 @@ program test_twolevel_handover
    use sample_bodies, only: straight_network
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    use twolevel_handover, only: hand_over
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)

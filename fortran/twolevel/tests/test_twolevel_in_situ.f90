@@ -1,16 +1,16 @@
 !> Scenes with a state in situ on both levels: the same stress from tractions and in situ, a body at
 !! rest under its weight on a mesh made anew, and a crack opened in a stress that grows with depth.
 program test_twolevel_in_situ
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
    use base_timers, only: timers_t
-   use coarse_rock, only: new_rock, rock_t
+   use coarse_regions, only: new_rock, rock_t
    use coarse_state, only: step_report_t
-   use results_rows, only: history_row_t, probe_row_t
+   use report_rows, only: history_row_t, probe_row_t
+   use report_simulation, only: snapshot_t
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: injection_t, probe_t, scene_t
-   use simulation_types, only: snapshot_t
+   use testing_checks, only: checks_t
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -176,7 +176,7 @@ contains
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
-      real(rk), parameter :: pi = acos(-1.0_rk), a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
+      real(rk), parameter :: a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
       real(rk) :: k(2), modulus, unit
 
       scene = basin()

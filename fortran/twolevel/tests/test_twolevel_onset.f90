@@ -1,8 +1,8 @@
 !> Uncertainty of an onset: exact for an intensity with a constant second derivative in time, solved
 !! by backward Euler.
 program test_twolevel_onset
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
+   use testing_checks, only: checks_t
    use twolevel_onset, only: approach_t
    implicit none(type, external)
 

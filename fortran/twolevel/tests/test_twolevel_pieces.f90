@@ -1,14 +1,14 @@
 !> Tips that stand so near to something that nothing but the rest of a piece lies between: they join
 !! it at once, once they exceed their toughness, and no others do.
 program test_twolevel_pieces
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use growth_network, only: end_place
    use growth_targets, only: target_boundary
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
+   use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 
@@ -75,7 +75,7 @@ contains
    !! that the others take lets the pressure fall below that of the onset, 2 MPa + K_IC/sqrt(pi a).
    subroutine test_two_bars(gap)
       real(rk), intent(in) :: gap  !< [m]
-      real(rk), parameter :: half = 0.2_rk, pi = acos(-1.0_rk)
+      real(rk), parameter :: half = 0.2_rk
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       real(rk) :: s

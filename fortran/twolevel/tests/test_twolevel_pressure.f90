@@ -1,10 +1,10 @@
 !> Fluid pressure on the faces of windows: linear between the middles of the coarse cells, and with
 !! the logarithm of the distance near a tip that lies within its cell.
 program test_twolevel_pressure
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: mesh_t
+   use testing_checks, only: checks_t
    use twolevel_pressure, only: match_pressure, pressure_map_t
    implicit none(type, external)
 

@@ -3,15 +3,15 @@
 !! begun, and windows the meshes that have followed the tips. What is known of the tips is as
 !! before.
 program test_twolevel_rejected
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use growth_company, only: company_t
-   use results_rows, only: history_row_t
+   use growth_rivals, only: company_t
+   use report_rows, only: history_row_t
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
+   use testing_checks, only: checks_t
    use twolevel_equilibrium, only: find_equilibrium
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_stepping, only: trial_t

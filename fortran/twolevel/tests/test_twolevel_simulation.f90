@@ -1,15 +1,15 @@
 !> Whole scenes: wells, growth of both ends alike, fluid that is neither made nor lost by growth.
 program test_twolevel_simulation
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use contact_states, only: state_open, state_slip, state_stick
    use coarse_state, only: state_t, step_report_t
-   use sample_scenes, only: add_fracture, squeezed_body
-   use scene_types, only: injection_t, scene_t, time_t
+   use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: end_gain
    use growth_tip, only: tip_t
+   use sample_scenes, only: add_fracture, squeezed_body
+   use scene_types, only: injection_t, scene_t, time_t
+   use testing_checks, only: checks_t
    use twolevel_probe, only: measure_rivals
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t

@@ -1,10 +1,10 @@
 !> Lengths of time steps: at switches, after cuts, by error and growth, and after increments.
 program test_twolevel_stepping
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
    use scene_types, only: injection_t, scene_t, time_t
-   use twolevel_stepping, only: stepper_t, trial_t
+   use testing_checks, only: checks_t
    use twolevel_schedule, only: next_switch
+   use twolevel_stepping, only: stepper_t, trial_t
    use twolevel_wells, only: rate
    implicit none(type, external)
 

@@ -5,7 +5,7 @@ program test_twolevel_stimulation
    use base_kinds, only: rk
    use base_timers, only: timers_t
    use growth_network, only: total_length
-   use results_rows, only: history_row_t
+   use report_rows, only: history_row_t
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t
    use testing_checks, only: checks_t

@@ -1,7 +1,7 @@
 !> Errors of intensities by layers thinner than a cell, against numbers of an independent model.
 program test_twolevel_thin_layers
-   use testing_checks, only: checks_t
    use base_kinds, only: rk
+   use testing_checks, only: checks_t
    use twolevel_thin_layers, only: layer_t, thin_layer_errors
    implicit none(type, external)
 

@@ -1,17 +1,16 @@
 !> Transfer of a state without any pattern to a mesh on which a fracture has grown at both ends:
 !! what is kept exactly, what is conserved, and what new fracture cells start with.
 program test_twolevel_transfer
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_geometry, only: cell_area
    use coarse_state, only: fracture_cells_t, state_t
-   use contact_law, only: contact_law_t
-   use contact_states, only: state_open, state_slip, state_stick
+   use contact_law, only: contact_law_t, state_open, state_slip, state_stick
+   use growth_network, only: extend
    use mesh_builder, only: mesher_t, remesh
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use sample_bodies, only: mesh_square, scattered, straight_network, uniform_cells
-   use growth_network, only: extend
+   use testing_checks, only: checks_t
    use twolevel_transfer, only: transfer_cells, transfer_state
    implicit none(type, external)
 

@@ -1,9 +1,9 @@
 !> Errors of steps from rates: exact where the second derivative is constant.
 program test_twolevel_trend
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use mesh_types, only: mesh_map_t
+   use testing_checks, only: checks_t
    use twolevel_trend, only: trend_t
    implicit none(type, external)
 

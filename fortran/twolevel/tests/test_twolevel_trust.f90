@@ -1,13 +1,13 @@
 !> The coarse level's part in the errors of intensities: nothing where both levels are exact, the
 !! windows' jumps in the coarse level's terms, and interpolation that is exact for quadratic fields.
 program test_twolevel_trust
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use coarse_layout, only: end_block
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
+   use coarse_layout, only: end_block
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_thin_layers, only: layer_at_tip, layer_t

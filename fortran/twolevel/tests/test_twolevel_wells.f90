@@ -1,10 +1,10 @@
 !> Which cells a well feeds: the one whose middle is nearest, two that are equally near half each,
 !! all of a fracture by their lengths; and which after a joint has divided them.
 program test_twolevel_wells
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t
    use scene_types, only: injection_t
+   use testing_checks, only: checks_t
    use twolevel_wells, only: between_cells, share_wells, transfer_shares
    implicit none(type, external)
 

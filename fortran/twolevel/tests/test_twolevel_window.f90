@@ -1,19 +1,19 @@
 !> Windows: where they lie in the coarse mesh, uniform stress without intensities, what holds on
 !! their faces, and what contact remembers from step to step and from mesh to mesh.
 program test_twolevel_window
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use contact_states, only: state_slip, state_stick
+   use contact_law, only: state_slip, state_stick
    use fine_contact, only: contact_t
    use fine_faces, only: face_contact, face_jump, face_loaded
+   use fine_tip_types, only: intensity_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: cell_centre
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
-   use tips_types, only: intensity_t
+   use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_window, only: window_t

@@ -1,9 +1,9 @@
 !> Paths that a window meshes with fewer vertices: which ones, and that arc lengths stay.
 program test_twolevel_window_path
-   use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: fracture_mesh_t, network_t
+   use testing_checks, only: checks_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far
    implicit none(type, external)
 

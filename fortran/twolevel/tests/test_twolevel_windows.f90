@@ -4,13 +4,13 @@
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m; each of its two windows
 !> holds all of it.
 program test_twolevel_windows
-   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use growth_network, only: move_end
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
+   use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 

@@ -7,10 +7,10 @@ module verification_cracks
    use fine_faces, only: face_conditions_t
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
+   use fine_tip_intensity, only: intensity_of_tip
+   use fine_tip_types, only: intensity_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t
-   use tips_intensity, only: intensity_of_tip
-   use tips_types, only: intensity_t
    use verification_files, only: stop_on, table_t
    implicit none(type, external)
    private

@@ -1,8 +1,8 @@
 !> What the programs of verification cases share: arguments, one table of results, run.json.
 module verification_files
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use, intrinsic :: iso_fortran_env, only: error_unit
    implicit none(type, external)
    private
 

@@ -1,0 +1,169 @@
+!> Unknowns that leave a full matrix: each is linked to a few others by an equation that holds no
+!! more than these,
+!!   step(unknown) = rest + sum_k share_k step(partner_k)
+!! and leaves together with its equation. In networks most unknowns are linked: where faces stick
+!! the jumps do not change, those that slip open with their slip alone, in rock that conducts far
+!! less than the fractures the pressures of the faces are those of the fluid, and along a fracture
+!! each pressure of the fluid follows from the one before and the flow between.
+!!
+!! The links are in the order in which their unknowns leave: partners leave later, or stay.
+module algebra_links
+   use base_kinds, only: ik, rk
+   implicit none(type, external)
+   private
+
+   public :: links_t, new_links
+
+   type :: links_t
+      integer(ik) :: n = 0  !< links
+      integer(ik), allocatable :: unknown(:)  !< (n) of each link
+      integer(ik), allocatable :: first(:)  !< (n + 1) where its partners begin
+      integer(ik), allocatable :: partner(:)
+      real(rk), allocatable :: share(:)  !< of each partner [-]
+      integer(ik), allocatable :: equation(:, :)  !< (2, n) that the rest follows from; 0: none
+      real(rk), allocatable :: factor(:, :)  !< (2, n) rest = sum of factor * residual [-]
+      real(rk), allocatable :: rest(:)  !< (n) [Pa]
+      logical, allocatable :: is_linked(:)  !< (unknowns)
+      logical, allocatable :: is_used(:)  !< (equations)
+   contains
+      procedure :: link
+      procedure :: link_pair
+      procedure :: kept_unknowns
+      procedure :: kept_equations
+      procedure :: take_residual
+      procedure :: reduce
+      procedure :: complete
+   end type links_t
+
+contains
+
+   !> Nothing is linked yet.
+   pure function new_links(n) result(links)
+      integer(ik), intent(in) :: n  !< unknowns, and equations
+      type(links_t) :: links
+
+      allocate (links%unknown(n), links%first(n + 1), links%rest(n))
+      allocate (links%equation(2, n), source=0_ik)
+      allocate (links%factor(2, n), source=0.0_rk)
+      allocate (links%partner(8*n), links%share(8*n))
+      allocate (links%is_linked(n), links%is_used(n), source=.false.)
+      links%first(1) = 1
+   end function new_links
+
+   !> Add a link; its unknown and its equation must still be there, and so must its partners.
+   pure subroutine link(self, unknown, equation, factor, partner, share)
+      class(links_t), intent(inout) :: self
+      integer(ik), intent(in) :: unknown
+      !> The first leaves with the unknown; of a second one only the residual counts. 0: none.
+      integer(ik), intent(in) :: equation(2)
+      real(rk), intent(in) :: factor(2)  !< of their residuals [-]
+      integer(ik), intent(in) :: partner(:)
+      real(rk), intent(in) :: share(:)  !< [-]
+      integer(ik) :: begin
+
+      self%n = self%n + 1
+      begin = self%first(self%n)
+      if (begin + size(partner) > size(self%partner)) then
+         self%partner = [self%partner, self%partner]
+         self%share = [self%share, self%share]
+      end if
+      self%unknown(self%n) = unknown
+      self%equation(:, self%n) = equation
+      self%factor(:, self%n) = factor
+      self%first(self%n + 1) = begin + size(partner, kind=ik)
+      self%partner(begin:self%first(self%n + 1) - 1) = partner
+      self%share(begin:self%first(self%n + 1) - 1) = share
+      self%is_linked(unknown) = .true.
+      self%is_used(equation(1)) = .true.
+   end subroutine link
+
+   !> Link an unknown and the next one, as far as the two equations of these numbers hold no others.
+   pure subroutine link_pair(self, at, own, is_own)
+      class(links_t), intent(inout) :: self
+      integer(ik), intent(in) :: at  !< the first one's number
+      real(rk), intent(in) :: own(2, 2)  !< (equation, unknown) derivatives [-]
+      logical, intent(in) :: is_own(2)  !< the equation holds no other unknown
+      integer(ik), parameter :: none(0) = [integer(ik) ::]
+      real(rk), parameter :: nothing(0) = [real(rk) ::]
+      real(rk) :: determinant
+
+      if (.not. is_own(1) .or. .not. abs(own(1, 1)) > 0.0_rk) return
+      if (is_own(2)) then
+         determinant = own(1, 1)*own(2, 2) - own(1, 2)*own(2, 1)
+         if (.not. abs(determinant) > 0.0_rk) return
+         call self%link(at, [at, at + 1], [-own(2, 2), own(1, 2)]/determinant, none, nothing)
+         call self%link(at + 1, [at + 1, at], [-own(1, 1), own(2, 1)]/determinant, none, nothing)
+      else
+         call self%link(at, [at, 0_ik], [-1.0_rk/own(1, 1), 0.0_rk], [at + 1], &
+                        [-own(1, 2)/own(1, 1)])
+      end if
+   end subroutine link_pair
+
+   !> The unknowns that stay.
+   pure function kept_unknowns(self) result(numbers)
+      class(links_t), intent(in) :: self
+      integer(ik), allocatable :: numbers(:)
+      integer(ik) :: i
+
+      numbers = pack([(i, i=1, size(self%is_linked, kind=ik))],.not. self%is_linked)
+   end function kept_unknowns
+
+   !> The equations that stay.
+   pure function kept_equations(self) result(numbers)
+      class(links_t), intent(in) :: self
+      integer(ik), allocatable :: numbers(:)
+      integer(ik) :: i
+
+      numbers = pack([(i, i=1, size(self%is_used, kind=ik))],.not. self%is_used)
+   end function kept_equations
+
+   !> What the residuals of their own equations ask of the linked unknowns.
+   pure subroutine take_residual(self, residual)
+      class(links_t), intent(inout) :: self
+      real(rk), intent(in) :: residual(:)  !< (equations) [Pa]
+      integer(ik) :: k, m
+
+      do k = 1, self%n
+         self%rest(k) = 0.0_rk
+         do m = 1, 2
+            if (self%equation(m, k) == 0) cycle
+            self%rest(k) = self%rest(k) + self%factor(m, k)*residual(self%equation(m, k))
+         end do
+      end do
+   end subroutine take_residual
+
+   !> Take the linked unknowns out of an equation.
+   pure subroutine reduce(self, row, residual)
+      class(links_t), intent(in) :: self
+      real(rk), intent(inout) :: row(:)  !< derivatives by all unknowns [-]
+      real(rk), intent(inout) :: residual  !< [Pa]
+      integer(ik) :: j, k
+
+      do k = 1, self%n
+         associate (own => row(self%unknown(k)))
+            if (.not. abs(own) > 0.0_rk) cycle
+            residual = residual + own*self%rest(k)
+            do j = self%first(k), self%first(k + 1) - 1
+               row(self%partner(j)) = row(self%partner(j)) + own*self%share(j)
+            end do
+         end associate
+      end do
+   end subroutine reduce
+
+   !> The linked unknowns from those that stay.
+   pure subroutine complete(self, step)
+      class(links_t), intent(in) :: self
+      real(rk), intent(inout) :: step(:)  !< (unknowns) [Pa]
+      integer(ik) :: j, k
+
+      do k = self%n, 1, -1
+         associate (own => step(self%unknown(k)))
+            own = self%rest(k)
+            do j = self%first(k), self%first(k + 1) - 1
+               own = own + self%share(j)*step(self%partner(j))
+            end do
+         end associate
+      end do
+   end subroutine complete
+
+end module algebra_links

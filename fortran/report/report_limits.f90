@@ -1,0 +1,256 @@
+!> The limits of a run: what is watched at each accepted state, from which value on it is worth a
+!! warning, and from which on the results are worth nothing and the run stops. The one table of
+!! them; docs/limits.md is written from it, and says where the numbers come from.
+!!
+!! docs/limits.md, written from the tables of limits and of doubts.
+module report_limits
+   use base_kinds, only: rk
+   use base_number, only: brief_text
+   use scene_plausible, only: doubt_t, doubts
+   implicit none(type, external)
+   private
+
+   public :: describe_limits, judge, limit_angle, limit_aperture, limit_contact
+   public :: limit_fluid_in_rock, limit_forward_error, limit_jump, limit_k_error, limit_k_methods
+   public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
+   public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
+   public :: limit_time_error, limits, verdict_fine, verdict_stop, verdict_warning
+
+   integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
+
+   real(rk), parameter :: never = huge(1.0_rk)  !< the limit of what does not stop a run
+
+   !> A quantity that is watched. Where the limit for a stop is the smaller one, small values are
+   !! bad, else large ones.
+   type :: limit_t
+      character(len=56) :: name = ""
+      character(len=8) :: unit = "-"
+      character(len=16) :: runs = "always"  !< in which it is watched
+      real(rk) :: warning = never
+      real(rk) :: stop = never
+      character(len=200) :: meaning = ""
+      character(len=200) :: remedy = ""  !< a clause
+   end type limit_t
+
+   ! Indices into the table.
+   integer, parameter :: limit_forward_error = 1, limit_mass = 2, limit_contact = 3, &
+                         limit_aperture = 4, limit_jump = 5, limit_strain = 6, &
+                         limit_pressure_load = 7, limit_pressure_stiffness = 8, &
+                         limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
+                         limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
+                         limit_layering = 15, limit_loop_flow = 16, limit_table = 17, &
+                         limit_fluid_in_rock = 18
+
+   character(len=*), parameter :: with_fluid = "with a fluid"
+   character(len=*), parameter :: with_growth = "with growth"
+
+   ! The table keeps its own layout.
+   !&<
+   type(limit_t), parameter :: limits(*) = [ &
+      limit_t("forward error bound", "-", with_fluid, 1.0e-6_rk, 1.0e-3_rk, &
+              "Relative bound of rounding errors in the solution on the fractures", &
+              "look for values of the scene that differ by too many decades"), &
+      limit_t("mass error", "-", with_fluid, 1.0e-8_rk, 1.0e-3_rk, &
+              "Numerical error of the fluid mass so far, relative to the injected volume or "// &
+              "the fracture volume, or without these to the storage of the rock under its "// &
+              "pressure", &
+              "look for values of the scene that differ by too many decades"), &
+      limit_t("contact residual", "-", "always", 1.0e-8_rk, 1.0e-4_rk, &
+              "Residual of the contact law over the largest traction", &
+              "reduce newton_tolerance"), &
+      limit_t("aperture over the body's size", "-", with_fluid, 1.0e-2_rk, 1.0e-1_rk, &
+              "Largest aperture of a fracture cell over the body's shorter side", &
+              "check well rates, boundary conditions and units"), &
+      limit_t("jump over its fracture cell's length", "-", "always", 0.5_rk, 1.0e4_rk, &
+              "Largest opening or slip over the length of its fracture cell; the coupling of "// &
+              "the faces assumes small jumps", &
+              "check the loads, or use larger fracture cells; smaller ones do not help"), &
+      limit_t("strain of the body", "-", "always", 2.0e-2_rk, 1.0e2_rk, &
+              "Difference between the largest and the smallest displacement over the body's "// &
+              "size in that direction", &
+              "check the loads and young: the equations are for small strains"), &
+      limit_t("pressure over the load", "-", with_fluid, 1.0e1_rk, 1.0e4_rk, &
+              "Largest absolute fluid pressure over the expected one: the largest load, "// &
+              "initial pressure, or pressure for growth of the longest fracture", &
+              "check well rates; reduce the step"), &
+      limit_t("pressure over Young's modulus", "-", with_fluid, 1.0e-2_rk, 1.0_rk, &
+              "Largest absolute fluid pressure over Young's modulus", &
+              "check well rates and young; reduce the step"), &
+      limit_t("smallest angle of the mesh", "degree", "always", 10.0_rk, 0.1_rk, &
+              "Smallest angle of all triangles", &
+              "separate fractures that are nearly parallel and close, or use smaller cells"), &
+      limit_t("disagreement of the stress intensity factors", "-", "always", 0.1_rk, 10.0_rk, &
+              "Difference of K by the interaction integral and by displacement correlation, "// &
+              "over the largest K of all tips, or over K_IC if that is larger and tips may grow", &
+              "use smaller cells around the tip"), &
+      limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
+              10.0_rk, "Estimated error of K of a tip that may grow, over K_IC; with a fluid "// &
+              "that of both levels", &
+              "growth in this state is uncertain: use smaller cells around the tip, or with a "// &
+              "fluid a larger window"), &
+      limit_t("error of K over K_IC where a tip would grow", "%", with_growth, 5.0_rk, 5.0_rk, &
+              "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
+              "equals K_IC within it; with a fluid after window refinement; not with law = "// &
+              "'paris'", &
+              "growth cannot be decided: reduce size_fracture, with a fluid use a larger "// &
+              "window, without one &adaptive"), &
+      limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
+              "Largest K_eq, over K_IC, of tips that may grow, after growth in the state", &
+              "reduce the step: growth lags behind the load"), &
+      limit_t("error in time of a step", "-", with_fluid, 0.5_rk, never, &
+              "Estimated time error of a step in the mean pressure, slip or opening, over "// &
+              "their range so far", &
+              "reduce the step, or omit it: it is then chosen by its error"), &
+      limit_t("contrast in a cell that an outline cuts", "-", "with &region", 1.0e3_rk, never, &
+              "Ratio of the permeabilities along and across the outline in a cut cell; above "// &
+              "the limit flow along is up to a quarter too small, and pressures may leave "// &
+              "their bounds by a third", &
+              "keep outlines away from fractures and each other (docs/theory.md), so that the "// &
+              "mesh follows them"), &
+      limit_t("flow round loops of fractures", "-", with_fluid, 1.0e-3_rk, never, &
+              "Its uncertainty over the largest flow, or that which exchanges the fluid of a "// &
+              "cell in the step: it depends on pressure differences below their rounding", &
+              "these fractures are too wide for the equations: use shorter steps or smaller "// &
+              "apertures"), &
+      limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
+              "Distance of the pressure in a fracture from the range of table_pressure, over "// &
+              "that range; fluid properties are constant there", &
+              "extend the table of the fluid"), &
+      limit_t("fluid of the rock beside its law", "-", "with a fluid law", 0.1_rk, never, &
+              "Relative difference of viscosity over density at a pressure in the rock from "// &
+              "that at reference_pressure, which the rock uses", &
+              "use a reference_pressure within the rock's pressures, with the viscosity and "// &
+              "compressibility there")]
+   !&>
+
+   !&<
+   character(len=*), parameter :: introduction(*) = [character(len=128) :: &
+      "# Limits of a run", &
+      "", &
+      "This page is written by `wingcrack-solver --describe-limits` from the tables of the", &
+      "program; a test compares them.", &
+      "", &
+      "At each accepted state a run monitors the quantities below. If one exceeds its warning", &
+   "limit, the run continues and reports it: in run.log at the first occurrence, and at the end", &
+      "in the list `warnings` of run.json and on the terminal. One sentence per quantity has the", &
+      "first value with its time and location, the number of states beyond the limit, and the", &
+   "worst value. If one exceeds its stop limit, or is not a number, the state is not accepted:", &
+      "the run ends with status 1, and the last good state is on disk. Quantities of tips are", &
+      "known only after the state is accepted, and end the run there.", &
+      "", &
+      "## Monitored quantities", &
+      "", &
+      "The smallest angle has lower limits, all others upper limits.", &
+      ""]
+
+   character(len=*), parameter :: budget(*) = [character(len=128) :: &
+      "", &
+      "## Origin of the limits", &
+      "", &
+      "The error of a result has contributions from the model, from mesh and step, and from the", &
+      "solution of the equations. With the meshes of `inputs/` the mesh contributes about 1 %", &
+   "(docs/verification.md). Each other contribution is limited to a small part of that without", &
+      "a warning, and a run stops if a single contribution makes the results useless.", &
+      "", &
+   "* **Solution of the equations**: forward error bound, mass error, contact residual. In the", &
+      "  scenes of `inputs/` they are at most 5e-10, 3e-12 and 9e-11. A warning comes three", &
+      "  decades or more below 1 %: the scene is badly scaled, but results are still good. Steps", &
+      "  of a scene with a fluid are cut before their contact residual reaches its limit. The", &
+   "  forward error bound is that of jumps and pressures in one step, from the condition number", &
+      "  of the matrix. In one sealed body with known pressure, the error of the pressure was", &
+      "  0.2 to 0.3 of it after one step. Errors accumulate: after three to five steps the slip", &
+      "  was wrong by 6e-5, 4e-4 and 9e-4 at bounds of 1e-5, 1e-4 and 3e-4. So a run stops at", &
+      "  1e-3; the measured error of the mass may stop it before. Flows round loops of wide", &
+      "  fractures are less accurate than other quantities and have a separate limit.", &
+      "* **Small strains**: jump, strain, pressure over Young's modulus. The error of the linear", &
+      "  equations is about the strain itself: 1 to 2 % of strain corresponds to 1 to 2 % of", &
+      "  error. The coupling of the two faces assumes small jumps: at half a cell, traction and", &
+      "  pressure act at wrong positions by as much as the mesh resolves. The equations remain", &
+      "  solvable, so only values that no rock has stop a run.", &
+   "* **Cubic law**: it is valid for fractures that are thin compared with their length, which", &
+      "  is smaller than the body; an aperture of a tenth of the body is invalid.", &
+      "* **Pressure over the load**: a fracture opens at about the compression across it, and", &
+      "  grows at slightly more. Ten times as much is due to too large steps or rates, or to a", &
+      "  confined fluid.", &
+      "* **Smallest angle**: errors grow with one over its sine; the mesher gives 20 degrees and", &
+      "  more where fractures leave enough space.", &
+      "* **Stress intensity factors**: on good meshes the two methods differ by 1 to 2 % and the", &
+      "  estimated errors are below 1 %. The growth criterion compares K_eq with K_IC, so errors", &
+      "  and excess are relative to K_IC: at 5 % the onset is uncertain by as much. After growth", &
+      "  in a state no tip should exceed K_IC; 2 % is the tolerance of the alternation of fluid", &
+      "  and growth. A larger excess means that growth lags behind the load, and that times and", &
+      "  pressures of growth depend on the step.", &
+      "* **Error in time**: of each step separately. Automatic steps satisfy the tolerance of", &
+      "  &time. For prescribed steps there is a warning if the estimate is half of the range so", &
+   "  far; it is some times too large where a well has just begun. There is no estimate in the", &
+      "  first step after the start, or after a switch of a well.", &
+      "* **Shortest step**: with a fluid a step is never cut to less than a 64th of", &
+      "  `smallest_factor` times `step`, or times `end` without it; it is shorter only where a", &
+      "  stage, a schedule or the scene ends. A step of this length is accepted for any time", &
+   "  error if its equations are solved; otherwise the run ends. It also ends without progress", &
+   "  in time: after 300 cut steps, none of them longer than 100 times `smallest_factor` times", &
+      "  `step` or `end`, and in which no tip grew.", &
+      "", &
+      "## Plausibility checks", &
+      "", &
+   "`check` prints, and `run` lists first among the warnings, values that can be simulated but", &
+      "are probably unintended: values out of the usual range, as with wrong units, and", &
+      "inconsistent values.", &
+      "", &
+      "| group | name | unit | condition | reason |", &
+      "|---|---|---|---|---|"]
+   !&>
+
+contains
+
+   !> Whether a value is fine, worth a warning or a reason to stop. What is not a number stops.
+   elemental integer function judge(limit, value) result(verdict)
+      integer, intent(in) :: limit  !< index into the table
+      real(rk), intent(in) :: value  !< in the limit's unit
+      real(rk) :: warns, stops  ! the limits
+
+      warns = limits(limit)%warning
+      stops = limits(limit)%stop
+      verdict = verdict_stop
+      if (stops < warns) then
+         if (value >= stops) verdict = verdict_warning
+         if (value >= warns) verdict = verdict_fine
+      else
+         if (value <= stops) verdict = verdict_warning
+         if (value <= warns) verdict = verdict_fine
+      end if
+   end function judge
+
+   !> Write the page to an open unit.
+   subroutine describe_limits(unit)
+      integer, intent(in) :: unit  !< connected for formatted writing
+      type(limit_t) :: l
+      type(doubt_t) :: d
+      integer :: i
+
+      write (unit, "(a)") (trim(introduction(i)), i=1, size(introduction))
+      write (unit, "(a)") "| quantity | unit | runs | warning | stop | meaning | remedy |", &
+         "|---|---|---|---|---|---|---|"
+      do i = 1, size(limits)
+         l = limits(i)
+         write (unit, "(a)") "| "//trim(l%name)//" | "//trim(l%unit)//" | "//trim(l%runs)// &
+            " | "//bound(l%warning)//" | "//bound(l%stop)//" | "//trim(l%meaning)//" | "// &
+            trim(l%remedy)//" |"
+      end do
+      write (unit, "(a)") (trim(budget(i)), i=1, size(budget))
+      do i = 1, size(doubts)
+         d = doubts(i)
+         write (unit, "(a)") "| `&"//trim(d%group)//"` | `"//trim(d%name)//"` | "// &
+            trim(d%unit)//" | "//trim(d%doubtful)//" | "//trim(d%usual)//" |"
+      end do
+   end subroutine describe_limits
+
+   pure function bound(value) result(text)
+      real(rk), intent(in) :: value  !< a limit
+      character(len=:), allocatable :: text
+
+      text = "never"
+      if (value < never) text = brief_text(value, 3)
+   end function bound
+
+end module report_limits

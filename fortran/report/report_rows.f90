@@ -1,0 +1,378 @@
+!> A state in numbers: the rows of the tables of a run.
+!!
+!! A state as fields on the three dimensions: what a level hands to the files.
+!!
+!! Arrays that are not allocated are left out of the files; a run without fluid has no pressure.
+!!
+!! What a run was, in numbers and words: what run.json holds but how it ended and what it cost.
+!!
+!! What has happened in a run since its files were last written.
+module report_rows
+   use base_kinds, only: ik, lk, rk
+   use base_texts, only: add_once, add_text, text_t
+   implicit none(type, external)
+   private
+
+   public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
+   public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
+   public :: event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
+   public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
+   public :: summary_t, tip_row_t, well_row_t
+
+   !> An accepted time step, a row of history.csv.
+   type :: history_row_t
+      real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
+      real(rk) :: dt = 0.0_rk  !< [s]
+      integer(ik) :: newton_iterations = 0
+      real(rk), allocatable :: well_pressure(:)  !< (wells) where they meet fracture or rock [Pa]
+      real(rk) :: injected = 0.0_rk  !< fluid injected so far, less what wells produced [m2]
+      real(rk) :: produced = 0.0_rk  !< fluid that wells have drawn so far [m2]
+      real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
+      real(rk) :: outflow = 0.0_rk  !< fluid out of fractures that end on the boundary so far [m2]
+      real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
+      real(rk) :: fracture_volume = 0.0_rk  !< [m2]
+      real(rk) :: mass_error_relative = 0.0_rk  !< [-]
+      real(rk) :: max_slip = 0.0_rk  !< [m]
+      real(rk) :: max_opening = 0.0_rk  !< [m]
+      real(rk) :: max_slip_rate = 0.0_rk  !< with a fluid; mean of the step [m/s]
+      integer(ik) :: n_stick = 0
+      integer(ik) :: n_slip = 0
+      integer(ik) :: n_open = 0
+      real(rk) :: fracture_length = 0.0_rk  !< [m]
+      integer(ik) :: n_tips = 0
+      integer(ik) :: n_intersections = 0
+      real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
+      real(rk) :: length_error = 0.0_rk  !< estimated, of fracture_length; negative: is not [m]
+      real(rk) :: well_pressure_error = 0.0_rk  !< estimated; negative: is not [Pa]
+      real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
+      ! Of a stimulation, with a fluid:
+      real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step, net [m2/s]
+      real(rk) :: injectivity = 0.0_rk  !< of the one well; 0: none [m2/s/Pa]
+      real(rk) :: fracture_fluid = 0.0_rk  !< that the fractures have gained so far [m2]
+      real(rk) :: rock_fluid = 0.0_rk  !< that the rock has gained so far [m2]
+      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
+      real(rk) :: stimulated_length = 0.0_rk  !< [m]
+      real(rk) :: connected_length = 0.0_rk  !< with the wells [m]
+      real(rk) :: connected_stimulated = 0.0_rk  !< of both lengths [m]
+      integer(ik) :: n_clusters = 0  !< groups of fractures that hang together
+      real(rk) :: connections_per_branch = 0.0_rk  !< [-]
+   end type history_row_t
+
+   !> A patch of a fracture that slipped, a row of slip_events.csv.
+   type :: slip_event_t
+      integer(ik) :: number = 0  !< from 1
+      real(rk) :: time = 0.0_rk, end = 0.0_rk  !< of its beginning and its end [s]
+      integer(ik) :: fracture = 0
+      real(rk) :: xy(2) = 0.0_rk  !< centre, weighed with the moment [m]
+      real(rk) :: s(2) = 0.0_rk  !< arc lengths of its ends [m]
+      real(rk) :: area = 0.0_rk  !< [m2]
+      real(rk) :: mean_slip = 0.0_rk  !< [m]
+      real(rk) :: moment = 0.0_rk  !< [N m]
+      real(rk) :: largest_rate = 0.0_rk  !< of the moment, mean over a step [N m/s]
+      logical :: is_seismic = .false.  !< the slip of some cell is faster than a threshold
+      real(rk) :: onset_xy(2) = 0.0_rk  !< where it was fastest in its first step [m]
+      real(rk) :: largest_slip_rate = 0.0_rk  !< of a cell, mean over a step [m/s]
+      real(rk) :: mean_slip_rate = 0.0_rk  !< over its area and duration [m/s]
+      real(rk) :: stress_drop = 0.0_rk  !< mean over its area [Pa]
+      real(rk) :: magnitude = 0.0_rk  !< [-]
+      real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
+      real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
+      character(len=5) :: ended_by = ""  !< word of report_columns
+   end type slip_event_t
+
+   !> A well after a step, a row of wells.csv.
+   type :: well_row_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      character(len=:), allocatable :: name
+      integer(ik) :: stage = 0  !< 0: it is shut
+      character(len=:), allocatable :: control  !< of the well_words of report_columns
+      real(rk) :: rate = 0.0_rk  !< into it at its head, mean of the step [m2/s]
+      real(rk) :: flow = 0.0_rk  !< out of it into fracture or rock [m2/s]
+      real(rk) :: pressure = 0.0_rk  !< where it meets these [Pa]
+      real(rk) :: head_pressure = 0.0_rk  !< [Pa]
+      real(rk) :: injected = 0.0_rk  !< at its head so far [m2]
+      real(rk) :: injectivity = 0.0_rk  !< flow over the pressure's rise since the start [m2/s/Pa]
+      real(rk) :: asked = 0.0_rk  !< rate that the stage asks for; 0 without one [m2/s]
+   end type well_row_t
+
+   !> A state at the probes, a row of probes.csv.
+   type :: probe_row_t
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_probes) [m]
+      real(rk), allocatable :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
+      real(rk), allocatable :: pressure(:)  !< (n_probes) [Pa]; only with a fluid
+   end type probe_row_t
+
+   !> A free tip after a step or an increment, a row of tips.csv.
+   type :: tip_row_t
+      real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
+      integer(ik) :: tip = 0
+      integer(ik) :: fracture = 0
+      real(rk) :: xy(2) = 0.0_rk  !< [m]
+      real(rk) :: k1 = 0.0_rk  !< opening intensity, interaction integral [Pa m^1/2]
+      real(rk) :: k2 = 0.0_rk  !< sliding intensity, interaction integral [Pa m^1/2]
+      real(rk) :: k1_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
+      real(rk) :: k2_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
+      real(rk) :: keq = 0.0_rk  !< equivalent intensity [Pa m^1/2]
+      real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
+      real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
+      real(rk) :: advance = 0.0_rk  !< length grown [m]
+      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
+      real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
+      real(rk) :: g_error = 0.0_rk  !< its estimated error [J/m2]
+      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< those of k1_dc, k2_dc [Pa m^1/2]
+      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< with what they lack [Pa m^1/2]
+   end type tip_row_t
+
+   !> State of the matrix cells.
+   type :: matrix_fields_t
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_cells) [m]
+      real(rk), allocatable :: stress(:, :)  !< (3, n_cells) total: xx, yy, xy [Pa]
+      real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
+      real(rk), allocatable :: permeability(:, :)  !< (3, n_cells) xx, yy, xy [m2]; or the scene's
+      !> (n_cells) Poisson's ratio and Biot's coefficient, or those of the scene [-]
+      real(rk), allocatable :: poisson(:), biot(:)
+      real(rk), allocatable :: node_displacement(:, :)  !< (2, n_nodes) [m]
+      ! Of finite elements: their own nodes.
+      real(rk), allocatable :: node_xy(:, :)  !< (2, n_nodes) [m]
+      integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then nodes on edges
+   end type matrix_fields_t
+
+   !> State of the fracture cells. Normal n and tangent tau as in mesh_types.
+   type :: fracture_fields_t
+      real(rk), allocatable :: aperture(:)  !< (n_cells) [m]
+      real(rk), allocatable :: jump_n(:)  !< (n_cells) opening [m]
+      real(rk), allocatable :: jump_t(:)  !< (n_cells) slip along tau [m]
+      real(rk), allocatable :: traction_n(:)  !< (n_cells) of contact, compression < 0 [Pa]
+      real(rk), allocatable :: traction_t(:)  !< (n_cells) [Pa]
+      real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
+      real(rk), allocatable :: void(:)  !< (n_cells) part of the aperture that vapour fills [m]
+      real(rk), allocatable :: flow(:)  !< (n_cells) of fluid along tau [m2/s]
+      integer(ik), allocatable :: state(:)  !< (n_cells) of contact_law
+   end type fracture_fields_t
+
+   !> State of the intersections.
+   type :: intersection_fields_t
+      integer(ik), allocatable :: point(:)  !< (n) fracture point of each
+      real(rk), allocatable :: pressure(:)  !< (n) [Pa]
+   end type intersection_fields_t
+
+   !> Unknowns of one kind.
+   type :: dof_block_t
+      character(len=:), allocatable :: name
+      integer(lk) :: n = 0_lk
+   end type dof_block_t
+
+   !> Sums, largest values and words of a run so far.
+   type :: summary_t
+      integer(ik) :: steps = 0  !< accepted time steps
+      integer(ik) :: cells = 0  !< matrix cells at the end
+      integer(ik) :: fracture_cells = 0  !< at the end
+      real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
+      real(rk) :: keq_over_kic = 0.0_rk  !< largest of all tips and states; 0: left out [-]
+      real(rk) :: lowest_pressure = huge(1.0_rk)  !< of the fluid; huge: left out [Pa]
+      real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
+      real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
+      !> of their solutions, relative; with the one above [-]
+      real(rk) :: forward_error_bound = 0.0_rk
+      real(rk) :: smallest_angle = 0.0_rk  !< of all meshes; 0: left out [rad]
+      real(rk) :: energy_error = 0.0_rk  !< estimate on the last mesh, relative; 0: left out [-]
+      integer(ik) :: newton_total = 0  !< iterations
+      integer(ik) :: newton_max = 0  !< iterations in one step
+      integer(ik) :: step_cuts = 0
+      logical :: has_growth = .false.  !< the three below are known
+      integer(ik) :: increments = 0  !< of growth, of any number of tips at once
+      integer(ik) :: meshes_whole = 0  !< made of the whole body
+      integer(ik) :: meshes_patched = 0  !< made anew around growing tips only
+      type(dof_block_t), allocatable :: dofs(:)
+      type(text_t), allocatable :: used(:)
+      type(text_t), allocatable :: left_out(:)
+      type(text_t), allocatable :: warnings(:)
+   contains
+      procedure :: count_dofs
+      procedure :: use_feature
+      procedure :: leave_out_feature
+      procedure :: use_after_all
+      procedure :: note => note_feature
+      procedure :: warn
+      procedure :: add_newton
+   end type summary_t
+
+   ! Kinds of events.
+   character(len=*), parameter :: event_slip_onset = "slip_onset"
+   character(len=*), parameter :: event_opening = "opening"
+   character(len=*), parameter :: event_growth = "growth"
+   character(len=*), parameter :: event_growth_onset = "growth_onset"
+   character(len=*), parameter :: event_joint = "joint"
+   character(len=*), parameter :: event_arrest = "arrest"
+   character(len=*), parameter :: event_step_cut = "step_cut"
+   character(len=*), parameter :: event_unstable = "unstable_growth"
+   character(len=*), parameter :: event_bifurcation = "bifurcation"
+   character(len=*), parameter :: event_remesh = "remesh"
+   character(len=*), parameter :: event_window = "window"
+   character(len=*), parameter :: event_well = "well"
+
+   !> A row of events.csv. What does not apply to it is left empty.
+   type :: event_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      character(len=:), allocatable :: kind  !< event_slip_onset .. event_step_cut
+      character(len=:), allocatable :: detail  !< a few words with numbers and units
+      integer(ik) :: fracture = 0  !< 0: of none
+      logical :: has_place = .false.
+      real(rk) :: xy(2) = 0.0_rk  !< [m]
+   end type event_t
+
+   !> Events and rows of tips in their order, lines for the log.
+   type :: chronicle_t
+      type(event_t), allocatable :: events(:)
+      type(tip_row_t), allocatable :: tips(:)
+      type(well_row_t), allocatable :: wells(:)
+      type(slip_event_t), allocatable :: slip_events(:)  !< that are over
+      type(text_t), allocatable :: remarks(:)  !< lines for the log
+      logical :: has_new_network = .false.  !< the mesh has followed growth
+   contains
+      procedure :: clear
+      procedure :: add_event
+      procedure :: add_tip
+      procedure :: add_remark
+   end type chronicle_t
+
+contains
+
+   !> Set the number of unknowns of a block, e.g. "displacement"; a later count replaces an earlier
+   !! one.
+   subroutine count_dofs(self, block_name, n)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: block_name
+      integer, intent(in) :: n
+      type(dof_block_t), allocatable :: longer(:)
+      integer :: i
+
+      if (.not. allocated(self%dofs)) allocate (self%dofs(0))
+      do i = 1, size(self%dofs)
+         if (self%dofs(i)%name == block_name) then
+            self%dofs(i)%n = int(n, lk)
+            return
+         end if
+      end do
+      allocate (longer(size(self%dofs) + 1))
+      longer(1:size(self%dofs)) = self%dofs
+      longer(size(longer))%name = block_name
+      longer(size(longer))%n = int(n, lk)
+      call move_alloc(longer, self%dofs)
+   end subroutine count_dofs
+
+   !> Add the iterations of an accepted step.
+   pure subroutine add_newton(self, iterations)
+      class(summary_t), intent(inout) :: self
+      integer(ik), intent(in) :: iterations
+
+      self%newton_total = self%newton_total + iterations
+      self%newton_max = max(self%newton_max, iterations)
+   end subroutine add_newton
+
+   !> Note a feature that the run uses.
+   subroutine use_feature(self, feature)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+
+      call add_once(self%used, feature)
+   end subroutine use_feature
+
+   !> Note a feature that the run leaves out.
+   subroutine leave_out_feature(self, feature)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+
+      call add_once(self%left_out, feature)
+   end subroutine leave_out_feature
+
+   !> Note a feature that the run uses from now on, and has left out so far.
+   subroutine use_after_all(self, feature, left_out)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: feature
+      character(len=*), intent(in) :: left_out  !< in words, as it was noted to be left out
+      type(text_t), allocatable :: kept(:)
+      integer :: i
+
+      call self%use_feature(feature)
+      if (.not. allocated(self%left_out)) return
+      allocate (kept(0))
+      do i = 1, size(self%left_out)
+         if (self%left_out(i)%text /= left_out) kept = [kept, self%left_out(i)]
+      end do
+      call move_alloc(kept, self%left_out)
+   end subroutine use_after_all
+
+   !> Note a feature that the run uses or else leaves out.
+   subroutine note_feature(self, is_used, used, left_out)
+      class(summary_t), intent(inout) :: self
+      logical, intent(in) :: is_used
+      character(len=*), intent(in) :: used  !< in words, if it is used
+      character(len=*), intent(in) :: left_out  !< and if it is not
+
+      if (is_used) then
+         call self%use_feature(used)
+      else
+         call self%leave_out_feature(left_out)
+      end if
+   end subroutine note_feature
+
+   !> Note a warning; the same words are kept once.
+   subroutine warn(self, warning)
+      class(summary_t), intent(inout) :: self
+      character(len=*), intent(in) :: warning
+
+      call add_once(self%warnings, warning)
+   end subroutine warn
+
+   !> Nothing has happened yet.
+   pure subroutine clear(self)
+      class(chronicle_t), intent(inout) :: self
+
+      self%events = [event_t ::]
+      self%tips = [tip_row_t ::]
+      self%wells = [well_row_t ::]
+      self%slip_events = [slip_event_t ::]
+      self%remarks = [text_t ::]
+      self%has_new_network = .false.
+   end subroutine clear
+
+   !> Add an event.
+   pure subroutine add_event(self, time, kind, detail, fracture, xy)
+      class(chronicle_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      character(len=*), intent(in) :: kind, detail
+      integer(ik), intent(in), optional :: fracture
+      real(rk), intent(in), optional :: xy(2)  !< [m]
+      type(event_t) :: event
+      type(event_t), allocatable :: longer(:)
+
+      event%time = time
+      event%kind = kind
+      event%detail = detail
+      if (present(fracture)) event%fracture = fracture
+      event%has_place = present(xy)
+      if (present(xy)) event%xy = xy
+      allocate (longer(size(self%events) + 1))
+      longer(:size(self%events)) = self%events
+      longer(size(longer)) = event
+      call move_alloc(longer, self%events)
+   end subroutine add_event
+
+   !> Add a row of tips.csv.
+   pure subroutine add_tip(self, row)
+      class(chronicle_t), intent(inout) :: self
+      type(tip_row_t), intent(in) :: row
+
+      self%tips = [self%tips, row]
+   end subroutine add_tip
+
+   !> Add a line for the log.
+   pure subroutine add_remark(self, line)
+      class(chronicle_t), intent(inout) :: self
+      character(len=*), intent(in) :: line
+
+      call add_text(self%remarks, line)
+   end subroutine add_remark
+
+end module report_rows

@@ -1,0 +1,298 @@
+!> All files of one run (docs: the contract's "Files of a run"), each of them always whole.
+!!
+!! Tables, collections, network and log gather in memory and are written when `tick` finds it time:
+!! every three seconds, and so seldom that writing takes less than half a percent of the wall time.
+module report_run
+   use base_errors, only: error_t, keep_first
+   use base_kinds, only: ik, lk, rk
+   use base_texts, only: add_text, text_t
+   use base_timers, only: timers_t
+   use mesh_types, only: mesh_t, network_t
+   use report_files, only: place_t, reserve_file, write_text_file
+   use report_network, only: network_record_t
+   use report_record, only: run_record_t, status_failed
+   use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
+                          matrix_fields_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
+   use report_snapshots, only: snapshots_t
+   use report_tables, only: tables_t
+   use report_text, only: newline, text_buffer_t
+   use scene_types, only: scene_t
+   use scene_write, only: scene_text
+   implicit none(type, external)
+   private
+
+   public :: run_output_t
+
+   integer, parameter :: room_for_record = 4096  !< kept on the disk for run.json, a block [byte]
+   real(rk), parameter :: pause = 3.0_rk  !< between two writings of the tables [s]
+   real(rk), parameter :: pause_per_cost = 200.0_rk  !< or times the last one's duration
+
+   !> The files of a run, from `open` to `close`.
+   type :: run_output_t
+      type(place_t), private :: place
+      logical :: keeps_earlier_run = .false.  !< it has left files, and `begin` has not come
+      type(tables_t), private :: tables
+      type(snapshots_t), private :: snapshots
+      type(network_record_t), private :: network
+      type(text_buffer_t), private :: log_text
+      integer(lk), private :: log_written = 0_lk  !< characters of the log on disk
+      logical, private :: writes_vtu = .true.
+      real(rk), private :: interval = 0.0_rk  !< between written fields [s]
+      real(rk), private :: next_fields = 0.0_rk  !< when fields are due [s]
+      integer(lk), private :: clock_begin = 0_lk  !< ticks
+      real(rk), private :: last_flush = 0.0_rk  !< wall time since open [s]
+      real(rk), private :: flush_cost = 0.0_rk  !< wall time of the last writing [s]
+   contains
+      procedure :: open => open_run
+      procedure :: begin => begin_run
+      procedure :: history_row
+      procedure :: tip_row
+      procedure :: probe_row
+      procedure :: event_row
+      procedure :: slip_event_row
+      procedure :: well_row
+      procedure :: network_step
+      procedure :: fields_due
+      procedure :: write_fields
+      procedure :: log
+      procedure :: tick
+      procedure :: flush => flush_run
+      procedure :: close => close_run
+   end type run_output_t
+
+contains
+
+   !> Take a folder for the run; in it everything stays as it is until `begin`. `refused`: the
+   !! folder is a wrong choice.
+   subroutine open_run(self, directory, source, refused, error)
+      class(run_output_t), intent(out) :: self
+      character(len=*), intent(in) :: directory
+      character(len=*), intent(in) :: source  !< path of the scene that is run; empty: no file
+      logical, intent(out) :: refused
+      type(error_t), allocatable, intent(out) :: error
+
+      call system_clock(self%clock_begin)
+      call self%place%claim(directory, source, refused, error)
+      if (.not. allocated(error)) self%keeps_earlier_run = self%place%has_results()
+   end subroutine open_run
+
+   !> The run has a first state to write: write scene.nml, and once that is on disk, remove an
+   !! earlier run's files.
+   subroutine begin_run(self, scene, error)
+      class(run_output_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (folder => self%place%directory)
+         call write_text_file(folder//"/scene.nml", scene_text(scene), error)
+         if (allocated(error)) return
+         self%keeps_earlier_run = .false.
+         call self%place%clear()
+         call reserve_file(folder//"/run.json", room_for_record, error)
+         if (allocated(error)) return
+         self%writes_vtu = scene%output%vtu
+         self%interval = scene%output%interval
+         call self%tables%open(folder, scene)
+         call self%network%open(folder//"/network.json", fracture_names(scene), scene%has_fluid())
+         call self%snapshots%open(folder, scene, error)
+      end associate
+   end subroutine begin_run
+
+   pure function fracture_names(scene) result(names)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable :: names(:)
+      integer :: i
+
+      allocate (names(0))
+      if (.not. allocated(scene%fractures)) return
+      do i = 1, size(scene%fractures)
+         call add_text(names, trim(scene%fractures(i)%name))
+      end do
+   end function fracture_names
+
+   !> Add an accepted step to history.csv.
+   subroutine history_row(self, row)
+      class(run_output_t), intent(inout) :: self
+      type(history_row_t), intent(in) :: row
+
+      call self%tables%history_row(row)
+   end subroutine history_row
+
+   !> Add a tip to tips.csv.
+   subroutine tip_row(self, row)
+      class(run_output_t), intent(inout) :: self
+      type(tip_row_t), intent(in) :: row
+
+      call self%tables%tip_row(row)
+   end subroutine tip_row
+
+   !> Add the state at all probes to probes.csv.
+   subroutine probe_row(self, time, row)
+      class(run_output_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      type(probe_row_t), intent(in) :: row
+
+      call self%tables%probe_row(time, row)
+   end subroutine probe_row
+
+   !> Add an event to events.csv.
+   subroutine event_row(self, time, kind, detail, fracture, xy)
+      class(run_output_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of report_rows
+      character(len=*), intent(in) :: detail  !< a few words with numbers and units
+      integer(ik), intent(in), optional :: fracture
+      real(rk), intent(in), optional :: xy(2)  !< [m]
+
+      call self%tables%event_row(time, kind, detail, fracture, xy)
+   end subroutine event_row
+
+   !> Add a well to wells.csv.
+   subroutine well_row(self, row)
+      class(run_output_t), intent(inout) :: self
+      type(well_row_t), intent(in) :: row
+
+      call self%tables%well_row(row)
+   end subroutine well_row
+
+   !> Add a slip event to slip_events.csv.
+   subroutine slip_event_row(self, event)
+      class(run_output_t), intent(inout) :: self
+      type(slip_event_t), intent(in) :: event
+
+      call self%tables%slip_event_row(event)
+   end subroutine slip_event_row
+
+   !> Note the network for network.json; nothing happens if it has not changed.
+   subroutine network_step(self, time, network, mesh)
+      class(run_output_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      type(network_t), intent(in) :: network
+      type(mesh_t), intent(in) :: mesh
+
+      call self%network%step(time, network, mesh%fracture)
+   end subroutine network_step
+
+   !> It is time to write fields: the scene's interval, or its regular step, has passed.
+   pure function fields_due(self, time)
+      class(run_output_t), intent(in) :: self
+      real(rk), intent(in) :: time  !< [s]
+      logical :: fields_due
+
+      fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
+   end function fields_due
+
+   !> Write the fields of the state that the last row of history.csv has: VTU files where the scene
+   !! wants them, and the rows of fractures.csv.
+   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error, with_rows, &
+                           with_vtu)
+      class(run_output_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      type(mesh_t), intent(in) :: mesh
+      type(matrix_fields_t), intent(in) :: matrix
+      type(fracture_fields_t), intent(in) :: fracture
+      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_rows, with_vtu  !< .false.: without these
+      logical :: has_rows, has_vtu
+
+      has_rows = .true.
+      if (present(with_rows)) has_rows = with_rows
+      has_vtu = self%writes_vtu
+      if (present(with_vtu)) has_vtu = has_vtu .and. with_vtu
+      if (has_rows) call self%tables%fracture_rows(time, mesh%fracture, fracture)
+      if (has_vtu) then
+         call self%snapshots%write(time, int(self%tables%history%n_rows, ik), mesh, matrix, &
+                                   fracture, intersections, error)
+      end if
+      if (self%interval > 0.0_rk) then
+         self%next_fields = self%interval*(aint(time/self%interval + 1.0e-6_rk) + 1.0_rk)
+      end if
+   end subroutine write_fields
+
+   !> Add a line to run.log, with the wall time since `open` before it.
+   subroutine log(self, message)
+      class(run_output_t), intent(inout) :: self
+      character(len=*), intent(in) :: message
+      character(len=16) :: stamp
+
+      write (stamp, '(f12.3," s  ")') wall_time(self)
+      call self%log_text%append(stamp//message//newline)
+   end subroutine log
+
+   !> To be called often: write what has gathered, if it is time.
+   subroutine tick(self, error)
+      class(run_output_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (wall_time(self) - self%last_flush >= max(pause, pause_per_cost*self%flush_cost)) then
+         call self%flush(error)
+      end if
+   end subroutine tick
+
+   !> Write now what has gathered: every file that can be written, though another one failed.
+   subroutine flush_run(self, error)
+      class(run_output_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error  !< the first
+      type(error_t), allocatable :: trouble
+      real(rk) :: begun
+
+      begun = wall_time(self)
+      call self%tables%flush(error)
+      call self%snapshots%flush(trouble)
+      call keep_first(trouble, error)
+      call self%network%flush(trouble)
+      call keep_first(trouble, error)
+      call write_log(self, trouble)
+      call keep_first(trouble, error)
+      self%last_flush = wall_time(self)
+      self%flush_cost = self%last_flush - begun
+   end subroutine flush_run
+
+   subroutine write_log(self, error)
+      class(run_output_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%log_text%length == self%log_written) return
+      call self%log_text%write_file(self%place%directory//"/run.log", error)
+      if (.not. allocated(error)) self%log_written = self%log_text%length
+   end subroutine write_log
+
+   !> End the run, well or not: write everything, and run.json last, which tells if other files
+   !! could not be written. A run that never began leaves those of an earlier one.
+   subroutine close_run(self, record, timers, error)
+      class(run_output_t), intent(inout) :: self
+      type(run_record_t), intent(inout) :: record
+      type(timers_t), intent(in) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: trouble
+      type(text_t), allocatable :: files(:)
+
+      if (.not. self%keeps_earlier_run) then
+         call self%flush(error)
+         if (.not. allocated(error)) then
+            call self%snapshots%list_files(files)
+            call add_text(files, "scene.nml")
+            call self%place%check(files, error)
+         end if
+         if (allocated(error) .and. record%status /= status_failed) then
+            record%status = status_failed
+            record%reason = error%message
+         end if
+         call record%write(self%place%directory//"/run.json", timers, trouble)
+         call keep_first(trouble, error)
+      end if
+      call self%place%release()
+   end subroutine close_run
+
+   !> Wall time since `open` [s].
+   function wall_time(self)
+      class(run_output_t), intent(in) :: self
+      real(rk) :: wall_time
+      integer(lk) :: now, rate
+
+      call system_clock(now, rate)
+      wall_time = real(now - self%clock_begin, rk)/real(rate, rk)
+   end function wall_time
+
+end module report_run

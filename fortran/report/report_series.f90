@@ -1,0 +1,179 @@
+!> Tables as CSV (RFC 4180): rows gather in memory, and the file is written whole.
+module report_series
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, lk, rk
+   use base_number, only: format_integer, format_real, integer_text, number_width
+   use base_texts, only: text_t
+   use report_text, only: newline, text_buffer_t
+   implicit none(type, external)
+   private
+
+   public :: series_t
+
+   !> One table. A row is `put` value by value under the names of its columns, in their order, then
+   !! ended. A column may be left out of the file; its value is put all the same and goes nowhere.
+   type :: series_t
+      integer(lk) :: n_rows = 0_lk
+      character(len=:), allocatable :: path
+      type(text_buffer_t), private :: buffer
+      type(text_t), allocatable, private :: names(:)  !< of the columns
+      logical, allocatable, private :: is_written(:)  !< (columns)
+      integer, private :: column = 0  !< values in the row so far
+      character(len=:), allocatable, private :: fault  !< the first row with a wrong value
+      integer(lk), private :: written = -1_lk  !< characters in the file
+   contains
+      procedure :: open => open_series
+      procedure, private :: put_real
+      procedure, private :: put_integer
+      procedure, private :: put_text
+      generic :: put => put_real, put_integer, put_text
+      procedure :: put_nothing
+      procedure :: end_row
+      procedure :: is_open
+      procedure :: flush => flush_series
+   end type series_t
+
+contains
+
+   !> Begin a table; nothing is written yet.
+   subroutine open_series(self, path, names, is_written)
+      class(series_t), intent(out) :: self
+      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: names(:)  !< of the columns with their units, in order
+      logical, intent(in) :: is_written(:)  !< .false.: the column is left out
+      integer :: i
+
+      self%path = path
+      allocate (self%names(size(names)))
+      self%is_written = is_written
+      do i = 1, size(names)
+         self%names(i)%text = trim(names(i))
+         call self%put(trim(names(i)), trim(names(i)))
+      end do
+      call self%end_row()
+      self%n_rows = 0_lk
+   end subroutine open_series
+
+   !> The table was opened; otherwise rows and flushes are for nobody.
+   pure logical function is_open(self)
+      class(series_t), intent(in) :: self
+
+      is_open = allocated(self%path)
+   end function is_open
+
+   subroutine put_real(self, name, value)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: value  !< [unit of the name]
+      character(len=number_width + 1) :: piece  ! with the comma behind it
+      integer :: length
+      logical :: is_wanted
+
+      call next_column(self, name, is_wanted)
+      if (.not. is_wanted) return
+      call format_real(value, piece(1:number_width), length)
+      piece(length + 1:length + 1) = ","
+      call self%buffer%append(piece(1:length + 1))
+   end subroutine put_real
+
+   subroutine put_integer(self, name, value)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: value
+      character(len=number_width + 1) :: piece  ! with the comma behind it
+      integer :: length
+      logical :: is_wanted
+
+      call next_column(self, name, is_wanted)
+      if (.not. is_wanted) return
+      call format_integer(int(value, lk), piece(1:number_width), length)
+      piece(length + 1:length + 1) = ","
+      call self%buffer%append(piece(1:length + 1))
+   end subroutine put_integer
+
+   subroutine put_text(self, name, value)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: value
+      integer :: i
+      logical :: is_wanted
+
+      call next_column(self, name, is_wanted)
+      if (.not. is_wanted) return
+      if (scan(value, ',"'//achar(10)//achar(13)) == 0) then
+         call self%buffer%append(value)
+      else
+         call self%buffer%append('"')
+         do i = 1, len(value)
+            if (value(i:i) == '"') call self%buffer%append('"')
+            call self%buffer%append(value(i:i))
+         end do
+         call self%buffer%append('"')
+      end if
+      call self%buffer%append(",")
+   end subroutine put_text
+
+   !> An empty value, where a quantity does not apply.
+   subroutine put_nothing(self, name)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical :: is_wanted
+
+      call next_column(self, name, is_wanted)
+      if (is_wanted) call self%buffer%append(",")
+   end subroutine put_nothing
+
+   subroutine end_row(self)
+      class(series_t), intent(inout) :: self
+
+      if (self%column < size(self%names)) call keep_fault(self, "ends")
+      self%n_rows = self%n_rows + 1_lk
+      self%column = 0
+      call self%buffer%replace_last(newline)  ! the comma behind the last value
+   end subroutine end_row
+
+   !> Write the whole table if it has changed since it was last written. A row with a value that is
+   !! missing, too much or under a wrong name is an error.
+   subroutine flush_series(self, error)
+      class(series_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. self%is_open()) return
+      if (allocated(self%fault)) then
+         call raise_error(error, "flush_series", self%path//": "//self%fault)
+      else if (self%buffer%length /= self%written) then
+         call self%buffer%write_file(self%path, error)
+         if (.not. allocated(error)) self%written = self%buffer%length
+      end if
+   end subroutine flush_series
+
+   !> Go to the column that a value is for, which must be the one after the last.
+   subroutine next_column(self, name, is_wanted)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(out) :: is_wanted  !< the column is written
+
+      is_wanted = .false.
+      if (self%column >= size(self%names)) then
+         call keep_fault(self, "goes on with "//name)
+      else if (self%names(self%column + 1)%text /= name) then
+         call keep_fault(self, "has "//name)
+      else
+         self%column = self%column + 1
+         is_wanted = self%is_written(self%column)
+      end if
+   end subroutine next_column
+
+   !> Keep the first fault.
+   subroutine keep_fault(self, what)
+      class(series_t), intent(inout) :: self
+      character(len=*), intent(in) :: what  !< what the row does instead of going on rightly
+      character(len=:), allocatable :: expected
+
+      if (allocated(self%fault)) return
+      expected = "its end"
+      if (self%column < size(self%names)) expected = self%names(self%column + 1)%text
+      self%fault = "row "//integer_text(self%n_rows + 1_lk)//" "//what//" in place of "//expected
+   end subroutine keep_fault
+
+end module report_series

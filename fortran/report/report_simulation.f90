@@ -1,0 +1,445 @@
+!> A scene in progress, as the program sees it whichever way it is simulated: from one accepted
+!! state to the next, with the growth of the tips in between; and what its files shall hold.
+module report_simulation
+   use base_errors, only: error_t
+   use base_kinds, only: degrees, ik, rk
+   use base_texts, only: text_t
+   use base_timers, only: timers_t
+   use contact_law, only: state_open, state_slip
+   use growth_front, only: front_t
+   use growth_network, only: end_gain
+   use growth_targets, only: target_boundary
+   use growth_tip, only: tip_t
+   use mesh_geometry, only: fracture_cell_centre
+   use mesh_types, only: fracture_mesh_t, mesh_t, network_t
+   use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
+                          event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
+                          intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, tip_row_t
+   use report_slip, only: slip_catalogue_t
+   use report_watch, only: watch_t
+   use scene_plausible, only: doubts_of_scene
+   use scene_types, only: scene_t
+   implicit none(type, external)
+   private
+
+   public :: simulation_t, snapshot_t
+
+   !> The fields of a state, with the mesh that they live on.
+   type :: snapshot_t
+      real(rk) :: time = -huge(1.0_rk)  !< [s]; without a fluid the load factor [-]
+      type(mesh_t) :: mesh
+      type(matrix_fields_t) :: matrix
+      type(fracture_fields_t) :: fracture
+      type(intersection_fields_t) :: intersection
+   end type snapshot_t
+
+   !> One scene on its way.
+   type, abstract, extends(front_t) :: simulation_t
+      type(scene_t) :: scene
+      type(chronicle_t) :: chronicle  !< since the files were last written
+      type(summary_t) :: summary  !< of the run so far
+      type(watch_t) :: watch  !< over the limits of the run
+      type(slip_catalogue_t) :: catalogue  !< slip events; with a fluid
+      character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
+      logical :: owes_state = .false.  !< the scene is over after one more state
+      logical :: shows_growth = .false.  !< the present state has to do with an increment of growth
+      real(rk) :: start_time = 0.0_rk  !< at which the scene begins, as time gives it
+      real(rk) :: end_time = 0.0_rk  !< at which it is over
+      logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) so far
+   contains
+      procedure(begin_scene), deferred :: begin
+      procedure(go_on), deferred :: next_state
+      procedure(go_on), deferred :: grow
+      procedure(network_and_mesh), deferred :: present_network
+      procedure(row_of_history), deferred :: history
+      procedure(row_of_probes), deferred :: probes
+      procedure(fields_of_state), deferred :: snapshot
+      procedure(time_of_state), deferred :: time
+      procedure(name_of_state), deferred :: last_state
+      procedure :: set_scene
+      procedure :: is_over
+      procedure :: note_contact
+      procedure :: note_slip
+      procedure :: end_slip
+      procedure :: note_tips
+      procedure :: note_growth
+      procedure :: note_mesh
+      procedure :: end_at_gain
+      procedure :: keq_over_kic
+      procedure :: share_done
+      procedure :: share_of_way
+      procedure :: heed_limits
+      procedure :: tell_limits
+   end type simulation_t
+
+   abstract interface
+      !> Mesh and set up; nothing is loaded yet. The summary learns what the scene uses and does
+      !! without.
+      subroutine begin_scene(self, scene, timers, error)
+         import :: error_t, scene_t, simulation_t, timers_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine begin_scene
+
+      !> next_state: go on to the next accepted state. grow: let the tips grow in it. Either sets
+      !! `ending` where nothing is left to do, and adds to chronicle and summary.
+      subroutine go_on(self, timers, error)
+         import :: error_t, simulation_t, timers_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine go_on
+
+      !> The network as the mesh has it, with that mesh.
+      subroutine network_and_mesh(self, network, mesh)
+         import :: mesh_t, network_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(network_t), intent(out) :: network
+         type(mesh_t), intent(out) :: mesh
+      end subroutine network_and_mesh
+
+      !> The accepted state in a row of history.csv.
+      function row_of_history(self) result(row)
+         import :: history_row_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(history_row_t) :: row
+      end function row_of_history
+
+      !> The accepted state at the probes.
+      subroutine row_of_probes(self, row, error)
+         import :: error_t, probe_row_t, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(inout) :: self
+         type(probe_row_t), intent(out) :: row
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine row_of_probes
+
+      !> The fields of the last good state, however the run goes on; not allocated if there is none.
+      subroutine fields_of_state(self, fields)
+         import :: simulation_t, snapshot_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         type(snapshot_t), allocatable, intent(out) :: fields
+      end subroutine fields_of_state
+
+      !> The time of the present state [s], or without a fluid its load factor [-].
+      pure function time_of_state(self) result(time)
+         import :: rk, simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         real(rk) :: time
+      end function time_of_state
+
+      !> The last accepted state in words for messages: a time, a load factor.
+      pure function name_of_state(self) result(words)
+         import :: simulation_t
+         implicit none(type, external)
+         class(simulation_t), intent(in) :: self
+         character(len=:), allocatable :: words
+      end function name_of_state
+   end interface
+
+contains
+
+   !> The scene, of which nothing has happened yet but that some values may be doubted.
+   subroutine set_scene(self, scene)
+      class(simulation_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable :: doubts(:)
+      integer :: i
+
+      self%scene = scene
+      if (.not. allocated(self%scene%injections)) allocate (self%scene%injections(0))
+      call self%chronicle%clear()
+      doubts = doubts_of_scene(scene)
+      do i = 1, size(doubts)
+         call self%summary%warn(doubts(i)%text)
+         call self%chronicle%add_remark("warning: "//doubts(i)%text)
+      end do
+      allocate (self%has_slipped(size(scene%fractures)), source=.false.)
+      allocate (self%has_opened(size(scene%fractures)), source=.false.)
+   end subroutine set_scene
+
+   !> Nothing is left to do.
+   pure logical function is_over(self)
+      class(simulation_t), intent(in) :: self
+
+      is_over = allocated(self%ending) .and. .not. self%owes_state
+   end function is_over
+
+   !> Note the first slip and the first opening of each fracture. Where `slips` or `opens` is false
+   !! for a fracture, it does so from the start, and there is no event.
+   pure subroutine note_contact(self, fracture, state, slips, opens)
+      class(simulation_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_law
+      logical, intent(in) :: slips(:), opens(:)  !< (fractures)
+      real(rk) :: centre(2)
+      integer(ik) :: cell, f
+
+      do cell = 1, fracture%n_cells
+         f = fracture%cell_fracture(cell)
+         centre = fracture_cell_centre(fracture, cell)
+         if (state(cell) == state_slip .and. slips(f) .and. .not. self%has_slipped(f)) then
+            self%has_slipped(f) = .true.
+            call self%chronicle%add_event(self%time(), event_slip_onset, "first slip", f, centre)
+         else if (state(cell) == state_open .and. opens(f) .and. .not. self%has_opened(f)) then
+            self%has_opened(f) = .true.
+            call self%chronicle%add_event(self%time(), event_opening, "first opening", f, centre)
+         end if
+      end do
+   end subroutine note_contact
+
+   !> Note what has slipped in the step of length dt that led to the present state.
+   pure subroutine note_slip(self, dt, fracture, potency, shear, state, is_sudden, traction)
+      class(simulation_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: potency(:)  !< (fracture cells) slip of the step times length [m2]
+      real(rk), intent(in) :: shear(:)  !< (fracture cells) modulus G of the rock beside it [Pa]
+      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_law
+      logical, intent(in) :: is_sudden  !< growth was unstable in the step
+      real(rk), intent(in) :: traction(:)  !< (fracture cells) f_tau after it [Pa]
+
+      call self%catalogue%follow(self%time(), dt, fracture, potency, shear, state, is_sudden, &
+                                 traction)
+      call list_events(self)
+   end subroutine note_slip
+
+   !> The run is over, and with it the slip that still went on.
+   pure subroutine end_slip(self)
+      class(simulation_t), intent(inout) :: self
+
+      if (.not. allocated(self%catalogue%news)) return
+      call self%catalogue%end_all()
+      call list_events(self)
+   end subroutine end_slip
+
+   !> Slip events that are over go to the chronicle.
+   pure subroutine list_events(self)
+      class(simulation_t), intent(inout) :: self
+
+      associate (news => self%catalogue%news)
+         if (size(news) == 0) return
+         self%chronicle%slip_events = [self%chronicle%slip_events, news]
+         self%catalogue%news = news(:0)
+      end associate
+   end subroutine list_events
+
+   !> Note all tips. Where any tip has just grown at this time, all are as before that, unless the
+   !! growth belongs to the step that led to the state. One that has joined something, or been
+   !! joined, is no tip from then on.
+   pure subroutine note_tips(self, grew_in_step)
+      class(simulation_t), intent(inout) :: self
+      logical, intent(in), optional :: grew_in_step  !< default: no
+      type(tip_row_t) :: row
+      logical :: any_grew
+      integer(ik) :: i
+
+      any_grew = any(self%tip%advance > 0.0_rk)
+      if (present(grew_in_step)) any_grew = any_grew .and. .not. grew_in_step
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%has_state(is_before=any_grew)) cycle
+         row = row_of_tip(self%time(), i, self%tip(i), any_grew)
+         call self%chronicle%add_tip(row)
+         self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
+                                         over_toughness(self%scene, &
+                                                      row%keq/resistance_of(self%tip(i), any_grew)))
+      end do
+   end subroutine note_tips
+
+   !> K_IC of the rock that a tip grows in over that of the scene's [-].
+   pure real(rk) function resistance_of(tip, is_before)
+      type(tip_t), intent(in) :: tip
+      logical, intent(in) :: is_before  !< the last increment
+
+      resistance_of = tip%drive%resistance
+      if (is_before) resistance_of = tip%drive_before%resistance
+   end function resistance_of
+
+   !> A tip as a row, before the last increment or after it.
+   pure function row_of_tip(time, i, tip, is_before) result(row)
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik), intent(in) :: i  !< number of the tip
+      type(tip_t), intent(in) :: tip
+      logical, intent(in) :: is_before
+      type(tip_row_t) :: row
+      type(tip_t) :: shown
+
+      shown = tip
+      if (is_before) then
+         shown%intensity = tip%intensity_before
+         shown%drive = tip%drive_before
+      end if
+      row%angle = shown%drive%angle
+      if (is_before .and. tip%advance > 0.0_rk) then
+         shown%xy = tip%origin
+         row%angle = tip%kink
+      end if
+      row%time = time
+      row%tip = i
+      row%fracture = tip%fracture
+      row%xy = shown%xy
+      row%advance = tip%advance
+      row%keq = shown%drive%intensity*shown%drive%resistance
+      row%g = shown%drive%energy
+      associate (intensity => shown%intensity)
+         row%k1 = intensity%k1
+         row%k2 = intensity%k2
+         row%k1_dc = intensity%k1_dc
+         row%k2_dc = intensity%k2_dc
+         row%k1_error = intensity%k1_error
+         row%k2_error = intensity%k2_error
+         row%g_domain = intensity%g_domain
+         row%g_error = intensity%g_error
+         row%k1_dc_error = intensity%k1_dc_error
+         row%k2_dc_error = intensity%k2_dc_error
+         row%k1_corrected = intensity%k1_corrected
+         row%k2_corrected = intensity%k2_corrected
+      end associate
+   end function row_of_tip
+
+   !> Note the tips that have grown in the last increment, joined something or stopped short of it.
+   subroutine note_growth(self)
+      class(simulation_t), intent(inout) :: self
+      character(len=64) :: detail
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), chronicle => self%chronicle)
+            if (tip%advance > 0.0_rk) then
+               write (detail, "(a,es10.3,a,f7.2,a)") "advance ", tip%advance, " m, kink ", &
+                  tip%kink*degrees, " deg"
+               call chronicle%add_event(self%time(), event_growth, trim(detail), tip%fracture, &
+                                        tip%xy)
+               if (tip%joined) call chronicle%add_event(self%time(), event_joint, "joins " &
+                                                        //target_name(self%scene, tip), &
+                                                        tip%fracture, tip%xy)
+            else if (tip%has_just_stopped()) then
+               call self%summary%warn("fracture "//trim(self%scene%fractures(tip%fracture)%name) &
+                                      //" stopped growing next to "//target_name(self%scene, tip))
+               call chronicle%add_event(self%time(), event_arrest, "next to " &
+                                        //target_name(self%scene, tip), tip%fracture, tip%xy)
+            end if
+         end associate
+      end do
+   end subroutine note_growth
+
+   !> What a tip has come to, in words.
+   pure function target_name(scene, tip) result(name)
+      type(scene_t), intent(in) :: scene
+      type(tip_t), intent(in) :: tip
+      character(len=:), allocatable :: name
+
+      if (tip%target == target_boundary) then
+         name = "the outer boundary"
+      else if (tip%target == tip%fracture) then
+         name = "its own fracture"
+      else
+         name = "fracture "//trim(scene%fractures(tip%target)%name)
+      end if
+   end function target_name
+
+   !> Note that the mesh has followed the growth.
+   subroutine note_mesh(self, mesh)
+      class(simulation_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      character(len=64) :: detail
+
+      write (detail, "(i0,a,i0,a)") mesh%n_cells, " cells, ", mesh%fracture%n_cells, &
+         " fracture cells"
+      call self%chronicle%add_event(self%time(), event_remesh, trim(detail))
+      self%chronicle%has_new_network = .true.
+   end subroutine note_mesh
+
+   !> The largest equivalent intensity of the tips now over the toughness [-].
+   pure function keq_over_kic(self) result(ratio)
+      class(simulation_t), intent(in) :: self
+      real(rk) :: ratio
+      integer(ik) :: i
+
+      ratio = 0.0_rk
+      if (.not. allocated(self%tip)) return
+      do i = 1, size(self%tip, kind=ik)
+         ratio = max(ratio, over_toughness(self%scene, self%tip(i)%drive%intensity))
+      end do
+   end function keq_over_kic
+
+   !> An equivalent intensity over the toughness; 0 where that has no limit [-].
+   pure function over_toughness(scene, keq) result(ratio)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: keq  !< [Pa m^1/2]
+      real(rk) :: ratio
+
+      ratio = 0.0_rk
+      if (scene%material%toughness < huge(1.0_rk)) ratio = keq/scene%material%toughness
+   end function over_toughness
+
+   !> How much of the scene is done, by what will end it: its end, or stop_gain [-].
+   pure function share_done(self) result(share)
+      class(simulation_t), intent(in) :: self
+      real(rk) :: share
+      integer(ik) :: i
+
+      share = self%share_of_way()
+      if (.not. allocated(self%tip)) return
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            share = max(share, end_gain(self%network, self%start, tip%fracture, tip%end) &
+                        /self%scene%growth%stop_gain)
+         end associate
+      end do
+   end function share_done
+
+   !> How much is done of the way to the scene's end [-].
+   pure real(rk) function share_of_way(self) result(share)
+      class(simulation_t), intent(in) :: self
+
+      share = (self%time() - self%start_time)/(self%end_time - self%start_time)
+   end function share_of_way
+
+   !> Set `ending` if a fracture's end has grown as far as the scene wants.
+   pure subroutine end_at_gain(self)
+      class(simulation_t), intent(inout) :: self
+      integer(ik) :: i
+
+      i = findloc(self%has_gained(), .true., dim=1)
+      if (i == 0) return
+      self%ending = "fracture "//trim(self%scene%fractures(self%tip(i)%fracture)%name)// &
+                    " has gained stop_gain"
+   end subroutine end_at_gain
+
+   !> Limits that were passed for the first time go to the log; one may ask to stop the run.
+   pure subroutine heed_limits(self, error)
+      class(simulation_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (allocated(self%watch%news)) then
+         do i = 1, size(self%watch%news)
+            call self%chronicle%add_remark("warning: "//self%watch%news(i)%text)
+         end do
+         deallocate (self%watch%news)
+      end if
+      call self%watch%stop_run(error)
+   end subroutine heed_limits
+
+   !> At the end of a run the summary learns which limits were passed.
+   subroutine tell_limits(self)
+      class(simulation_t), intent(inout) :: self
+      type(text_t), allocatable :: sentences(:)
+      integer :: i
+
+      sentences = self%watch%sentences()
+      do i = 1, size(sentences)
+         call self%summary%warn(sentences(i)%text)
+      end do
+   end subroutine tell_limits
+
+end module report_simulation

@@ -1,0 +1,421 @@
+!> Slip events: where and when the faces of fractures slide, put together from what each step adds.
+!!
+!! In a step, a patch is a row of cells of one fracture whose faces slide. Patches of two steps that
+!! follow each other belong to the same event if they have faces in common; what divides goes on as
+!! one, and events that meet are one from then on. An event is over when nothing of it slides any
+!! more, or when its largest slip rate passes a threshold: what slips faster than that is seismic,
+!! from its nucleation, the step in which the rate passes it, to its arrest, when it no longer does;
+!! what slips before and afterwards are aseismic events of their own. Rates are means of a step.
+!! Without radiation damping the simulation is quasi-static: events last as long as their load
+!! drives them, and what jumps does so within one step.
+!!
+!! The static stress drop is the mean over the event's patch of the fall of the shear traction, from
+!! the state before its first step to that after its last one.
+!!
+!! Seismic moment M0 = sum of G times slip times area (Aki 1966), with the G of the rock beside each
+!! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
+!! (Hanks and Kanamori 1979, in SI units as the IASPEI standard of 2005 has it).
+!!
+!! Shear tractions of fracture cells at one time, kept by arc length, so that they can be compared
+!! with later ones on another mesh: by how much they have fallen where slip has been.
+module report_slip
+   use base_kinds, only: ik, rk
+   use contact_law, only: state_open, state_stick
+   use mesh_geometry, only: fracture_cell_centre
+   use mesh_types, only: fracture_mesh_t
+   use report_rows, only: slip_event_t
+   implicit none(type, external)
+   private
+
+   public :: magnitude, slip_catalogue_t
+
+   !> Slip of one step, or of several.
+   type :: amount_t
+      real(rk) :: potency = 0.0_rk  !< slip times length [m2]
+      real(rk) :: moment = 0.0_rk  !< seismic moment per metre out of the plane [N]
+      real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [N]
+      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [N]
+      real(rk) :: place(2) = 0.0_rk  !< its first moment [N m]
+      real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
+      real(rk) :: rate = 0.0_rk  !< largest of a cell [m/s]
+      real(rk) :: fastest(2) = 0.0_rk  !< where that was first so [m]
+   end type amount_t
+
+   type :: shear_t
+      integer(ik), allocatable :: fracture(:)  !< (cells)
+      real(rk), allocatable :: s(:, :)  !< (2, cells) arc lengths of their ends [m]
+      real(rk), allocatable :: traction(:)  !< (cells) f_tau [Pa]
+   contains
+      procedure :: keep
+      procedure :: of_fracture
+      procedure :: fall
+   end type shear_t
+
+   !> An event that is not over.
+   type :: live_t
+      logical :: has_begun = .false.  !< before the present step
+      type(slip_event_t) :: event
+      type(amount_t) :: before  !< the present step
+      type(amount_t) :: now  !< in it
+      type(shear_t) :: start  !< tractions of its fracture before it
+   end type live_t
+
+   !> A row of sliding cells in the last step.
+   type :: patch_t
+      integer(ik) :: fracture = 0
+      real(rk) :: s(2) = 0.0_rk  !< arc lengths, from and to [m]
+      integer(ik) :: live = 0  !< to which event it belongs
+   end type patch_t
+
+   !> The events so far.
+   type :: slip_catalogue_t
+      real(rk) :: breadth = 1.0_rk  !< out of the plane [m]
+      real(rk) :: least_slip = 0.0_rk  !< mean slip that makes an event [m]
+      real(rk) :: seismic_rate = huge(1.0_rk)  !< slip rate from which an event is seismic [m/s]
+      integer(ik) :: n = 0  !< events that are over
+      type(slip_event_t), allocatable :: news(:)  !< that are over since these were taken
+      type(live_t), allocatable, private :: live(:)  !< in the order of their beginning
+      type(patch_t), allocatable, private :: patch(:)
+      type(shear_t), private :: last  !< tractions after the last step
+   contains
+      procedure :: begin
+      procedure :: remember
+      procedure :: follow
+      procedure :: end_all
+   end type slip_catalogue_t
+
+contains
+
+   !> Nothing slides.
+   subroutine begin(self, breadth, least_slip, seismic_rate)
+      class(slip_catalogue_t), intent(out) :: self
+      real(rk), intent(in) :: breadth  !< out of the plane [m]
+      real(rk), intent(in) :: least_slip  !< mean slip that makes an event [m]
+      real(rk), intent(in) :: seismic_rate  !< slip rate from which it is seismic [m/s]
+
+      self%breadth = breadth
+      self%least_slip = least_slip
+      self%seismic_rate = seismic_rate
+      allocate (self%news(0), self%live(0), self%patch(0))
+   end subroutine begin
+
+   !> The state before the first step.
+   pure subroutine remember(self, fracture, traction)
+      class(slip_catalogue_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: traction(:)  !< (cells) f_tau [Pa]
+
+      call self%last%keep(fracture, traction)
+   end subroutine remember
+
+   !> A step of length dt that led to a time.
+   pure subroutine follow(self, time, dt, fracture, potency, shear, state, is_sudden, traction)
+      class(slip_catalogue_t), intent(inout) :: self
+      real(rk), intent(in) :: time, dt  !< [s]; dt > 0
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
+      real(rk), intent(in) :: shear(:)  !< (cells) modulus G of the rock beside it [Pa]
+      integer(ik), intent(in) :: state(:)  !< (cells) of contact_law
+      logical, intent(in) :: is_sudden  !< growth was unstable in the step
+      real(rk), intent(in) :: traction(:)  !< (cells) f_tau after it [Pa]
+      type(patch_t), allocatable :: patches(:)
+      logical :: slides(size(state))
+      integer(ik) :: cell, first, p
+
+      slides = state /= state_stick .and. potency > 0.0_rk
+      allocate (patches(0))
+      if (.not. allocated(self%last%s)) call self%last%keep(fracture, traction)
+      do p = 1, size(self%live)
+         self%live(p)%now = amount_t()
+      end do
+      first = 1
+      do while (first <= fracture%n_cells)
+         if (.not. slides(first)) then
+            first = first + 1
+            cycle
+         end if
+         cell = last_of_patch(fracture, slides, first)
+         associate (s => [fracture%cell_s(1, first), fracture%cell_s(2, cell)])
+            patches = [patches, patch_t(fracture%cell_fracture(first), s)]
+         end associate
+         call assign_patch(self, patches)
+         p = size(patches)
+         call add(self%live(patches(p)%live)%now, &
+                  amount_of(fracture, first, cell, dt, potency, shear*potency, state, is_sudden))
+         first = cell + 1
+      end do
+      call move_alloc(patches, self%patch)
+      do p = 1, size(self%live)
+         if (any(self%patch%live == p)) call book_step(self, p, time, dt)
+      end do
+      call end_quiet(self)
+      call self%last%keep(fracture, traction)
+   end subroutine follow
+
+   !> The last cell of a patch. Cells are stored along each fracture.
+   pure integer(ik) function last_of_patch(fracture, slides, first) result(last)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: slides(:)  !< (cells)
+      integer(ik), intent(in) :: first
+
+      last = first
+      do while (last < fracture%n_cells)
+         if (.not. slides(last + 1)) return
+         if (fracture%cell_fracture(last + 1) /= fracture%cell_fracture(first)) return
+         last = last + 1
+      end do
+   end function last_of_patch
+
+   !> To which event the last one of the patches belongs: the first of those that it has faces in
+   !! common with, which takes in the others, or a new one.
+   pure subroutine assign_patch(self, patches)
+      class(slip_catalogue_t), intent(inout) :: self
+      type(patch_t), intent(inout) :: patches(:)  !< of this step
+      logical :: meets(size(self%patch))
+      type(live_t) :: new
+      integer(ik) :: i, keeps
+
+      associate (patch => patches(size(patches)), before => self%patch)
+         meets = before%fracture == patch%fracture .and. before%s(1) < patch%s(2) &
+                 .and. before%s(2) > patch%s(1)
+         if (.not. any(meets)) then
+            new%event%fracture = patch%fracture
+            self%live = [self%live, new]
+            patch%live = size(self%live)
+            return
+         end if
+         keeps = minval(before%live, mask=meets)
+         patch%live = keeps
+         do i = 1, size(meets)
+            if (.not. meets(i) .or. before(i)%live == keeps) cycle
+            call take_in(self, before(i)%live, keeps, patches)
+         end do
+      end associate
+   end subroutine assign_patch
+
+   !> An event becomes part of another one. What was aseismic in one of them and is seismic in the
+   !! other stays an event of its own, which is over.
+   pure subroutine take_in(self, gone, keeps, patches)
+      class(slip_catalogue_t), intent(inout) :: self
+      integer(ik), value :: gone  !< live events
+      integer(ik), intent(in) :: keeps
+      type(patch_t), intent(inout) :: patches(:)  !< of this step
+      type(live_t) :: slow
+
+      associate (a => self%live(keeps), b => self%live(gone))
+         call add(a%now, b%now)
+         if (a%event%is_seismic .neqv. b%event%is_seismic) then
+            slow = b
+            if (b%event%is_seismic) then
+               slow = a
+               a%event = b%event
+               a%before = b%before
+               a%start = b%start
+            end if
+            call list(self, slow, "speed")
+         else
+            a%event%time = min(a%event%time, b%event%time)
+            a%event%end = max(a%event%end, b%event%end)
+            a%event%largest_rate = max(a%event%largest_rate, b%event%largest_rate)
+            call add(a%before, b%before)
+         end if
+         b%has_begun = .false.
+         b%before = amount_t()
+         b%now = amount_t()
+      end associate
+      where (self%patch%live == gone) self%patch%live = keeps
+      where (patches%live == gone) patches%live = keeps
+   end subroutine take_in
+
+   !> Slip of some cells that follow each other.
+   pure function amount_of(fracture, first, last, dt, potency, moment, state, is_sudden) &
+      result(amount)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: first, last
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: potency(:)  !< (cells) [m2]
+      real(rk), intent(in) :: moment(:)  !< (cells) [N]
+      integer(ik), intent(in) :: state(:)  !< (cells)
+      logical, intent(in) :: is_sudden
+      type(amount_t) :: amount
+      real(rk) :: centre(2), rate
+      integer(ik) :: cell
+
+      amount%potency = sum(potency(first:last))
+      amount%moment = sum(moment(first:last))
+      amount%open = sum(moment(first:last), mask=state(first:last) == state_open)
+      if (is_sudden) amount%sudden = amount%moment
+      amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
+      do cell = first, last
+         centre = fracture_cell_centre(fracture, cell)
+         amount%place = amount%place + moment(cell)*centre
+         rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
+         if (.not. rate > amount%rate) cycle
+         amount%rate = rate
+         amount%fastest = centre
+      end do
+   end function amount_of
+
+   !> Slip adds up.
+   pure subroutine add(amount, more)
+      type(amount_t), intent(inout) :: amount
+      type(amount_t), intent(in) :: more
+
+      amount%potency = amount%potency + more%potency
+      amount%moment = amount%moment + more%moment
+      amount%open = amount%open + more%open
+      amount%sudden = amount%sudden + more%sudden
+      amount%place = amount%place + more%place
+      amount%s = [min(amount%s(1), more%s(1)), max(amount%s(2), more%s(2))]
+      if (.not. more%rate > amount%rate) return
+      amount%rate = more%rate
+      amount%fastest = more%fastest
+   end subroutine add
+
+   !> The step of an event: it goes on, or where its rate passes the threshold another one begins.
+   pure subroutine book_step(self, p, time, dt)
+      class(slip_catalogue_t), intent(inout) :: self
+      integer(ik), intent(in) :: p  !< live event
+      real(rk), intent(in) :: time, dt  !< [s]
+      logical :: is_seismic
+
+      associate (live => self%live(p))
+         is_seismic = live%now%rate >= self%seismic_rate
+         if (live%has_begun .and. (live%event%is_seismic .neqv. is_seismic)) then
+            call list(self, live, "speed")
+            live%has_begun = .false.
+         end if
+         if (.not. live%has_begun) then
+            live%event = slip_event_t(time=time - dt, fracture=live%event%fracture, &
+                                      is_seismic=is_seismic, onset_xy=live%now%fastest)
+            live%before = amount_t()
+            live%start = self%last%of_fracture(live%event%fracture)
+            live%has_begun = .true.
+         end if
+         live%event%end = time
+         live%event%largest_rate = max(live%event%largest_rate, &
+                                       live%now%moment*self%breadth/dt)
+         call add(live%before, live%now)
+      end associate
+   end subroutine book_step
+
+   !> Events of which nothing slides any more are over.
+   pure subroutine end_quiet(self)
+      class(slip_catalogue_t), intent(inout) :: self
+      logical :: goes_on(size(self%live))
+      integer(ik) :: i
+
+      do i = 1, size(goes_on)
+         goes_on(i) = any(self%patch%live == i)
+         if (.not. goes_on(i)) call list(self, self%live(i), "stick")
+      end do
+      do i = 1, size(self%patch)
+         self%patch(i)%live = count(goes_on(:self%patch(i)%live))
+      end do
+      self%live = pack(self%live, goes_on)
+   end subroutine end_quiet
+
+   !> The run is over: what still slides is listed as it is.
+   pure subroutine end_all(self)
+      class(slip_catalogue_t), intent(inout) :: self
+      integer(ik) :: i
+
+      if (.not. allocated(self%live)) return
+      do i = 1, size(self%live)
+         call list(self, self%live(i), "run")
+      end do
+      self%live = self%live(:0)
+      self%patch = self%patch(:0)
+   end subroutine end_all
+
+   !> List an event, unless it is too small or part of another one by now.
+   pure subroutine list(self, live, ended_by)
+      class(slip_catalogue_t), intent(inout) :: self
+      type(live_t), intent(in) :: live
+      character(len=*), intent(in) :: ended_by
+      type(slip_event_t) :: event
+      real(rk) :: length
+
+      if (.not. live%before%potency > 0.0_rk) return
+      event = live%event
+      event%s = live%before%s
+      length = event%s(2) - event%s(1)
+      event%mean_slip = live%before%potency/length
+      if (.not. event%mean_slip >= self%least_slip) return
+      self%n = self%n + 1
+      event%number = self%n
+      event%xy = live%before%place/live%before%moment
+      event%area = length*self%breadth
+      event%moment = live%before%moment*self%breadth
+      event%magnitude = magnitude(event%moment)
+      event%largest_slip_rate = live%before%rate
+      event%mean_slip_rate = event%mean_slip/(event%end - event%time)
+      event%stress_drop = live%start%fall(self%last, event%s)
+      event%open_share = live%before%open/live%before%moment
+      event%sudden_share = live%before%sudden/live%before%moment
+      event%ended_by = ended_by
+      self%news = [self%news, event]
+   end subroutine list
+
+   !> Moment magnitude [-].
+   elemental real(rk) function magnitude(moment)
+      real(rk), intent(in) :: moment  !< [N m]
+
+      magnitude = (log10(moment) - 9.1_rk)/1.5_rk
+   end function magnitude
+
+   !> The tractions of a state.
+   pure subroutine keep(self, mesh, traction)
+      class(shear_t), intent(inout) :: self
+      type(fracture_mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: traction(:)  !< (cells) [Pa]
+
+      self%fracture = mesh%cell_fracture
+      self%s = mesh%cell_s
+      self%traction = traction
+   end subroutine keep
+
+   !> Those of one fracture.
+   pure function of_fracture(self, fracture) result(part)
+      class(shear_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+      type(shear_t) :: part
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: i
+
+      cells = pack([(i, i=1, size(self%fracture))], self%fracture == fracture)
+      part%fracture = self%fracture(cells)
+      part%s = self%s(:, cells)
+      part%traction = self%traction(cells)
+   end function of_fracture
+
+   !> How much less the faces bear at a later time, in the direction in which they did before, as
+   !! the mean over a part of the fracture; cells that were not there before do not count [Pa].
+   pure real(rk) function fall(self, later, s)
+      class(shear_t), intent(in) :: self  !< of one fracture
+      type(shear_t), intent(in) :: later
+      real(rk), intent(in) :: s(2)  !< the part, as arc lengths [m]
+      real(rk) :: length, middle, total
+      integer(ik) :: cell, i
+
+      total = 0.0_rk
+      length = 0.0_rk
+      if (size(self%fracture) > 0) then
+         do i = 1, size(later%fracture, kind=ik)
+            if (later%fracture(i) /= self%fracture(1)) cycle
+            middle = 0.5_rk*sum(later%s(:, i))
+            if (middle < s(1) .or. middle > s(2)) cycle
+            cell = findloc(self%s(1, :) <= middle .and. middle <= self%s(2, :), .true., dim=1, &
+                           kind=ik)
+            if (cell == 0) cycle
+            associate (part => later%s(2, i) - later%s(1, i), before => self%traction(cell))
+               total = total + part*(abs(before) - sign(1.0_rk, before)*later%traction(i))
+               length = length + part
+            end associate
+         end do
+      end if
+      fall = 0.0_rk
+      if (length > 0.0_rk) fall = total/length
+   end function fall
+
+end module report_slip

@@ -1,0 +1,392 @@
+!> Fields at written times: a VTU file for each dimension, gathered in PVD collections.
+!! report_columns says what the fields mean.
+!!
+!! Vectors and tensors of a plane state with the components that ParaView wants.
+!!
+!! ParaView collections (.pvd): which file holds which time.
+!!
+!! ParaView wants times in rising order, and shows files of equal time on top of one another. So
+!! states of equal time have neighbouring numbers, and those of a falling load stand last first.
+module report_snapshots
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_number, only: exact_text
+   use base_texts, only: text_t
+   use mesh_types, only: fracture_mesh_t, mesh_t
+   use report_columns, only: fracture_fields, intersection_fields, matrix_fields
+   use report_files, only: make_directory, remove_file, write_text_file
+   use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use report_text, only: newline, text_buffer_t
+   use report_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
+   use scene_types, only: material_t, scene_t
+   implicit none(type, external)
+   private
+
+   public :: collection_t, snapshots_t
+
+   character(len=*), parameter :: folder = "vtu"  !< of the VTU files, in the run's directory
+   character(len=*), parameter :: dimension_names(3) = [character(len=13) :: "matrix", &
+      & "fractures", "intersections"]
+
+   !> One collection. Only files that are complete may be added.
+   type :: collection_t
+      integer :: n_files = 0
+      character(len=:), allocatable, private :: path
+      logical, private :: is_falling = .false.  !< each time is less than the one before
+      real(rk), private :: last = 0.0_rk  !< time in the collection
+      type(text_buffer_t), private :: entries  !< lines, in the order in which they were added
+      integer, private :: written = 0  !< files in the collection on disk
+   contains
+      procedure :: open => open_collection
+      procedure :: add
+      procedure :: flush => flush_collection
+   end type collection_t
+
+   !> The snapshots of a run.
+   type :: snapshots_t
+      integer :: n_written = 0  !< times
+      character(len=:), allocatable, private :: directory
+      type(material_t), private :: material
+      type(collection_t), private :: collections(3)
+      logical, private :: counts = .false.  !< in these stand rows of the history, and not times
+   contains
+      procedure :: open => open_snapshots
+      procedure :: write => write_snapshot
+      procedure :: list_files
+      procedure :: flush => flush_snapshots
+   end type snapshots_t
+
+   !> Symmetric tensors in ParaView's order.
+   character(len=2), parameter :: tensor_components(6) = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
+
+contains
+
+   !> Begin; the files of an earlier run in the same directory are removed.
+   subroutine open_snapshots(self, directory, scene, error)
+      class(snapshots_t), intent(out) :: self
+      character(len=*), intent(in) :: directory
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      self%directory = directory
+      self%counts = allocated(scene%load%factors)
+      self%material = scene%material
+      call remove_earlier(directory)
+      do i = 1, 3
+         call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
+                                       is_falling=scene%load%to < scene%load%from .and. &
+                                       .not. self%counts)
+      end do
+      if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
+   end subroutine open_snapshots
+
+   !> Write the fields of a state.
+   subroutine write_snapshot(self, time, history_row, mesh, matrix, fracture, intersections, error)
+      class(snapshots_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik), intent(in) :: history_row  !< with the same state, from 1
+      type(mesh_t), intent(in) :: mesh
+      type(matrix_fields_t), intent(in) :: matrix
+      type(fracture_fields_t), intent(in) :: fracture
+      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(error_t), allocatable, intent(out) :: error
+      type(vtu_grid_t) :: grid
+
+      call fill_matrix(grid, time, mesh, matrix, self%material)
+      call write_one(self, 1, time, history_row, grid, error)
+      if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
+         call fill_fractures(grid, time, mesh%fracture, fracture)
+         call write_one(self, 2, time, history_row, grid, error)
+      end if
+      if (.not. allocated(error) .and. allocated(intersections%point)) then
+         if (size(intersections%point) > 0) then
+            call fill_intersections(grid, time, mesh%fracture, intersections)
+            call write_one(self, 3, time, history_row, grid, error)
+         end if
+      end if
+      if (.not. allocated(error)) self%n_written = self%n_written + 1
+   end subroutine write_snapshot
+
+   !> Write the collections that have changed.
+   subroutine flush_snapshots(self, error)
+      class(snapshots_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, 3
+         call self%collections(i)%flush(error)
+         if (allocated(error)) return
+      end do
+   end subroutine flush_snapshots
+
+   !> Paths of the VTU files of the rock that were written, from the run's directory.
+   pure subroutine list_files(self, paths)
+      class(snapshots_t), intent(in) :: self
+      type(text_t), allocatable, intent(out) :: paths(:)
+      integer :: n
+
+      allocate (paths(self%n_written))
+      do n = 1, self%n_written
+         paths(n)%text = file_name(1, n - 1)
+      end do
+   end subroutine list_files
+
+   !> Write one grid and add it to its collection.
+   subroutine write_one(self, i, time, history_row, grid, error)
+      class(snapshots_t), intent(inout) :: self
+      integer, intent(in) :: i  !< index of the dimension
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik), intent(in) :: history_row
+      type(vtu_grid_t), intent(inout) :: grid
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: file
+      real(rk) :: listed
+
+      listed = time
+      if (self%counts) listed = real(history_row, rk)
+      call grid%set_history_row(history_row)
+      file = file_name(i, self%n_written)
+      call grid%write(self%directory//"/"//file, error)
+      if (.not. allocated(error)) call self%collections(i)%add(listed, file)
+   end subroutine write_one
+
+   subroutine fill_matrix(grid, time, mesh, fields, material)
+      type(vtu_grid_t), intent(out) :: grid
+      real(rk), intent(in) :: time  !< [s]
+      type(mesh_t), intent(in) :: mesh
+      type(matrix_fields_t), intent(in) :: fields
+      type(material_t), intent(in) :: material
+
+      if (allocated(fields%cell_nodes)) then
+         call grid%begin(fields%node_xy, fields%cell_nodes, vtk_quadratic_triangle, time)
+      else
+         call grid%begin(mesh%xy, mesh%cell_nodes, vtk_triangle, time)
+      end if
+      if (allocated(fields%node_displacement)) then
+         call grid%add_at_points("nodal_displacement", displacement_3d(fields%node_displacement), &
+                                 ["X", "Y", "Z"])
+      end if
+      if (allocated(fields%displacement)) then
+         call grid%add("displacement", displacement_3d(fields%displacement), ["X", "Y", "Z"])
+      end if
+      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      if (allocated(fields%stress)) then
+         call grid%add("stress", stress_tensor(fields, material), tensor_components)
+      end if
+      if (allocated(fields%pressure)) then
+         call grid%add("permeability", permeability_tensor(fields, material, mesh), &
+            & tensor_components)
+      end if
+      call grid%set_units(matrix_fields%name, matrix_fields%unit)
+   end subroutine fill_matrix
+
+   subroutine fill_fractures(grid, time, mesh, fields)
+      type(vtu_grid_t), intent(out) :: grid
+      real(rk), intent(in) :: time  !< [s]
+      type(fracture_mesh_t), intent(in) :: mesh
+      type(fracture_fields_t), intent(in) :: fields
+
+      call grid%begin(mesh%point_xy, mesh%cell_points, vtk_line, time)
+      call grid%add("fracture", mesh%cell_fracture)
+      call grid%add("arc_length", 0.5_rk*(mesh%cell_s(1, :) + mesh%cell_s(2, :)))
+      if (allocated(fields%aperture)) call grid%add("aperture", fields%aperture)
+      if (allocated(fields%jump_n)) call add_pair(grid, "jump", fields%jump_n, fields%jump_t)
+      if (allocated(fields%traction_n)) then
+         call add_pair(grid, "traction", fields%traction_n, fields%traction_t)
+      end if
+      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      if (allocated(fields%flow)) call grid%add("flow", fields%flow)
+      if (allocated(fields%state)) call grid%add("state", fields%state)
+      call grid%set_units(fracture_fields%name, fracture_fields%unit)
+   end subroutine fill_fractures
+
+   subroutine fill_intersections(grid, time, mesh, fields)
+      type(vtu_grid_t), intent(out) :: grid
+      real(rk), intent(in) :: time  !< [s]
+      type(fracture_mesh_t), intent(in) :: mesh
+      type(intersection_fields_t), intent(in) :: fields
+      integer(ik) :: vertices(1, size(fields%point)), i
+
+      vertices(1, :) = [(i, i=1, size(fields%point, kind=ik))]
+      call grid%begin(mesh%point_xy(:, fields%point), vertices, vtk_vertex, time)
+      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      call grid%set_units(intersection_fields%name, intersection_fields%unit)
+   end subroutine fill_intersections
+
+   !> A normal and a tangential component as one field.
+   subroutine add_pair(grid, name, normal, tangential)
+      type(vtu_grid_t), intent(inout) :: grid
+      character(len=*), intent(in) :: name
+      real(rk), intent(in) :: normal(:), tangential(:)  !< (n_cells) [m] or [Pa]
+      real(rk) :: both(2, size(normal))
+
+      both(1, :) = normal
+      both(2, :) = tangential
+      call grid%add(name, both, [character(len=10) :: "normal", "tangential"])
+   end subroutine add_pair
+
+   !> Remove the snapshots of an earlier run, the last one first so that an interrupted removal can
+   !! go on.
+   subroutine remove_earlier(directory)
+      character(len=*), intent(in) :: directory
+      logical :: was_there
+      integer :: n, i
+
+      do i = 1, 3
+         call remove_file(directory//"/"//trim(dimension_names(i))//".pvd", was_there)
+      end do
+      n = 0
+      do
+         inquire (file=directory//"/"//file_name(1, n), exist=was_there)
+         if (.not. was_there) exit
+         n = n + 1
+      end do
+      do n = n, 0, -1
+         do i = 3, 1, -1
+            call remove_file(directory//"/"//file_name(i, n), was_there)
+            call remove_file(directory//"/"//file_name(i, n)//".part", was_there)
+         end do
+      end do
+   end subroutine remove_earlier
+
+   !> Path of a VTU file from the run's directory.
+   pure function file_name(i, number) result(file)
+      integer, intent(in) :: i  !< index of the dimension
+      integer, intent(in) :: number  !< of the written time, from 0
+      character(len=:), allocatable :: file
+      character(len=10) :: digits
+
+      write (digits, "(i6.6)") number
+      file = folder//"/"//trim(dimension_names(i))//"_"//trim(digits)//".vtu"
+   end function file_name
+
+   !> Displacement with the z component that VTK wants.
+   pure function displacement_3d(displacement) result(u)
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_cells or n_nodes) [m]
+      real(rk) :: u(3, size(displacement, 2))
+
+      u(1:2, :) = displacement
+      u(3, :) = 0.0_rk
+   end function displacement_3d
+
+   !> Total stress as a symmetric tensor; zz follows from the plane state.
+   !!
+   !! Plane strain: effective stress obeys sigma'_zz = nu (sigma'_xx + sigma'_yy) with sigma' =
+   !! sigma + alpha p, so that sigma_zz = nu (sigma_xx + sigma_yy) - (1 - 2 nu) alpha p. Plane
+   !! stress: sigma_zz = 0.
+   pure function stress_tensor(fields, material) result(stress)
+      type(matrix_fields_t), intent(in) :: fields
+      type(material_t), intent(in) :: material
+      real(rk) :: stress(6, size(fields%stress, 2))  !< xx, yy, zz, xy, yz, xz [Pa]
+
+      stress(1:2, :) = fields%stress(1:2, :)
+      stress(3, :) = 0.0_rk
+      if (.not. material%plane_stress) then
+         if (allocated(fields%poisson)) then
+            stress(3, :) = fields%poisson*(fields%stress(1, :) + fields%stress(2, :))
+            if (allocated(fields%pressure)) then
+               stress(3, :) = stress(3, :) &
+                              - (1.0_rk - 2.0_rk*fields%poisson)*fields%biot*fields%pressure
+            end if
+         else
+            stress(3, :) = of_one_rock()
+         end if
+      end if
+      stress(4, :) = fields%stress(3, :)
+      stress(5:6, :) = 0.0_rk
+
+   contains
+
+      pure function of_one_rock() result(zz)
+         real(rk) :: zz(size(fields%stress, 2))
+
+         zz = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
+         if (allocated(fields%pressure)) then
+            zz = zz - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
+         end if
+      end function of_one_rock
+
+   end function stress_tensor
+
+   !> Permeability as a symmetric tensor; out of the plane nothing flows and zz is 0.
+   pure function permeability_tensor(fields, material, mesh) result(permeability)
+      type(matrix_fields_t), intent(in) :: fields
+      type(material_t), intent(in) :: material
+      type(mesh_t), intent(in) :: mesh
+      real(rk) :: permeability(6, mesh%n_cells)  !< xx, yy, zz, xy, yz, xz [m2]
+
+      permeability = 0.0_rk
+      if (allocated(fields%permeability)) then
+         permeability(1:2, :) = fields%permeability(1:2, :)
+         permeability(4, :) = fields%permeability(3, :)
+      else
+         permeability(1, :) = material%permeability_xx
+         permeability(2, :) = material%permeability_yy
+         permeability(4, :) = material%permeability_xy
+      end if
+   end function permeability_tensor
+
+   !> Begin a collection; it is on disk only once it has a file.
+   subroutine open_collection(self, path, is_falling)
+      class(collection_t), intent(out) :: self
+      character(len=*), intent(in) :: path
+      logical, intent(in), optional :: is_falling  !< the times will fall
+
+      self%path = path
+      if (present(is_falling)) self%is_falling = is_falling
+   end subroutine open_collection
+
+   !> Add a file. Its time in the collection is at least the number next to the time before.
+   subroutine add(self, time, file)
+      class(collection_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      character(len=*), intent(in) :: file  !< path from the collection's directory
+      real(rk) :: listed
+
+      listed = time
+      if (self%n_files > 0 .and. self%is_falling) then
+         listed = min(time, nearest(self%last, -1.0_rk))
+      else if (self%n_files > 0) then
+         listed = max(time, nearest(self%last, 1.0_rk))
+      end if
+      call self%entries%append('    <DataSet timestep="'//exact_text(listed)// &
+                               '" part="0" file="'//file//'"/>'//newline)
+      self%last = listed
+      self%n_files = self%n_files + 1
+   end subroutine add
+
+   !> Write the collection whole, if it has changed.
+   subroutine flush_collection(self, error)
+      class(collection_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: lines
+
+      if (self%n_files == self%written) return
+      lines = self%entries%text()
+      if (self%is_falling) lines = last_first(lines)
+      call write_text_file(self%path, &
+                           '<?xml version="1.0"?>'//newline// &
+                           '<VTKFile type="Collection" version="1.0">'//newline// &
+                           "  <Collection>"//newline//lines// &
+                           "  </Collection>"//newline//"</VTKFile>"//newline, error)
+      if (.not. allocated(error)) self%written = self%n_files
+   end subroutine flush_collection
+
+   !> The lines of a text in reverse order.
+   pure function last_first(text) result(reversed)
+      character(len=*), intent(in) :: text  !< whole lines
+      character(len=len(text)) :: reversed
+      integer :: first, last, done
+
+      done = 0
+      last = len(text)
+      do while (last > 0)
+         first = index(text(:last - 1), newline, back=.true.) + 1
+         reversed(done + 1:done + last - first + 1) = text(first:last)
+         done = done + last - first + 1
+         last = first - 1
+      end do
+   end function last_first
+
+end module report_snapshots

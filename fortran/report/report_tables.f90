@@ -1,0 +1,400 @@
+!> The CSV tables of a run: where the value of each column of report_columns comes from.
+module report_tables
+   use base_errors, only: error_t, keep_first
+   use base_kinds, only: degrees, ik, rk
+   use base_texts, only: text_t
+   use contact_law, only: state_name
+   use mesh_geometry, only: fracture_cell_centre
+   use mesh_types, only: fracture_mesh_t
+   use report_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
+                             probe_columns, slip_event_columns, tip_columns, well_columns, &
+                             well_count
+   use report_rows, only: fracture_fields_t, history_row_t, probe_row_t, slip_event_t, tip_row_t, &
+                          well_row_t
+   use report_series, only: series_t
+   use scene_types, only: name_length, scene_t
+   implicit none(type, external)
+   private
+
+   public :: tables_t
+
+   integer, parameter :: column_length = name_length + 17
+
+   !> The tables; those that the scene has nothing for stay closed.
+   type :: tables_t
+      type(series_t) :: history
+      type(series_t) :: tips
+      type(series_t) :: fractures
+      type(series_t) :: probes
+      type(series_t) :: events
+      type(series_t) :: slip_events
+      type(series_t) :: wells
+      type(text_t), allocatable, private :: probe_names(:)
+      type(text_t), allocatable, private :: pressure_names(:)  !< columns of the wells' pressures
+   contains
+      procedure :: open => open_tables
+      procedure :: history_row
+      procedure :: tip_row
+      procedure :: fracture_rows
+      procedure :: probe_row
+      procedure :: event_row
+      procedure :: slip_event_row
+      procedure :: well_row
+      procedure :: flush => flush_tables
+   end type tables_t
+
+contains
+
+   !> Open the tables of a scene.
+   subroutine open_tables(self, directory, scene)
+      class(tables_t), intent(out) :: self
+      character(len=*), intent(in) :: directory
+      type(scene_t), intent(in) :: scene
+
+      call open_history(self, directory//"/history.csv", scene)
+      call open_table(self%events, directory//"/events.csv", event_columns, scene)
+      if (scene%growth%enabled .or. scene%growth%intensities) then
+         call open_table(self%tips, directory//"/tips.csv", tip_columns, scene)
+      end if
+      if (scene%has_fractures()) then
+         call open_table(self%fractures, directory//"/fractures.csv", fracture_columns, scene)
+         if (scene%has_fluid()) call open_table(self%slip_events, &
+            & directory//"/slip_events.csv", slip_event_columns, scene)
+      end if
+    if (scene%has_wells()) call open_table(self%wells, directory//"/wells.csv", well_columns, scene)
+      if (allocated(scene%probes)) then
+         if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
+      end if
+   end subroutine open_tables
+
+   !> Add an accepted step.
+   subroutine history_row(self, row)
+      class(tables_t), intent(inout) :: self
+      type(history_row_t), intent(in) :: row
+      real(rk) :: only
+      integer :: w
+
+      only = 0.0_rk
+      if (size(self%pressure_names) == 1) only = row%well_pressure(1)
+      associate (table => self%history)
+         call table%put("time_s", row%time)
+         call table%put("load_factor", row%time)
+         call table%put("dt_s", row%dt)
+         call table%put("newton_iterations", row%newton_iterations)
+         call table%put("well_pressure_pa", only)
+         do w = 1, size(self%pressure_names)
+            call table%put(self%pressure_names(w)%text, row%well_pressure(w))
+         end do
+         call table%put("injected_m2", row%injected)
+         call table%put("leakoff_m2", row%leakoff)
+         call table%put("prefilled_m2", row%prefilled)
+         call table%put("outflow_m2", row%outflow)
+         call table%put("fracture_volume_m2", row%fracture_volume)
+         call table%put("mass_error_relative", row%mass_error_relative)
+         call table%put("max_slip_m", row%max_slip)
+         call table%put("max_opening_m", row%max_opening)
+         call table%put("n_stick", row%n_stick)
+         call table%put("n_slip", row%n_slip)
+         call table%put("n_open", row%n_open)
+         call table%put("fracture_length_m", row%fracture_length)
+         call table%put("n_tips", row%n_tips)
+         call table%put("n_intersections", row%n_intersections)
+         call table%put("seismic_moment_nm", row%seismic_moment)
+         call table%put("fracture_length_error_m", row%length_error)
+         call table%put("well_pressure_error_pa", row%well_pressure_error)
+         call table%put("strain_energy_j", row%strain_energy)
+         call table%put("injection_rate_m2_s", row%injection_rate)
+         call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("produced_m2", row%produced)
+         call table%put("fracture_fluid_m2", row%fracture_fluid)
+         call table%put("rock_fluid_m2", row%rock_fluid)
+         call table%put("rock_outflow_m2", row%rock_outflow)
+         call table%put("stimulated_length_m", row%stimulated_length)
+         call table%put("connected_length_m", row%connected_length)
+         call table%put("connected_stimulated_m", row%connected_stimulated)
+         call table%put("n_clusters", row%n_clusters)
+         call table%put("max_slip_rate_m_s", row%max_slip_rate)
+         call table%put("connections_per_branch", row%connections_per_branch)
+         call table%end_row()
+      end associate
+   end subroutine history_row
+
+   !> Add a tip.
+   subroutine tip_row(self, row)
+      class(tables_t), intent(inout) :: self
+      type(tip_row_t), intent(in) :: row
+
+      if (.not. self%tips%is_open()) return
+      associate (table => self%tips)
+         call table%put("time_s", row%time)
+         call table%put("load_factor", row%time)
+         call table%put("tip", row%tip)
+         call table%put("fracture", row%fracture)
+         call table%put("x_m", row%xy(1))
+         call table%put("y_m", row%xy(2))
+         call table%put("k1_pa_sqrtm", row%k1)
+         call table%put("k2_pa_sqrtm", row%k2)
+         call table%put("k1_dc_pa_sqrtm", row%k1_dc)
+         call table%put("k2_dc_pa_sqrtm", row%k2_dc)
+         call table%put("keq_pa_sqrtm", row%keq)
+         call table%put("g_j_m2", row%g)
+         call table%put("angle_deg", row%angle*degrees)
+         call table%put("advance_m", row%advance)
+         call table%put("k1_error_pa_sqrtm", row%k1_error)
+         call table%put("k2_error_pa_sqrtm", row%k2_error)
+         call table%put("g_ahead_j_m2", row%g_domain)
+         call table%put("g_ahead_error_j_m2", row%g_error)
+         call table%put("k1_dc_error_pa_sqrtm", row%k1_dc_error)
+         call table%put("k2_dc_error_pa_sqrtm", row%k2_dc_error)
+         call table%put("k1_corrected_pa_sqrtm", row%k1_corrected)
+         call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
+         call table%put("history_row", int(self%history%n_rows, ik))
+         call table%end_row()
+      end associate
+   end subroutine tip_row
+
+   !> Add every fracture cell.
+   subroutine fracture_rows(self, time, mesh, fields)
+      class(tables_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      type(fracture_mesh_t), intent(in) :: mesh
+      type(fracture_fields_t), intent(in) :: fields
+      real(rk) :: centre(2)
+      integer(ik) :: cell
+
+      if (.not. self%fractures%is_open()) return
+      associate (table => self%fractures)
+         do cell = 1, mesh%n_cells
+            centre = fracture_cell_centre(mesh, cell)
+            call table%put("time_s", time)
+            call table%put("load_factor", time)
+            call table%put("fracture", mesh%cell_fracture(cell))
+            call table%put("s_m", 0.5_rk*sum(mesh%cell_s(:, cell)))
+            call table%put("x_m", centre(1))
+            call table%put("y_m", centre(2))
+            call put_if_there(table, "aperture_m", fields%aperture, cell)
+            call put_if_there(table, "jump_n_m", fields%jump_n, cell)
+            call put_if_there(table, "jump_t_m", fields%jump_t, cell)
+            call put_if_there(table, "traction_n_pa", fields%traction_n, cell)
+            call put_if_there(table, "traction_t_pa", fields%traction_t, cell)
+            call put_if_there(table, "pressure_pa", fields%pressure, cell)
+            call put_if_there(table, "void_m", fields%void, cell)
+            call put_if_there(table, "flow_m2_s", fields%flow, cell)
+            if (allocated(fields%state)) then
+               call table%put("state", state_name(fields%state(cell)))
+            else
+               call table%put_nothing("state")
+            end if
+            call table%put("history_row", int(self%history%n_rows, ik))
+            call table%end_row()
+         end do
+      end associate
+   end subroutine fracture_rows
+
+   !> Add the state at all probes.
+   subroutine probe_row(self, time, row)
+      class(tables_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      type(probe_row_t), intent(in) :: row
+      integer(ik) :: i
+
+      if (.not. self%probes%is_open()) return
+      associate (table => self%probes)
+         call table%put("time_s", time)
+         call table%put("load_factor", time)
+         do i = 1, size(row%displacement, 2, kind=ik)
+            associate (name => self%probe_names(i)%text)
+               call put_if_there(table, name//"_p_pa", row%pressure, i)
+               call table%put(name//"_ux_m", row%displacement(1, i))
+               call table%put(name//"_uy_m", row%displacement(2, i))
+               call table%put(name//"_sxx_pa", row%stress(1, i))
+               call table%put(name//"_syy_pa", row%stress(2, i))
+               call table%put(name//"_sxy_pa", row%stress(3, i))
+            end associate
+         end do
+         call table%end_row()
+      end associate
+   end subroutine probe_row
+
+   !> Add an event. What does not apply to it is left empty.
+   subroutine event_row(self, time, kind, detail, fracture, xy)
+      class(tables_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s], or the load factor
+      character(len=*), intent(in) :: kind  !< event_slip_onset .. of report_rows
+      character(len=*), intent(in) :: detail  !< a few words with numbers and units
+      integer(ik), intent(in), optional :: fracture
+      real(rk), intent(in), optional :: xy(2)  !< [m]
+
+      associate (table => self%events)
+         call table%put("time_s", time)
+         call table%put("load_factor", time)
+         call table%put("kind", kind)
+         if (present(fracture)) then
+            call table%put("fracture", fracture)
+         else
+            call table%put_nothing("fracture")
+         end if
+         if (present(xy)) then
+            call table%put("x_m", xy(1))
+            call table%put("y_m", xy(2))
+         else
+            call table%put_nothing("x_m")
+            call table%put_nothing("y_m")
+         end if
+         call table%put("detail", detail)
+         call table%end_row()
+      end associate
+   end subroutine event_row
+
+   !> Add a slip event that is over.
+   subroutine slip_event_row(self, event)
+      class(tables_t), intent(inout) :: self
+      type(slip_event_t), intent(in) :: event
+
+      if (.not. self%slip_events%is_open()) return
+      associate (table => self%slip_events)
+         call table%put("event", event%number)
+         call table%put("time_s", event%time)
+         call table%put("end_s", event%end)
+         call table%put("fracture", event%fracture)
+         call table%put("x_m", event%xy(1))
+         call table%put("y_m", event%xy(2))
+         call table%put("s_from_m", event%s(1))
+         call table%put("s_to_m", event%s(2))
+         call table%put("area_m2", event%area)
+         call table%put("mean_slip_m", event%mean_slip)
+         call table%put("moment_nm", event%moment)
+         call table%put("largest_moment_rate_nm_s", event%largest_rate)
+         call table%put("magnitude", event%magnitude)
+         call table%put("open_share", event%open_share)
+         call table%put("sudden_share", event%sudden_share)
+         call table%put("ended_by", trim(event%ended_by))
+         call table%put("kind", trim(merge("seismic ", "aseismic", event%is_seismic)))
+         call table%put("duration_s", event%end - event%time)
+         call table%put("x_onset_m", event%onset_xy(1))
+         call table%put("y_onset_m", event%onset_xy(2))
+         call table%put("largest_slip_rate_m_s", event%largest_slip_rate)
+         call table%put("mean_slip_rate_m_s", event%mean_slip_rate)
+         call table%put("stress_drop_pa", event%stress_drop)
+         call table%end_row()
+      end associate
+   end subroutine slip_event_row
+
+   !> Add a well after a step.
+   subroutine well_row(self, row)
+      class(tables_t), intent(inout) :: self
+      type(well_row_t), intent(in) :: row
+
+      if (.not. self%wells%is_open()) return
+      associate (table => self%wells)
+         call table%put("time_s", row%time)
+         call table%put("well", row%name)
+         call table%put("stage", row%stage)
+         call table%put("control", row%control)
+         call table%put("rate_m2_s", row%rate)
+         call table%put("flow_m2_s", row%flow)
+         call table%put("pressure_pa", row%pressure)
+         call table%put("head_pressure_pa", row%head_pressure)
+         call table%put("injected_m2", row%injected)
+         call table%put("injectivity_m2_s_pa", row%injectivity)
+         call table%put("asked_m2_s", row%asked)
+         call table%end_row()
+      end associate
+   end subroutine well_row
+
+   !> Write all tables that have changed, each of them though another one fails; the first error.
+   subroutine flush_tables(self, error)
+      class(tables_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      call flush_one(self%history)
+      call flush_one(self%tips)
+      call flush_one(self%fractures)
+      call flush_one(self%probes)
+      call flush_one(self%events)
+      call flush_one(self%slip_events)
+      call flush_one(self%wells)
+
+   contains
+
+      subroutine flush_one(table)
+         type(series_t), intent(inout) :: table
+         type(error_t), allocatable :: trouble
+
+         call table%flush(trouble)
+         call keep_first(trouble, error)
+      end subroutine flush_one
+
+   end subroutine flush_tables
+
+   !> Open a table with the columns that the table of columns has for it.
+   subroutine open_table(table, path, columns, scene)
+      type(series_t), intent(out) :: table
+      character(len=*), intent(in) :: path
+      type(column_t), intent(in) :: columns(:)
+      type(scene_t), intent(in) :: scene
+
+      call table%open(path, columns%name, applies(columns, scene))
+   end subroutine open_table
+
+   !> Open the history: the column of a well's pressure stands there for each of several wells.
+   subroutine open_history(self, path, scene)
+      class(tables_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(scene_t), intent(in) :: scene
+      character(len=*), parameter :: behind = "_well_pressure_pa"
+      character(len=column_length), allocatable :: names(:)
+      logical, allocatable :: is_written(:)
+      integer :: at, w
+
+      allocate (self%pressure_names(well_count(scene)))
+      at = findloc(history_columns%name, "NAME"//behind, dim=1)
+      names = history_columns(:at - 1)%name
+      do w = 1, size(self%pressure_names)
+         self%pressure_names(w)%text = trim(scene%injections(w)%name)//behind
+         names = [character(len=column_length) :: names, self%pressure_names(w)%text]
+      end do
+      is_written = applies(history_columns, scene)
+      is_written = [is_written(:at - 1), spread(is_written(at), 1, size(self%pressure_names)), &
+                    is_written(at + 1:)]
+      call self%history%open(path, [character(len=column_length) :: names, &
+                                    history_columns(at + 1:)%name], is_written)
+   end subroutine open_history
+
+   !> Open the table of the probes: the time or load factor, then the same columns for each of them.
+   subroutine open_probes(self, path, scene)
+      class(tables_t), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(scene_t), intent(in) :: scene
+      integer, parameter :: n_common = 2, n_each = size(probe_columns) - n_common
+      character(len=column_length) :: names(n_common + n_each*size(scene%probes))
+      integer :: i, k
+
+      allocate (self%probe_names(size(scene%probes)))
+      names(:n_common) = probe_columns(:n_common)%name
+      do i = 1, size(scene%probes)
+         self%probe_names(i)%text = trim(scene%probes(i)%name)
+         do k = 1, n_each
+            names(n_common + n_each*(i - 1) + k) = self%probe_names(i)%text// &
+               & probe_columns(n_common + k)%name(len("NAME") + 1:)
+         end do
+      end do
+      call self%probes%open(path, names, [applies(probe_columns(:n_common), scene), &
+         & (applies(probe_columns(n_common + 1:), scene), i=1, size(scene%probes))])
+   end subroutine open_probes
+
+   !> The value of a cell or a probe, or nothing where the field is left out.
+   subroutine put_if_there(table, name, values, i)
+      type(series_t), intent(inout) :: table
+      character(len=*), intent(in) :: name  !< of the column
+      real(rk), allocatable, intent(in) :: values(:)  !< in the unit of the name
+      integer(ik), intent(in) :: i  !< cell or probe
+
+      if (allocated(values)) then
+         call table%put(name, values(i))
+      else
+         call table%put_nothing(name)
+      end if
+   end subroutine put_if_there
+
+end module report_tables

@@ -1,0 +1,348 @@
+!> Text that grows: a buffer with room to spare.
+!!
+!! JSON (RFC 8259), built member by member. A number that JSON cannot hold (NaN, infinity) becomes
+!! null.
+module report_text
+   use base_errors, only: error_t
+   use base_kinds, only: ik, lk, rk
+   use base_number, only: format_real, integer_text, number_width
+   use base_texts, only: text_t, utf8_length
+   use report_files, only: write_text_file
+   implicit none(type, external)
+   private
+
+   public :: escaped, json_t, newline, text_buffer_t
+
+   character(len=*), parameter :: newline = achar(10)
+
+   !> A long text, built piece by piece.
+   type :: text_buffer_t
+      integer(lk) :: length = 0_lk  !< characters used
+      character(len=:), allocatable, private :: storage
+   contains
+      procedure :: append
+      procedure :: append_real
+      procedure :: replace_last
+      procedure :: text => buffer_text
+      procedure :: write_file
+   end type text_buffer_t
+
+   integer, parameter :: deepest = 16  !< nesting of objects and arrays
+
+   !> A JSON text in the making. An element of an array has the key "".
+   type :: json_t
+      type(text_buffer_t) :: buffer
+      integer :: depth = 0
+      logical :: has_members(0:deepest) = .false.
+      logical :: one_line = .false.
+   contains
+      procedure :: begin_object
+      procedure :: end_object
+      procedure :: begin_array
+      procedure :: end_array
+      procedure :: keep_on_one_line
+      procedure :: add_raw
+      procedure, private :: add_real
+      procedure, private :: add_integer
+      procedure, private :: add_long
+      procedure, private :: add_text
+      procedure, private :: add_reals
+      procedure, private :: add_integers
+      procedure, private :: add_texts
+      generic :: add => add_real, add_integer, add_long, add_text, add_reals, add_integers, &
+         add_texts
+      procedure :: text => json_text
+   end type json_t
+
+contains
+
+   !> Add a piece at the end.
+   pure subroutine append(self, piece)
+      class(text_buffer_t), intent(inout) :: self
+      character(len=*), intent(in) :: piece
+      character(len=:), allocatable :: larger
+      integer(lk) :: length  ! afterwards
+
+      length = self%length + len(piece, kind=lk)
+      if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
+      if (length > len(self%storage, kind=lk)) then
+         allocate (character(len=2_lk*length) :: larger)
+         larger(1:self%length) = self%storage(1:self%length)
+         call move_alloc(larger, self%storage)
+      end if
+      self%storage(self%length + 1:length) = piece
+      self%length = length
+   end subroutine append
+
+   !> Add a number at the end, with the digits that it needs.
+   pure subroutine append_real(self, x)
+      class(text_buffer_t), intent(inout) :: self
+      real(rk), intent(in) :: x  !< [any unit]
+      character(len=number_width) :: piece
+      integer :: length
+
+      call format_real(x, piece, length)
+      call self%append(piece(1:length))
+   end subroutine append_real
+
+   !> Replace the last character.
+   pure subroutine replace_last(self, letter)
+      class(text_buffer_t), intent(inout) :: self
+      character(len=1), intent(in) :: letter
+
+      if (self%length > 0) self%storage(self%length:self%length) = letter
+   end subroutine replace_last
+
+   !> All that was added.
+   pure function buffer_text(self) result(text)
+      class(text_buffer_t), intent(in) :: self
+      character(len=:), allocatable :: text
+
+      if (allocated(self%storage)) then
+         text = self%storage(1:self%length)
+      else
+         text = ""
+      end if
+   end function buffer_text
+
+   !> Write all that was added as a whole file.
+   subroutine write_file(self, path, error)
+      class(text_buffer_t), intent(in) :: self
+      character(len=*), intent(in) :: path
+      type(error_t), allocatable, intent(out) :: error
+
+      if (allocated(self%storage)) then
+         call write_text_file(path, self%storage(1:self%length), error)
+      else
+         call write_text_file(path, "", error)
+      end if
+   end subroutine write_file
+
+   !> Write what follows without line breaks.
+   subroutine keep_on_one_line(self)
+      class(json_t), intent(inout) :: self
+
+      self%one_line = .true.
+   end subroutine keep_on_one_line
+
+   subroutine begin_object(self, key)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+
+      call begin_member(self, key)
+      call open_bracket(self, "{")
+   end subroutine begin_object
+
+   subroutine end_object(self)
+      class(json_t), intent(inout) :: self
+
+      call close_bracket(self, "}")
+   end subroutine end_object
+
+   subroutine begin_array(self, key)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+
+      call begin_member(self, key)
+      call open_bracket(self, "[")
+   end subroutine begin_array
+
+   subroutine end_array(self)
+      class(json_t), intent(inout) :: self
+
+      call close_bracket(self, "]")
+   end subroutine end_array
+
+   !> Add a value that is JSON already.
+   subroutine add_raw(self, key, value)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: value
+
+      call begin_member(self, key)
+      call self%buffer%append(value)
+   end subroutine add_raw
+
+   subroutine add_real(self, key, value)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      real(rk), intent(in) :: value  !< [unit that the key names]
+
+      call begin_member(self, key)
+      call append_number(self, value)
+   end subroutine add_real
+
+   subroutine add_integer(self, key, value)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      integer(ik), intent(in) :: value
+
+      call self%add_raw(key, integer_text(value))
+   end subroutine add_integer
+
+   subroutine add_long(self, key, value)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      integer(lk), intent(in) :: value
+
+      call self%add_raw(key, integer_text(value))
+   end subroutine add_long
+
+   subroutine add_text(self, key, value)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: value
+
+      call self%add_raw(key, '"'//escaped(value)//'"')
+   end subroutine add_text
+
+   subroutine add_reals(self, key, values)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      real(rk), intent(in) :: values(:)  !< [unit that the key names]
+      integer :: i
+
+      call begin_member(self, key)
+      call self%buffer%append("[")
+      do i = 1, size(values)
+         if (i > 1) call self%buffer%append(", ")
+         call append_number(self, values(i))
+      end do
+      call self%buffer%append("]")
+   end subroutine add_reals
+
+   subroutine add_integers(self, key, values)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      integer(ik), intent(in) :: values(:)
+      integer :: i
+
+      call begin_member(self, key)
+      call self%buffer%append("[")
+      do i = 1, size(values)
+         if (i > 1) call self%buffer%append(", ")
+         call self%buffer%append(integer_text(values(i)))
+      end do
+      call self%buffer%append("]")
+   end subroutine add_integers
+
+   subroutine add_texts(self, key, values)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+      type(text_t), intent(in) :: values(:)
+      integer :: i
+
+      call self%begin_array(key)
+      do i = 1, size(values)
+         call self%add("", values(i)%text)
+      end do
+      call self%end_array()
+   end subroutine add_texts
+
+   !> The JSON text so far.
+   function json_text(self) result(text)
+      class(json_t), intent(in) :: self
+      character(len=:), allocatable :: text
+
+      text = self%buffer%text()
+   end function json_text
+
+   !> A string as JSON has it between its quotes. Bytes that are not UTF-8 are read as Latin-1.
+   pure function escaped(text) result(json)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: json
+      character(len=6) :: code
+      integer :: i, byte, n_bytes
+
+      json = ""
+      i = 1
+      do while (i <= len(text))
+         byte = iachar(text(i:i))
+         n_bytes = 1
+         select case (byte)
+         case (8)
+            json = json//"\b"
+         case (9)
+            json = json//"\t"
+         case (10)
+            json = json//"\n"
+         case (12)
+            json = json//"\f"
+         case (13)
+            json = json//"\r"
+         case (34)
+            json = json//'\"'
+         case (92)
+            json = json//"\\"
+         case (32:33, 35:91, 93:126)
+            json = json//text(i:i)
+         case default
+            n_bytes = utf8_length(text(i:))
+            if (byte >= 128 .and. n_bytes > 0) then
+               json = json//text(i:i + n_bytes - 1)
+            else
+               n_bytes = 1
+               write (code, "(a,z4.4)") "\u", byte
+               json = json//code
+            end if
+         end select
+         i = i + n_bytes
+      end do
+   end function escaped
+
+   !> Comma, line break and key before a value.
+   subroutine begin_member(self, key)
+      class(json_t), intent(inout) :: self
+      character(len=*), intent(in) :: key
+
+      if (self%has_members(self%depth)) call self%buffer%append(",")
+      if (self%depth > 0) call break_line(self, self%has_members(self%depth))
+      self%has_members(self%depth) = .true.
+      if (len(key) > 0) call self%buffer%append('"'//escaped(key)//'": ')
+   end subroutine begin_member
+
+   subroutine open_bracket(self, bracket)
+      class(json_t), intent(inout) :: self
+      character(len=1), intent(in) :: bracket
+
+      call self%buffer%append(bracket)
+      self%depth = self%depth + 1
+      self%has_members(self%depth) = .false.
+   end subroutine open_bracket
+
+   subroutine close_bracket(self, bracket)
+      class(json_t), intent(inout) :: self
+      character(len=1), intent(in) :: bracket
+      logical :: was_filled
+
+      was_filled = self%has_members(self%depth)
+      self%depth = self%depth - 1
+      if (was_filled) call break_line(self, .false.)
+      call self%buffer%append(bracket)
+      if (self%depth == 0 .and. .not. self%one_line) call self%buffer%append(newline)
+   end subroutine close_bracket
+
+   !> Go to the next line, indented; on one line, a blank where a comma stands before.
+   subroutine break_line(self, after_comma)
+      class(json_t), intent(inout) :: self
+      logical, intent(in) :: after_comma
+
+      if (.not. self%one_line) then
+         call self%buffer%append(newline//repeat("  ", self%depth))
+      else if (after_comma) then
+         call self%buffer%append(" ")
+      end if
+   end subroutine break_line
+
+   subroutine append_number(self, value)
+      class(json_t), intent(inout) :: self
+      real(rk), intent(in) :: value  !< [unit that the key names]
+
+      if (abs(value) <= huge(value)) then
+         call self%buffer%append_real(value)
+      else  ! a NaN ends here too
+         call self%buffer%append("null")
+      end if
+   end subroutine append_number
+
+end module report_text

@@ -1,0 +1,216 @@
+!> Keeps watch over the limits of a run: which were passed, when and where first, and how far.
+!!
+!! Tips whose intensities are not known well enough to grow on them.
+!!
+!! Growth in equilibrium asks whether K_eq reaches K_IC. A tip of which that may be so, within what
+!! its intensities may be off, has to know them to a share of K_IC (report_limits).
+module report_watch
+   use base_errors, only: error_t, raise_error
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text, integer_text
+   use base_texts, only: add_text, text_t
+   use growth_tip, only: tip_t
+   use report_limits, only: judge, limit_k_error, limit_k_methods, limit_k_to_grow, limits, &
+                            verdict_fine, verdict_stop
+   implicit none(type, external)
+   private
+
+   public :: doubtful, stop_on_doubt, uncertainty, watch_t, worst_place
+
+   integer, parameter :: digits = 4  !< of numbers in sentences
+
+   !> What was seen of one limit.
+   type :: record_t
+      integer(ik) :: states = 0  !< in which it was passed
+      real(rk) :: first = 0.0_rk, worst = 0.0_rk  !< values, in the limit's unit
+      character(len=:), allocatable :: first_at, worst_at  !< time and place, in words
+   end type record_t
+
+   !> All limits of one run.
+   type :: watch_t
+      type(record_t), private :: records(size(limits))
+      integer, private :: stopped_by = 0  !< limit that ends the run
+      type(text_t), allocatable :: news(:)  !< sentences about limits passed for the first time
+   contains
+      procedure :: see
+      procedure :: see_tips
+      procedure :: stop_run
+      procedure :: sentences
+   end type watch_t
+
+   !> K_eq changes by at most so much with an intensity: with K_II, where there is no K_I.
+   real(rk), parameter :: steepest = 2.0_rk/sqrt(3.0_rk)
+
+contains
+
+   !> Take note of a value of the present state.
+   pure subroutine see(self, limit, value, when, xy)
+      class(watch_t), intent(inout) :: self
+      integer, intent(in) :: limit  !< index into the table of limits
+      real(rk), intent(in) :: value  !< in the limit's unit
+      character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
+      real(rk), intent(in), optional :: xy(2)  !< where [m]
+      character(len=:), allocatable :: at
+      integer :: verdict
+      logical :: is_worst
+
+      verdict = judge(limit, value)
+      if (verdict == verdict_fine) return
+      at = "at "//when
+      if (present(xy)) then
+         at = at//", ("//brief_text(xy(1), digits)//", "//brief_text(xy(2), digits)//") m"
+      end if
+      associate (record => self%records(limit))
+         record%states = record%states + 1
+         is_worst = .not. value <= record%worst
+         if (limits(limit)%stop < limits(limit)%warning) is_worst = .not. value >= record%worst
+         if (record%states == 1 .or. is_worst) then
+            record%worst = value
+            record%worst_at = at
+         end if
+         if (record%states == 1) then
+            record%first = value
+            record%first_at = at
+            call add_text(self%news, sentence(limit, record))
+         end if
+      end associate
+      if (verdict == verdict_stop .and. self%stopped_by == 0) self%stopped_by = limit
+   end subroutine see
+
+   !> Take note of the stress intensity factors of all tips.
+   pure subroutine see_tips(self, tips, toughness, may_grow, when)
+      class(watch_t), intent(inout) :: self
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+      logical, intent(in) :: may_grow  !< the scene lets tips grow
+      character(len=*), intent(in) :: when
+      real(rk) :: difference(size(tips)), errors(size(tips)), scale
+      integer(ik) :: i
+
+      if (all(tips%arrested)) return
+      associate (k => tips%intensity)
+         ! Faces that do not move next to the tip give no K, but round-off by correlation.
+         difference = merge(0.0_rk, hypot(k%k1 - k%k1_dc, k%k2 - k%k2_dc), &
+                            tips%arrested .or. hypot(k%k1, k%k2) <= 0.0_rk)
+         errors = merge(0.0_rk, max(k%k1_error, k%k2_error)/tips%drive%resistance, &
+                        tips%arrested)
+         scale = maxval(hypot(k%k1, k%k2), mask=.not. tips%arrested)
+      end associate
+      if (may_grow) scale = max(scale, toughness)
+      i = worst_place(difference)
+      if (.not. difference(i) <= 0.0_rk) then
+         call self%see(limit_k_methods, difference(i)/scale, when, tips(i)%xy)
+      end if
+      if (.not. may_grow) return
+      i = worst_place(errors)
+      call self%see(limit_k_error, errors(i)/toughness, when, tips(i)%xy)
+   end subroutine see_tips
+
+   !> An error if a limit asks to stop the run.
+   pure subroutine stop_run(self, error)
+      class(watch_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (self%stopped_by == 0) return
+      call raise_error(error, "", "a limit of the run is passed: "// &
+                       passed(self%stopped_by, self%records(self%stopped_by)%worst, &
+                              limits(self%stopped_by)%stop)// &
+                       " "//self%records(self%stopped_by)%worst_at//"; "// &
+                       trim(limits(self%stopped_by)%remedy)//" (see docs/limits.md)")
+   end subroutine stop_run
+
+   !> What was seen in the whole run: a sentence for each limit that was passed.
+   pure function sentences(self) result(list)
+      class(watch_t), intent(in) :: self
+      type(text_t), allocatable :: list(:)
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, size(limits)
+         if (self%records(i)%states > 0) call add_text(list, sentence(i, self%records(i)))
+      end do
+   end function sentences
+
+   !> The first value, the worst one if there are several, and what to do.
+   pure function sentence(limit, record) result(text)
+      integer, intent(in) :: limit
+      type(record_t), intent(in) :: record
+      character(len=:), allocatable :: text
+
+      text = passed(limit, record%first, limits(limit)%warning)//" "//record%first_at
+      if (record%states > 1) then
+         text = text//"; in "//integer_text(record%states)//" states, the worst "// &
+                value_text(limit, record%worst)//" "//record%worst_at
+      end if
+      text = text//"; "//trim(limits(limit)%remedy)//" (see docs/limits.md)"
+   end function sentence
+
+   !> A value that has passed a limit.
+   pure function passed(limit, value, bound) result(text)
+      integer, intent(in) :: limit
+      real(rk), intent(in) :: value, bound  !< in the limit's unit
+      character(len=:), allocatable :: text
+
+      text = trim(limits(limit)%name)//" "//value_text(limit, value)// &
+             merge(" below ", " above ", limits(limit)%stop < limits(limit)%warning)// &
+             brief_text(bound, digits)
+   end function passed
+
+   pure function value_text(limit, value) result(text)
+      integer, intent(in) :: limit
+      real(rk), intent(in) :: value  !< in the limit's unit
+      character(len=:), allocatable :: text
+
+      text = brief_text(value, digits)
+      if (limits(limit)%unit /= "-") text = text//" "//trim(limits(limit)%unit)
+   end function value_text
+
+   !> Index of the largest value, or of the first one that is no number.
+   pure integer(ik) function worst_place(values) result(i)
+      real(rk), intent(in) :: values(:)  !< at least one
+
+      i = findloc(values <= huge(1.0_rk), .false., dim=1, kind=ik)
+      if (i == 0) i = maxloc(values, dim=1, kind=ik)
+   end function worst_place
+
+   !> What the intensities of a tip may be off, over the toughness, or over K_eq where that is far
+   !! above it and there is no doubt that the tip grows, only where to [%].
+   elemental real(rk) function uncertainty(tip, toughness)
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+
+      uncertainty = 100.0_rk*error_of_k(tip)/max(toughness, tip%drive%intensity)
+   end function uncertainty
+
+   !> What a better window could mend, and what does not pass by itself.
+   elemental real(rk) function error_of_k(tip)
+      type(tip_t), intent(in) :: tip
+
+      associate (k => tip%intensity)
+         error_of_k = (max(k%k1_error, k%k2_error) - k%passing_error)/tip%drive%resistance
+      end associate
+   end function error_of_k
+
+   !> A tip would grow, or might, and its intensities are not known well enough for that.
+   elemental logical function doubtful(tip, toughness)
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+
+      doubtful = .not. tip%arrested .and. &
+                 judge(limit_k_to_grow, uncertainty(tip, toughness)) == verdict_stop
+      if (doubtful) doubtful = .not. tip%drive%intensity + steepest*error_of_k(tip) < toughness
+   end function doubtful
+
+   !> A tip is doubtful and cannot be known better: a limit of the run is passed.
+   pure subroutine stop_on_doubt(watch, tip, toughness, fracture, when)
+      class(watch_t), intent(inout) :: watch
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+      character(len=*), intent(in) :: fracture  !< its name
+      character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
+
+      call watch%see(limit_k_to_grow, uncertainty(tip, toughness), when//", fracture "// &
+                     trim(fracture)//", end "//integer_text(tip%end), tip%xy)
+   end subroutine stop_on_doubt
+
+end module report_watch
