@@ -61,37 +61,37 @@ module scene_describe
 
    type(row_t), parameter :: rows(*) = [ &
                              row_t("body", "rectangle, disc, polygon", &
-                                 "the same; where it is no rectangle windows are the whole body"), &
+                                 "the same; except for a rectangle the window is the whole body"), &
                              row_t("rock by region", "yes", &
                                   "yes, and permeability, porosity, Biot's coefficient, density"), &
                              row_t("gravity, stress in situ", "yes", &
                                    "yes, and hydrostatic pressure"), &
                row_t("sides: displacement, traction in x and y, along and across, springs", "yes", &
                                    "yes"), &
-                             row_t("sides: pressure, inflow", "no: there is nothing to flow", &
+                             row_t("sides: pressure, inflow", "no: there is no fluid", &
                                    "yes"), &
-               row_t("sides in the course of time", "no: the load factor drives a scene, `&load`", &
+               row_t("time-dependent sides", "no: loads vary by the load factor, `&load`", &
                                    "yes, all values but springs"), &
-                             row_t("unloading", "a load factor that falls, or goes to and fro", &
-                                   "values of sides that fall, wells that take back"), &
+                             row_t("unloading", "a load factor that decreases, or a load cycle", &
+                                   "decreasing values of sides, extraction wells"), &
                              row_t("restraints, point loads", "yes", &
-                        "yes; windows are the whole body then, for a square would not know them"), &
+                        "yes; the window is then the whole body, since a square does not "// &
+                        "include them"), &
                              row_t("faces `friction`, `frictionless`", "yes", &
                                    "yes"), &
                              row_t("faces `open`", "yes", &
-                  "no: faces that overlap hold less than no fluid; `frictionless` ones part by "// &
-                                   "themselves"), &
+                  "no: overlapping faces would have negative fluid volume; use `frictionless`"), &
                              row_t("faces with a given `slip`", "yes", &
-                            "no: the slip would need a course in time; wells and sides drive it"), &
+                            "no: prescribed slip would need a schedule; use wells and sides"), &
                              row_t("faces `held_closed`", "yes", &
-                                   "no: fluid would find no way to open them"), &
+                                   "no: fluid could not open them"), &
                              row_t("`face_pressure`", "yes", &
-                                   "no: the pressure of the fluid takes its place"), &
-                             row_t("radiation damping", "no: nothing happens in time", &
+                                   "no: replaced by the fluid pressure"), &
+                             row_t("radiation damping", "no: there is no time", &
                                    "yes, without intensities"), &
                              row_t("growth", "in equilibrium, `paris`", &
                                    "in equilibrium, `paris`"), &
-                             row_t("mesh", "`&fe`, and `&adaptive`, which follows the error", &
+                             row_t("mesh", "`&fe`, and adaptive refinement by `&adaptive`", &
                                    "`&coarse`, and `&fine` windows around the tips")]
 
 contains
@@ -259,7 +259,7 @@ contains
       integer :: i
 
       write (unit, "(a)") "", "## With and without a fluid", "", &
-         "Where a column says no, the scene is refused with a sentence.", "", &
+         "Where a column has no, the scene is refused with a message.", "", &
          "| | without &fluid | with &fluid |", "|---|---|---|"
       do i = 1, size(rows)
          write (unit, "(a)") "| "//trim(rows(i)%what)//" | "//trim(rows(i)%without)//" | "// &

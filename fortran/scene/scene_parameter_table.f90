@@ -82,12 +82,12 @@ module scene_parameter_table
    type(parameter_t), parameter :: body_parameters(*) = [ &
       parameter_t("scene", "name", kind_name, &
                   absent="the file's name without .nml", derived=.true., &
-                  meaning="Short name; results go to `out/<name>` unless told otherwise"), &
+                  meaning="Short name; results are in `out/<name>` unless --out is used"), &
       parameter_t("scene", "title", kind_text, default="''", &
-                  meaning="What the scene shows, in a line"), &
+                  meaning="One-line description"), &
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
                   choices="rectangle|disc|polygon", &
-                  meaning="Of the body"), &
+                  meaning="Shape of the body"), &
       parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
                   of="shape=rectangle", &
                   meaning="Left side"), &
@@ -110,54 +110,59 @@ module scene_parameter_table
                   absent="no disc", meaning="Radius of the disc"), &
       parameter_t("domain", "x", kind_reals, "m", need_choice, absent="no polygon", &
                   of="shape=polygon", &
-                  meaning="x of the corners of a polygon, either way round; edge k runs from "// &
-                  "corner k to the next one, the last to corner 1"), &
+                  meaning="x of the corners of a polygon, in either orientation; edge k "// &
+                          "connects corner k and the next one, the last edge ends at corner 1"), &
       parameter_t("domain", "y", kind_reals, "m", need_choice, absent="no polygon", &
                   of="shape=polygon", &
                   meaning="y of the corners"), &
       parameter_t("side", "name", kind_name, need=need_always, &
-                  meaning="Of a rectangle `left`, `right`, `bottom` or `top`; else any, "// &
-                  "different from that of every other side"), &
+                  meaning="`left`, `right`, `bottom` or `top` of a rectangle; otherwise any, "// &
+                          "different from that of every other side"), &
       parameter_t("side", "edges", kind_wholes, absent="no polygon", range=at_least_one, &
                   meaning="Numbers of a polygon's edges, required there"), &
       parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
                   with="arc_to_deg", &
-                meaning="Where an arc of a disc's rim begins, counter-clockwise from the x axis"), &
+                meaning="Start of an arc of a disc's rim, counter-clockwise from the x axis"), &
       parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
                   with="arc_from_deg", &
-                  meaning="Where it ends, above arc_from_deg by at most 360"), &
-      parameter_t("side", "x_displacement", kind_reals, "m", absent="traction is given", &
+                  meaning="End of the arc, above arc_from_deg by at most 360"), &
+      parameter_t("side", "x_displacement", kind_reals, "m", absent="traction is prescribed", &
                   meaning="Prescribed displacement in x"), &
-      parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is given", &
+      parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is prescribed", &
                   meaning="Prescribed displacement in y"), &
-      parameter_t("side", "x_traction", kind_reals, "Pa", absent="0, or displacement is given", &
+      parameter_t("side", "x_traction", kind_reals, "Pa", absent=&
+                  "0, or displacement is prescribed", &
                   meaning="Total traction in x: on the right side, compression is negative"), &
-      parameter_t("side", "y_traction", kind_reals, "Pa", absent="0, or displacement is given", &
+      parameter_t("side", "y_traction", kind_reals, "Pa", absent=&
+                  "0, or displacement is prescribed", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
       parameter_t("side", "normal_traction", kind_reals, "Pa", absent="0", &
-                  meaning="Traction along the outward normal, compression is negative; beside "// &
-                  "neither displacements nor tractions in x and y"), &
+                  meaning="Traction along the outward normal, compression is negative; not "// &
+                          "with displacements or tractions in x and y"), &
       parameter_t("side", "shear_traction", kind_reals, "Pa", absent="0", &
-                  meaning="Traction along the side in the direction that has the body on its "// &
-                  "left; as normal_traction"), &
-      parameter_t("side", "x_spring", unit="Pa/m", absent="none", range=positive, &
-                  meaning="The side stands on springs in x: traction against its displacement "// &
-                  "and over it, beside the tractions that are given"), &
-      parameter_t("side", "y_spring", unit="Pa/m", absent="none", range=positive, &
+                  meaning="Tangential traction, positive with the body on the left; "// &
+                          "conditions as for normal_traction"), &
+      parameter_t("side", "x_spring", unit="Pa/m", absent="no spring", range=positive, &
+                  meaning="Stiffness of springs on the side in x: traction opposite to the "// &
+                          "displacement and proportional to it, in addition to prescribed "// &
+                          "tractions"), &
+      parameter_t("side", "y_spring", unit="Pa/m", absent="no spring", range=positive, &
                   meaning="The same in y"), &
       parameter_t("side", "pressure", kind_reals, "Pa", absent="no flow", scenes=in_fluid, &
-                  meaning="Prescribed pore pressure; of a fluid with a density that at y_datum "// &
-                  "of &in_situ"), &
+                  meaning="Prescribed pore pressure; with a fluid density that at y_datum of "// &
+                          "&in_situ"), &
       parameter_t("side", "inflow", kind_reals, "m/s", absent="no flow", scenes=in_fluid, &
-                  meaning="Volume that comes in per time and area; negative: goes out. Not "// &
-                  "beside pressure"), &
-      parameter_t("side", "time", kind_reals, "s", absent="nothing changes", scenes=in_fluid, &
+                  meaning="Prescribed inflow per time and area; negative: outflow. Not with "// &
+                          "pressure"), &
+      parameter_t("side", "time", kind_reals, "s", absent="constant in time", scenes=in_fluid, &
                   range=at_least_zero, &
-                meaning="Of the values of the side, each of which has one or as many; they are "// &
-                "straight between times and jump after two that are equal. No step straddles it"), &
+                meaning="Times of the values of the side, each of which has one value or one "// &
+                        "per time; linear between times, with a jump at two equal times. No "// &
+                        "step straddles them"), &
       parameter_t("side", "schedule", kind_text, absent="no table", scenes=in_fluid, &
-                  meaning="CSV file beside the scene file with a row per time, instead of time "// &
-                  "and values: columns time_s, x_traction_pa, pressure_pa, inflow_m_s and so on"), &
+                  meaning="CSV file in the folder of the scene with a row per time, instead "// &
+                          "of time and values: columns time_s, x_traction_pa, pressure_pa, "// &
+                          "inflow_m_s and so on"), &
       parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
       parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
       parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &
@@ -194,11 +199,13 @@ module scene_parameter_table
       parameter_t("material", "permeability_xy", unit="m2", absent="0", &
                   meaning="Component xy of the permeability tensor"), &
       parameter_t("material", "density", unit="kg/m3", range=positive, absent="no weight", &
-                  meaning="Density of the rock, with a fluid in its pores, for gravity"), &
+                  meaning="Density of the rock, with a fluid including the pore fluid, for "// &
+                          "gravity"), &
       parameter_t("material", "radiation_damping", unit="Pa s/m", default="0.0", &
                   range=at_least_zero, scenes=in_fluid, &
-                  meaning="Shear traction that slip radiates per velocity: G/(2 c_s), with the "// &
-                  "velocity of shear waves c_s; unstable slip lasts by it. Not with intensities"), &
+                  meaning="Radiation damping: shear traction per slip rate, G/(2 c_s), with "// &
+                          "the shear wave velocity c_s; gives unstable slip a duration. Not "// &
+                          "with intensities"), &
       parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, &
                   absent="unlimited", range=positive, &
                   meaning="Fracture toughness K_IC"), &
@@ -217,46 +224,47 @@ module scene_parameter_table
                   "are then those at y_datum of &in_situ"), &
       parameter_t("fluid", "vapour_pressure", unit="Pa", absent="0, or without loads no limit", &
                   derived=.true., &
-                  meaning="Least pressure in fractures, which vapour fills where fluid lacks: "// &
-                  "about 0 if pressures count from vacuum"), &
+                  meaning="Lowest pressure in fractures, at which vapour forms: about 0 for "// &
+                          "absolute pressures"), &
       parameter_t("fluid", "viscosity_law", kind_choice, default="'constant'", &
                   choices="constant|exponential|table", &
-                  meaning="How the viscosity in fractures follows pressure. The rock keeps "// &
-                  "`viscosity` and `compressibility`"), &
+                  meaning="Pressure dependence of the viscosity in fractures. The rock uses "// &
+                          "`viscosity` and `compressibility`"), &
       parameter_t("fluid", "viscosity_exponent", unit="1/Pa", need=need_choice, &
                   absent="no exponential law", range=exponent_range, &
                   of="viscosity_law=exponential", &
                   meaning="beta in mu = viscosity exp(beta (p - reference_pressure))"), &
       parameter_t("fluid", "density_law", kind_choice, default="'linear'", &
                   choices="linear|exponential|table", &
-                  meaning="That in fractures. linear: a volume V stores V c_p dp of a step's "// &
-                  "dp. Exponential: exp(compressibility (p - reference_pressure))"), &
+                  meaning="Density in fractures. linear: a volume V stores V c_p dp in a "// &
+                          "step. exponential: exp(compressibility (p - reference_pressure))"), &
       parameter_t("fluid", "reference_pressure", unit="Pa", &
                   absent="pressure of &initial, if there is a law", derived=.true., &
-                  meaning="Pressure at which the fluid has its `viscosity`, and the density in "// &
-                  "which rates, volumes and balances count it"), &
+                  meaning="Pressure at which the fluid has its `viscosity`, and the reference "// &
+                          "density of rates, volumes and balances"), &
       parameter_t("fluid", "table_pressure", kind_reals, "Pa", absent="no table", &
-                  meaning="Rising pressures of a table. Between them the logarithms are "// &
-                  "linear, beyond them values constant, of which run.json warns"), &
+                  meaning="Increasing pressures of a table. Logarithms are interpolated "// &
+                          "linearly; beyond the table values are constant and run.json warns"), &
       parameter_t("fluid", "table_viscosity", kind_reals, "Pa s", need_choice, &
                   absent="no table", range=positive, of="viscosity_law=table", &
                   meaning="Viscosities at these pressures"), &
       parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, &
                   absent="no table", range=positive, of="density_law=table", &
-                  meaning="Densities at these pressures, not falling; only ratios count"), &
+                  meaning="Densities at these pressures, not decreasing; only ratios matter"), &
       parameter_t("region", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
                   choices="polygon|half_plane|band|parabola", &
-                  meaning="A polygon, all to the left of a line, between two curves, or to the "// &
-                  "right of a parabola or between two"), &
+                  meaning="A polygon, the half-plane left of a line, a band between two "// &
+                          "curves, or the part right of a parabola or between two"), &
       parameter_t("region", "x", kind_reals, "m", absent="a parabola", &
-                  meaning="x of a polygon's corners, either way round; of two points of the "// &
-                  "line; or along the first curve of a band"), &
+                  meaning="x of a polygon's corners, in either orientation; of two points of "// &
+                          "the line; or along the first curve of a band"), &
       parameter_t("region", "y", kind_reals, "m", absent="a parabola", meaning="y of the same"), &
       parameter_t("region", "x_other", kind_reals, "m", need_choice, absent="no band", &
                   of="shape=band", &
-                  meaning="x along the second curve of a band, the same way as the first"), &
+                  meaning="x along the second curve of a band, in the same direction as the "// &
+                          "first"), &
       parameter_t("region", "y_other", kind_reals, "m", need_choice, absent="no band", &
                   of="shape=band", meaning="y along the second curve"), &
       parameter_t("region", "x_vertex", kind_reals, "m", need_choice, absent="no parabola", &
@@ -288,11 +296,12 @@ module scene_parameter_table
                   meaning="Component xy of the permeability tensor"), &
       parameter_t("region", "density", unit="kg/m3", scenes=in_fluid, range=positive, &
                   absent="that of &material", derived=.true., &
-                  meaning="Density of the rock with what fills its pores; the body settles "// &
-                  "under it. Not with a stress in situ that changes with y, nor with windows"), &
+                  meaning="Density of the rock including the pore fluid; the body settles "// &
+                          "under it. Not with a stress in situ that varies with y, nor with "// &
+                          "windows"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
                   absent="that of &material", derived=.true., &
-                  meaning="Fracture toughness K_IC, which counts where a tip is")]
+                  meaning="Fracture toughness K_IC of tips in the region")]
    !&>
 
    ! The table keeps its own layout.
@@ -305,68 +314,68 @@ module scene_parameter_table
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
       parameter_t("fracture", "law", kind_choice, default="'friction'", &
                   choices="friction|frictionless|slip|open", &
-                  meaning="What the faces do; open and slip only without a fluid. "// &
-                  "Slip: contact with a given slip; open: free of traction, free to overlap"), &
+                  meaning="Law of the faces; open and slip only without a fluid. slip: "// &
+                          "contact with prescribed slip; open: traction-free, may overlap"), &
       parameter_t("fracture", "slip", unit="m", need=need_choice, absent="not given", &
                   of="law=slip", scenes=in_mechanics, &
-                  meaning="Given slip, left against right side in the fracture's direction, "// &
-                  "times the load factor"), &
+                  meaning="Prescribed slip of the left side relative to the right side in the "// &
+                          "fracture's direction, times the load factor"), &
       parameter_t("fracture", "slip_taper", unit="m", range=positive, scenes=in_mechanics, &
                   of="law=slip", &
                   absent="half the fracture's length", derived=.true., &
-                  meaning="The given slip rises from a free end as a quarter of an ellipse of "// &
-                  "this length"), &
+                  meaning="The prescribed slip increases from a free end as a quarter ellipse "// &
+                          "of this length"), &
       parameter_t("fracture", "friction", need=need_choice, range=at_least_zero, &
                   of="law=friction", absent="no friction", &
                   meaning="Coefficient of friction mu_s; 0: frictionless"), &
       parameter_t("fracture", "friction_residual", with="weakening_slip", range=at_least_zero, &
                   of="law=friction", at_most="friction", absent="friction does not weaken", &
-                  meaning="Friction mu_r that is left after weakening_slip"), &
+                  meaning="Residual friction mu_r after weakening_slip"), &
       parameter_t("fracture", "weakening_slip", unit="m", range=positive, of="law=friction", &
                   with="friction_residual", absent="friction does not weaken", &
-                  meaning="Slip over which friction falls, linearly with the path that the "// &
-                  "faces have slipped"), &
+                  meaning="Slip distance over which friction decreases, linearly with the "// &
+                          "accumulated slip path"), &
       parameter_t("fracture", "dilation_slip", unit="m", range=positive, of="law=friction", &
-                  absent="dilation goes on", &
+                  absent="unlimited dilation", &
                   meaning="Slip at which dilation ends"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
                   of="law=friction", &
-                  meaning="Dilation angle psi: slip opens the fracture by tan(psi) of itself"), &
+                  meaning="Dilation angle psi: opening is tan(psi) times slip"), &
       parameter_t("fracture", "normal_stiffness", unit="Pa/m", with="closure", range=positive, &
                   absent="closed faces are rigid", &
-                  meaning="Stiffness k_ni at which faces that touch without pressure begin to "// &
-                  "close under it, s = k_ni d/(1 - d/closure)"), &
+                  meaning="Initial normal stiffness k_ni of faces in contact at zero stress, "// &
+                          "s = k_ni d/(1 - d/closure)"), &
       parameter_t("fracture", "closure", unit="m", with="normal_stiffness", range=positive, &
                   absent="closed faces are rigid", &
-                  meaning="Largest closure d under contact pressure; aperture is that of faces "// &
-                  "that touch without. Wings do not close"), &
+                  meaning="Maximum closure d under contact stress; aperture is that at zero "// &
+                          "contact stress. Wings do not close"), &
       parameter_t("fracture", "cohesion", unit="Pa", range=positive, of="law=friction", &
                   absent="no bond", &
-                  meaning="Shear strength of a bond beside friction. Slip of weakening_slip "// &
-                  "breaks it for good; friction_residual may be friction"), &
+                  meaning="Shear strength of a bond, in addition to friction. Slip of "// &
+                          "weakening_slip breaks it permanently; friction_residual may be "// &
+                          "friction"), &
       parameter_t("fracture", "tensile_strength", unit="Pa", range=positive, of="law=friction", &
                   with="opening_weakening", absent="no bond", &
-                  meaning="Tension that the same bond bears, at most cohesion/friction"), &
+                  meaning="Tensile strength of the same bond, at most cohesion/friction"), &
       parameter_t("fracture", "opening_weakening", unit="m", range=positive, of="law=friction", &
                   with="tensile_strength", absent="no bond", &
                   meaning="Opening that breaks the bond, with the energy tensile_strength "// &
                   "opening_weakening/2"), &
       parameter_t("fracture", "toughness", unit="Pa m^1/2", range=positive, &
                   absent="that of the rock", &
-                  meaning="K_IC at which its tips and those of its wings grow, whatever rock "// &
-                  "they are in"), &
+                  meaning="K_IC of its tips and those of its wings, in any rock"), &
       parameter_t("fracture", "skin", unit="Pa s/m", scenes=in_fluid, range=positive, &
                   absent="no skin", &
-                  meaning="Pressure over flux that a layer on each face takes between fracture "// &
-                  "and rock; faces that grow have none"), &
+                  meaning="Resistance of a layer on each face, pressure difference over flux "// &
+                          "between fracture and rock; new faces have none"), &
       parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
                   scenes=in_mechanics, &
-                  meaning="The faces slide but never part, and friction goes on with the "// &
-                  "normal traction where that is tension: a model of reference solutions. "// &
-                  "Faces that grow may part"), &
+                  meaning="The faces slide but never separate, and friction continues with "// &
+                          "tensile normal traction: a model of reference solutions. New faces "// &
+                          "may separate"), &
       parameter_t("fracture", "face_pressure", unit="Pa", default="0.0", scenes=in_mechanics, &
-                  meaning="Pressure that pushes the faces apart, those of its wings too, times "// &
-                  "the load factor; contact carries the rest"), &
+                  meaning="Pressure on the faces, also on those of its wings, times the load "// &
+                          "factor, in addition to contact"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
                   meaning="Residual hydraulic aperture a_0 of the closed fracture")]
    !&>
@@ -378,86 +387,91 @@ module scene_parameter_table
                   meaning="Name, different from that of every other well"), &
       parameter_t("injection", "fracture", kind_name, absent="in the rock, at x and y", &
                   meaning="Name of the fracture"), &
-      parameter_t("injection", "rate", kind_reals, "m2/s", absent="what pressure makes of it", &
-                  meaning="Volume per time and per metre of thickness, over the whole well; "// &
-                  "negative: extraction. One value, or one per stage"), &
+      parameter_t("injection", "rate", kind_reals, "m2/s", absent="follows from pressure", &
+                  meaning="Volume per time and metre of thickness, of the whole well; "// &
+                          "negative: extraction. One value, or one per stage"), &
       parameter_t("injection", "pressure", kind_reals, "Pa", absent="no limit", &
-               meaning="Pressure of the well, at its depth; beside a rate the one that it does "// &
-                  "not pass: the largest in injection, the least in extraction. As rate"), &
+               meaning="Pressure of the well, at its depth; with a rate its limit: the "// &
+                       "largest in injection, the lowest in extraction. One value, or one per "// &
+                       "stage"), &
       parameter_t("injection", "time", kind_reals, "s", range=at_least_zero, &
                   absent="one stage, from start", &
-                  meaning="When each stage begins, in rising order"), &
+                  meaning="Start of each stage, in increasing order"), &
       parameter_t("injection", "schedule", kind_text, absent="no table", &
                   meaning="CSV file with a row per stage instead of time, rate and pressure: "// &
-                  "columns time_s, rate_m2_s, pressure_pa; beside the scene file"), &
+                          "columns time_s, rate_m2_s, pressure_pa; in the folder of the scene"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
-                  meaning="Time when it begins; with stages that of the first"), &
+                  meaning="Start time; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
-                  meaning="Time when it is shut, after start and after the last stage's"), &
+                  meaning="Time of shut-in, after start and after the start of the last stage"), &
       parameter_t("injection", "x", unit="m", absent="over the whole fracture", &
                   with="y", meaning="x of the point of injection"), &
       parameter_t("injection", "y", unit="m", absent="over the whole fracture", &
                   with="x", meaning="y of the point of injection"), &
       parameter_t("injection", "storage", unit="m2/Pa", default="0.0", range=at_least_zero, &
-                  meaning="Wellbore storage: fluid that the well itself holds, per metre of "// &
-                  "thickness and per pressure at its head"), &
+                  meaning="Wellbore storage: stored volume per metre of thickness and per "// &
+                          "pressure at the head"), &
       parameter_t("injection", "friction", unit="Pa s/m2", default="0.0", range=at_least_zero, &
-                  meaning="Pressure lost between the well's head and the fracture, per rate"), &
+                  meaning="Pressure loss between well head and fracture, per rate"), &
       parameter_t("injection", "turbulence", unit="Pa s2/m4", default="0.0", &
                   range=at_least_zero, &
-                  meaning="The same per square of the rate"), &
+                  meaning="Pressure loss per rate squared"), &
       parameter_t("injection", "radius", unit="m", default="0.1", range=positive, &
-                 meaning="Radius of a well in the rock, for its pressure; not one in a fracture"), &
+                 meaning="Radius of a well in the rock, for its pressure; not for a well in a "// &
+                         "fracture"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
                   choices="equilibrated|undrained", &
-                  meaning="After loading: that of the matrix around the fracture, or what the "// &
-                  "load produces in the fracture when nothing has flowed yet"), &
+                  meaning="After loading: that of the surrounding rock, or the undrained "// &
+                          "response in the fracture"), &
       parameter_t("initial", "pressure", unit="Pa", default="0.0", &
-                  meaning="Pore pressure before the load acts; of a fluid with a density that "// &
-                  "at y_datum of &in_situ"), &
+                  meaning="Pore pressure before loading; with a fluid density that at y_datum "// &
+                          "of &in_situ"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
                   meaning="End of the run"), &
       parameter_t("time", "step", unit="s", range=positive, at_most="end", &
-                  absent="as long as tolerance allows", &
-                  meaning="The time step; with a tolerance the longest one"), &
+                  absent="limited by tolerance", &
+                  meaning="Step size; with a tolerance the largest one"), &
       parameter_t("time", "tolerance", range=below_one, derived=.true., &
                   absent="0.01, or 0 with step alone", &
-                 meaning="Error in time that a step may make, over the range of pressure, slip "// &
-                  "and opening so far; 0: the default, 0.01 without step or with growth in "// &
-                  "equilibrium"), &
+                 meaning="Time error of a step relative to the range of pressure, slip and "// &
+                         "opening so far; 0: the default, 0.01 without step or with growth in "// &
+                         "equilibrium"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
-                  meaning="Share of step that follows growth with law = 'paris'"), &
+                  meaning="Fraction of step used after growth with law = 'paris'"), &
       parameter_t("time", "smallest_factor", range=below_one, derived=.true., &
                   at_most="growth_factor", &
                   absent="1e-6, or 1e-9 without step", &
-                  meaning="Share of step, or of end without it, below which a cut step ends "// &
-                  "the run; no step is cut to less than a 64th of that; 0: the default"), &
+                  meaning="Fraction of step, or of end without it, below which a cut step "// &
+                          "ends the run; no step is cut to less than a 64th of that; 0: the "// &
+                          "default"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &
       parameter_t("in_situ", "sxx_per_y", unit="Pa/m", default="0.0", &
                   meaning="Change of stress xx per metre upwards"), &
       parameter_t("in_situ", "syy_per_y", unit="Pa/m", default="0.0", &
-                  meaning="Change of stress yy per metre upwards; it must carry the weight: "// &
-                  "density times gravity g gives density*g"), &
+                  meaning="Change of stress yy per metre upwards; it must balance the weight: "// &
+                          "density times gravity g gives density*g"), &
       parameter_t("in_situ", "y_datum", unit="m", default="0.0", &
-                  meaning="Where stress xx and yy are those given, and with a density of the "// &
-                  "fluid all pressures"), &
+                  meaning="Level of the prescribed stresses xx and yy, and with a fluid "// &
+                          "density of all pressures"), &
       parameter_t("gravity", "x", unit="m/s2", default="0.0", meaning="Acceleration in x"), &
       parameter_t("gravity", "y", unit="m/s2", default="0.0", &
                   meaning="Acceleration in y, on earth -9.81"), &
       parameter_t("load", "from", default="0.0", &
                   meaning="Load factor before the first step"), &
-      parameter_t("load", "to", default="1.0", meaning="Load factor at the end, another one"), &
-      parameter_t("load", "factors", kind_reals, absent="straight to its end", &
-                  meaning="Load factors through which the load is led in turn instead of to: "// &
-                  "the table of a load cycle. Each differs from the one before it"), &
+      parameter_t("load", "to", default="1.0", meaning="Load factor at the end, different "// &
+                                                       "from from"), &
+      parameter_t("load", "factors", kind_reals, absent="one load segment, to its end", &
+                  meaning="Successive load factors instead of to: the table of a load cycle. "// &
+                          "Each differs from the previous one"), &
       parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
-                  meaning="Equal steps from the one to the other, with factors to each of them"), &
+                  meaning="Number of equal steps between from and to, or to each of factors"), &
       parameter_t("load", "control", kind_choice, absent="'length', with factors 'dead'", &
                   derived=.true., choices="length|dead", &
-                  meaning="Where growth in equilibrium needs less load than before, the factor "// &
-                  "follows it down, or stays: then growth is unstable until it arrests")]
+                  meaning="If equilibrium growth requires a smaller load, the factor "// &
+                          "decreases (length), or stays and growth is unstable until it "// &
+                          "arrests (dead)")]
    !&>
 
    ! The table keeps its own layout.
@@ -472,19 +486,19 @@ module scene_parameter_table
                   "the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
                   derived=.true., &
-                  meaning="Size of the elements around a tip, less where something is near"), &
+                  meaning="Size of the elements around a tip, smaller if another object is near"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
                   meaning="Quarter-point elements around a tip"), &
       parameter_t("fe", "element", kind_choice, default="'quarter_point'", &
                   choices="quarter_point|collapsed|plain", &
-                  meaning="Around a tip: triangles with quarter points, collapsed "// &
-                  "quadrilaterals with quarter points, or triangles like all others"), &
+                  meaning="Elements around a tip: triangles with quarter points, collapsed "// &
+                          "quadrilaterals with quarter points, or ordinary triangles"), &
       parameter_t("adaptive", "enabled", kind_logical, default=".false.", &
-                  meaning="The mesh follows the error"), &
+                  meaning="Adaptive meshes"), &
       parameter_t("adaptive", "tolerance", default="0.01", range=share, &
-                  meaning="Wanted error of the stresses in the energy norm, over the norm"), &
+                  meaning="Target relative error of the stresses in the energy norm"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
-                  meaning="Meshes after the first at most"), &
+                  meaning="Maximum number of adapted meshes"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
                   absent="no fracture", &
                   at_most="size_boundary", &
@@ -498,49 +512,48 @@ module scene_parameter_table
                   meaning="Relative residual at which a step has converged"), &
       parameter_t("coarse", "condensation", kind_choice, default="'auto'", &
                   choices="auto|full|sparse", &
-                 meaning="How the fractures' equations are solved: on a full matrix onto which "// &
-                  "the rock is condensed, or without it; `auto` takes what is cheaper"), &
+                 meaning="Solution of the fracture equations: condensation of the rock onto a "// &
+                         "full matrix, or one sparse system; `auto` selects the cheaper one"), &
       parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
                   choices="body", absent="no fine level", &
-                 meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; "// &
-                  "or the whole body, one window for all tips"), &
+                 meaning="Edge l of the square window around a tip, more than 2 size_ratio "// &
+                         "dH; or the whole body as one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &
-                  meaning="Fine mesh size at the tip as a share eps_m of dH"), &
+                  meaning="Fine mesh size at the tip as a fraction eps_m of dH"), &
       parameter_t("fine", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
                   meaning="Quarter-point elements around a tip"), &
       parameter_t("fine", "face_condition", kind_choice, default="'contact'", &
                   choices="contact|jump|traction", &
-                  meaning="On old fracture faces: contact solved again, or the coarse jump or "// &
-                  "traction"), &
+                  meaning="Condition on existing fracture faces: contact, or the coarse jump "// &
+                          "or traction"), &
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
                   meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "law", kind_choice, default="'equilibrium'", &
                   choices="equilibrium|paris", &
-                  meaning="Growing tips stay at K_eq = K_IC as time goes on or the load "// &
-                  "changes, or advance by steps, at one load, by the Paris-type law of the "// &
-                  "thesis"), &
+                  meaning="Growing tips remain at K_eq = K_IC in time or under load, or "// &
+                          "advance by increments, at constant load, by the Paris-type law of "// &
+                          "the thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
                   absent="the fine mesh size, or size_fracture", &
-                  meaning="Largest advance l_max of a tip at a time, or length of a piece of "// &
-                  "its path; 0: the default, "// &
-                  "the fine mesh size, or without a fluid size_fracture"), &
+                  meaning="Largest advance l_max of a tip, or length of a path segment; 0: "// &
+                          "the default, the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
                   meaning="Exponent m of advance = l_max (G/G_max)^m, with law = 'paris'"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
-                 meaning="Growth is handed to the coarse level at this share eps_p of dH, with "// &
-                  "law = 'paris'"), &
+                 meaning="Growth updates the coarse level at this fraction eps_p of dH, with "// &
+                         "law = 'paris'"), &
       parameter_t("growth", "new_aperture", unit="m", default="1.0e-5", range=positive, &
                   scenes=in_fluid, &
                   meaning="Residual aperture of new fracture cells: a roughness that conducts "// &
-                  "fluid but holds none, unless new_volume is 'prefilled'"), &
+                          "fluid but stores none, unless new_volume is 'prefilled'"), &
       parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
                   scenes=in_fluid, &
                   choices="conserved|prefilled", &
-                  meaning="Fluid of new cells: drawn from the connected cells as they open, or "// &
-                  "appearing with them"), &
+                  meaning="Fluid of new cells: supplied by the connected cells as they open, "// &
+                          "or added with them"), &
       parameter_t("growth", "stop_gain", unit="m", range=positive, absent="no limit", &
-                  meaning="The run ends when any fracture end has grown by this"), &
+                  meaning="The run ends when any fracture end has grown by this length"), &
       parameter_t("probe", "name", kind_name, need=need_always, &
                   meaning="Name, different from that of every other probe"), &
       parameter_t("probe", "x", unit="m", need=need_always, meaning="x, within the domain"), &
@@ -550,20 +563,21 @@ module scene_parameter_table
                   absent="the regular step", derived=.true., &
                   meaning="Time between written fields; 0: the regular step"), &
       parameter_t("output", "growth_states", kind_integer, range=at_least_zero, default="200", &
-                  meaning="Most states of growth that VTU files are written of beside those of "// &
-                  "interval or of the load's steps"), &
+                  meaning="Maximum number of states of growth with VTU files, in addition to "// &
+                          "those of interval or of the load steps"), &
       parameter_t("output", "stimulated_jump", unit="m", default="1.0e-6", range=positive, &
                   scenes=in_fluid, &
-                  meaning="Slip or opening since the start from which faces of fractures count "// &
-                  "as stimulated, and mean slip from which slip_events.csv has an event"), &
+                  meaning="Slip or opening since the start above which fractures count as "// &
+                          "stimulated, and mean slip of the smallest event in slip_events.csv"), &
       parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
                   scenes=in_fluid, &
-                meaning="Assumed length of the fractures out of the plane, for area and moment "// &
-                  "in slip_events.csv; nothing else depends on it"), &
+                meaning="Assumed out-of-plane length of the fractures, used only for area and "// &
+                        "moment in slip_events.csv"), &
       parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &
                   scenes=in_fluid, &
-                  meaning="Slip rate from which slip is seismic: where the largest one of a "// &
-                  "patch passes it, an event of slip_events.csv ends and another one begins")]
+                  meaning="Slip rate above which slip is seismic: where the largest one of a "// &
+                          "patch passes it, an event of slip_events.csv ends and another one "// &
+                          "begins")]
    !&>
 
 end module scene_parameter_table

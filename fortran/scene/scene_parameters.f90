@@ -28,90 +28,93 @@ module scene_parameters
    ! The table keeps its own layout.
    !&<
    type(group_t), parameter :: groups(*) = [ &
-      group_t("scene", implied=.true., meaning="What the scene is called."), &
+      group_t("scene", implied=.true., meaning="Name and title of the scene."), &
       group_t("domain", implied=.true., &
          meaning="The body, of unit thickness: a rectangle, a disc "// &
               "or a polygon."), &
       group_t("material", implied=.true., &
-              meaning="The rock, linear elastic and porous. The storage coefficient that "// &
-              "follows from it must be positive, and `biot` at least `porosity`. Permeability "// &
-              "is either isotropic or a positive definite tensor."), &
+              meaning="The rock, linear poroelastic. The resulting storage coefficient must "// &
+                      "be positive, and `biot` at least `porosity`. Permeability is either "// &
+                      "isotropic or a positive definite tensor."), &
       group_t("fluid", &
               meaning="The fluid in pores and fractures. A scene without this group is "// &
-              "mechanics only, and can have neither injections nor pressures: finite elements "// &
-              "on the whole body under a load that rises or falls."), &
+                      "mechanics only, without injections and pressures: finite elements on "// &
+                      "the whole body under a variable load."), &
       group_t("region", repeated=.true., &
-              meaning="A part of the body with rock of its own: what it does not give is that "// &
-              "of &material. It may reach beyond the body, and fractures may cross it. Where "// &
-              "two overlap, the later one in the file counts. Coarse cells follow its outline "// &
-              "where there is room; one that the outline cuts takes means of the rocks, so a "// &
-              "region should be wider than a cell."), &
+              meaning="A part of the body with its own rock properties; omitted ones are "// &
+                      "those of &material. It may extend beyond the body, and fractures may "// &
+                      "cross it. Where two overlap, the later one in the file applies. Coarse "// &
+                      "cells follow its outline where there is room; cut cells have averages "// &
+                      "of the rocks, so a region should be wider than a cell."), &
       group_t("fracture", repeated=.true., &
               meaning="A fracture: a polyline inside the domain. Its ends may lie on the "// &
-              "boundary; it must not run along the boundary. With a fluid such an end is "// &
-              "sealed, unless the side has a pressure, which then is that of the end; and "// &
-              "fractures may cross, touch or share ends as long as none grows. Of a joint that "// &
-              "closes under pressure (normal_stiffness), jumps and stress intensity factors "// &
-              "count from faces that touch without, in a scene with a stress in situ from "// &
-              "that. What grows from a fracture has its friction, but no closure, bond or skin."), &
+                      "boundary; it must not run along the boundary. With a fluid such an end "// &
+                      "is sealed unless the side has a prescribed pressure, which is then "// &
+                      "that of the end; and fractures may cross, touch or share ends as long "// &
+                      "as none grows. With joint closure (normal_stiffness), jumps and stress "// &
+                      "intensity factors are relative to faces in contact without stress, or "// &
+                      "with a stress in situ to that state. Wings of a fracture have its "// &
+                      "friction, but no closure, bond or skin."), &
       group_t("side", repeated=.true., &
-             meaning="A side of the body: of a rectangle one of its four, of a polygon some of "// &
-              "its edges, of a disc its rim or an arc of it. Per component either the "// &
-              "displacement or the total traction is prescribed; what is not given is free of "// &
-            "traction. Displacements or springs must hold the body against translation and "// &
-              "rotation. With a fluid all values may change with time."), &
+             meaning="A side of the body: one of four of a rectangle, some edges of a "// &
+                     "polygon, the rim of a disc or an arc of it. Per component either the "// &
+                     "displacement or the total traction is prescribed; by default it is "// &
+                     "traction-free. Displacements or springs must prevent translation and "// &
+                     "rotation of the body. With a fluid all values may vary in time."), &
       group_t("restraint", repeated=.true., &
-              meaning="A point of the body held in place. It becomes a node of the mesh, and "// &
-              "must not lie on a fracture, unless at a tip: each face has nodes of its own. "// &
-              "Three components hold a body that nothing else does, and bear nothing where its "// &
-              "loads are in balance; what they bear otherwise is a point load, around which "// &
-              "results depend on the size of cells."), &
+              meaning="A fixed point of the body. It becomes a node of the mesh, and must not "// &
+                      "lie on a fracture except at a tip, since each face has separate nodes. "// &
+                      "Three components fix the rigid motions of a body, without force if its "// &
+                      "loads are in equilibrium; otherwise the force is a point load, around "// &
+                      "which results depend on the cell size."), &
       group_t("point_load", repeated=.true., &
               meaning="A force at a point of the body, per metre of thickness, times the load "// &
-              "factor. The point becomes a node of the mesh, and must not lie on a fracture, "// &
-              "unless at a tip: each face has nodes of its own."), &
+                      "factor. The point becomes a node of the mesh, and must not lie on a "// &
+                      "fracture except at a tip, since each face has separate nodes."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
               meaning="A well, at a rate, at a pressure, or at a rate up to a pressure, in "// &
-              "stages. It feeds a fracture as it is at the start, or the cell nearest to a "// &
-              "point of it (two equally near: half each), where fractures meet all of them; or "// &
-              "the rock around a point. No step straddles the beginning of a stage, or its "// &
-              "reaching or leaving of a limit."), &
+                      "stages. It supplies the initial length of a fracture, or its cell "// &
+                      "nearest to a point (half each of two equally near ones), at an "// &
+                      "intersection all fractures; or the rock around a point. No step "// &
+                      "straddles the beginning of a stage, or the time at which a limit is "// &
+                      "reached or left."), &
       group_t("initial", implied=.true., scenes=in_fluid, &
               meaning="State before the first step."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
-              meaning="Stress in the body before the load, in equilibrium with tractions on "// &
-              "its sides, which go on acting beside those of &side, and with gravity where it "// &
-              "changes with y. The load factor does not scale it. With a fluid it is the total "// &
-              "stress at the initial pressure."), &
+              meaning="Stress in the body before loading, in equilibrium with tractions on "// &
+                      "its sides, which act in addition to those of &side, and with gravity "// &
+                      "if it varies with y. The load factor does not scale it. With a fluid "// &
+                      "it is the total stress at the initial pressure."), &
       group_t("gravity", implied=.true., &
-              meaning="Acceleration that gives the rock its weight, density times gravity, "// &
-              "which the load factor does not scale. An in-situ stress that changes with y "// &
-              "carries it from the start; without one it loads the body. A fluid with a "// &
-              "density has weight too: its pressure grows with depth from the start."), &
+              meaning="Acceleration for the weight of the rock, density times gravity, which "// &
+                      "the load factor does not scale. An in-situ stress that varies with y "// &
+                      "balances it from the start; otherwise it loads the body. A fluid with "// &
+                      "a density has weight too: its pressure increases with depth from the "// &
+                      "start."), &
       group_t("load", implied=.true., scenes=in_mechanics, &
-              meaning="How the load changes: tractions, point loads and displacements are "// &
-              "those of the scene times a factor, which rises, or falls where to is less than "// &
-              "from, or goes to and fro between factors; the first state, at from, is reached "// &
-              "from nothing. Faces keep what they have slipped until friction lets them slip "// &
-              "back, and cracks do not heal. With growth the factor at which the next tip "// &
-              "grows is found, and never stepped over."), &
+              meaning="Load programme: tractions, point loads and displacements are those of "// &
+                      "the scene times a factor, which increases, or decreases if to is less "// &
+                      "than from, or follows a table of factors; the first state, at from, is "// &
+                      "reached from zero load. Slip is retained until friction allows reverse "// &
+                      "slip, and cracks do not heal. With growth the factor of the next onset "// &
+                      "is found, and never stepped over."), &
       group_t("fe", implied=.true., scenes=in_mechanics, &
               meaning="Finite elements on the whole body: six-node triangles, with "// &
               "quarter-point elements around the fracture tips."), &
       group_t("adaptive", implied=.true., scenes=in_mechanics, &
-              meaning="Meshes that follow the estimated error of the stresses (Zienkiewicz and "// &
-          "Zhu): after the first mesh of the body and after every growth. Within size_boundary "// &
-              "of a point load, whose energy is infinite, the error does not count."), &
+              meaning="Adaptive meshes by the estimated error of the stresses (Zienkiewicz "// &
+                      "and Zhu), for the first mesh and after growth. Within size_boundary of "// &
+                      "a point load, whose energy is infinite, the error is ignored."), &
       group_t("coarse", implied=.true., scenes=in_fluid, &
               meaning="The coarse level: finite volumes on the whole body."), &
       group_t("fine", implied=.true., scenes=in_fluid, &
               meaning="The fine level: finite elements in a window around each fracture tip. "// &
-              "Used where growth or stress intensity factors are asked for."), &
+                      "Used with growth or stress intensity factors."), &
       group_t("growth", implied=.true., meaning="Fracture growth."), &
       group_t("probe", repeated=.true., &
               meaning="A point of the rock where the state is recorded in probes.csv."), &
-      group_t("output", implied=.true., meaning="What is written, and how often.")]
+      group_t("output", implied=.true., meaning="Output of fields and derived quantities.")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [ &

@@ -54,8 +54,8 @@ module scene_plausible
               "rock has 1e9 to 1e11 Pa"), &
       doubt_t("material", "poisson", "-", &
               "above 0.49, with intensities, in plane strain, without &adaptive", &
-              "the elements around the tips are too stiff then: stress intensity factors are "// &
-              "off by up to 1 %, with &adaptive by 0.1 %"), &
+              "elements around the tips are then too stiff: stress intensity factors are up "// &
+              "to 1 % off, with &adaptive 0.1 %"), &
       doubt_t("material", "density", "kg/m3", "below 100 or above 10000, if not 0", &
               "rock has 2000 to 3000 kg/m3"), &
       doubt_t("material", "porosity", "-", "above 0.5", &
@@ -71,65 +71,66 @@ module scene_plausible
       doubt_t("fracture", "friction", "-", "above 1.5", &
               "rock has 0.3 to 1"), &
       doubt_t("fracture", "dilation_deg", "degree", "above the angle of friction", &
-              "then a slipping fracture does work instead of taking it up; 0 to 10 is usual"), &
+              "a slipping fracture then releases energy instead of dissipating it; 0 to 10 is "// &
+              "usual"), &
       doubt_t("fracture", "aperture", "m", "above a tenth of the fracture's length", &
-              "natural fractures have 1e-5 to 1e-3 m; the cubic law is for thin ones"), &
+              "natural fractures have 1e-5 to 1e-3 m; the cubic law is valid for thin ones"), &
       doubt_t("side", "traction", "Pa", "tension across a side, with wells", &
               "rock at depth is compressed, and compression is negative"), &
       doubt_t("injection", "start", "s", "not before the end of &time", &
-              "the well never runs"), &
+              "the well is never active"), &
       doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
-              "a window is cut out around each tip; a few times the fracture is usual, and "// &
-              "'body' is one window for all tips"), &
+              "a window is a part of the body around a tip; a few fracture lengths are usual, "// &
+              "and 'body' is one window for all tips"), &
       doubt_t("output", "interval", "s", "below the step of &time", &
               "fields are written at most once per step"), &
       doubt_t("fluid", "compressibility", "1/Pa", &
               "above 0, but Skempton's coefficient B exceeds 1", &
-              "a load makes a larger pressure than itself at once then; rock has B of 0.3 to 1"), &
+              "the undrained pressure then exceeds the load; rock has B of 0.3 to 1"), &
       doubt_t("region", "permeability", "m2", "above 1e-8", &
               "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("region", "width", "m", "below size_boundary: twice its area over its outline", &
-              "cells may be wider and mix its permeability with that around it; make "// &
-              "size_boundary smaller"), &
+              "cells may be wider and average its permeability with that around it; reduce "// &
+              "size_boundary"), &
       doubt_t("fracture", "gap", "m", &
               "of an end below 0.05 increments, with growth and &fluid", &
-             "the rock between fails as soon as the tip exceeds its toughness; let them touch, "// &
-              "or move them apart, if that is not meant"), &
+             "the ligament fails as soon as the tip exceeds its toughness; let them touch, or "// &
+             "separate them, if this is unintended"), &
       doubt_t("fracture", "stub", "m", &
               "past a fracture that it crosses below 0.05 increments, likewise", &
-              "its end is a tip of its own, in cells as small as the stub; let it end on the "// &
-              "other one if that is meant"), &
+              "its end is a separate tip, with cells as small as the stub; let it end on the "// &
+              "other one if this is unintended"), &
       doubt_t("material", "anisotropy", "-", "above 10, with &fluid", &
-              "where rock conducts so much better one way, pressures may leave their bounds: "// &
-              "by a fifth of their range where it is 100"), &
+              "with such anisotropy pressures may leave their bounds: by a fifth of their "// &
+              "range at 100"), &
       doubt_t("fluid", "density", "kg/m3", "below 1 or above 3000, if not 0", &
               "water has 1000 kg/m3"), &
       doubt_t("fluid", "density", "kg/m3", "0, with &gravity", &
-              "its pressure does not grow with depth then; water has 1000 kg/m3"), &
-      doubt_t("in_situ", "syy_per_y", "Pa/m", "0, with &gravity, beside a stress, with &fluid", &
-              "the weight loads the body beside that stress then; density times gravity "// &
-              "carries it from the start"), &
+              "its pressure then does not increase with depth; water has 1000 kg/m3"), &
+      doubt_t("in_situ", "syy_per_y", "Pa/m", "0, with &gravity and a stress, with &fluid", &
+              "the weight then loads the body in addition to that stress; a gradient of "// &
+              "density times gravity balances it from the start"), &
       doubt_t("in_situ", "tension", "Pa", "above 0 somewhere in the body, with &fluid", &
               "rock at depth is compressed, and compression is negative"), &
       doubt_t("initial", "pressure", "Pa", &
               "below vapour_pressure somewhere, by the fluid's density", &
-              "there is no water table: fractures there begin with vapour; give a larger "// &
+              "there is no water table: fractures there begin with vapour; use a larger "// &
               "pressure or another y_datum"), &
       doubt_t("initial", "pressure", "Pa", &
               "above the smallest compression in situ somewhere", &
               "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
               "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
-              "the fluid's viscosity decides about growth then, not the toughness; growth is "// &
-              "verified for K_m of 1 and more, and below it the run may end early"), &
+              "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, "// &
+              "and below it the run may end early"), &
       doubt_t("restraint", "surplus", "-", &
-              "above 0: given components beyond what holds the body", &
-              "they are point loads then, around which results depend on the size of cells; "// &
-              "give sides displacements or springs instead"), &
+              "above 0: more components than fix the rigid motions", &
+              "they are then point loads, around which results depend on the cell size; use "// &
+              "displacements or springs on sides instead"), &
       doubt_t("material", "poisson", "-", &
               "above 0.49, likewise, with friction, with &adaptive too", &
-              "friction follows wrong normal tractions around tips then: K_II of tips that "// &
-              "slide closed is off by several per cent; their stated errors cover it")]
+              "friction then follows wrong normal tractions around tips: K_II of closed "// &
+              "sliding tips is several per cent off, within their stated errors")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
