@@ -154,7 +154,7 @@ def test_where_no_window_helps_the_run_stops(tmp_path: Path) -> None:
         " grow "
     )
     assert " % above 5 at 0 s, fracture f1, end " in reason
-    assert "give a smaller size_fracture, with a fluid a larger window" in reason
+    assert "reduce size_fracture, with a fluid use a larger window" in reason
     out = tmp_path / "out"
     assert record(out)["status"] == "failed"
     assert windows(tmp_path)
