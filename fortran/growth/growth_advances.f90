@@ -37,6 +37,7 @@ module growth_advances
       integer :: evaluations = 0
       logical :: is_monotone = .false.  !< Newton steps have made no headway
       real(rk), allocatable, private :: lower(:), upper(:)  !< [m]
+      real(rk), allocatable, private :: length(:)  !< between them [m]
       real(rk), allocatable, private :: scale(:)  !< of the natural residual [1/m]
       real(rk), allocatable, private :: best(:)  !< place with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< there [-]
@@ -61,7 +62,7 @@ contains
    !> Begin at a place with an estimate of the matrix.
    subroutine begin(self, lower, upper, place, matrix)
       class(advances_t), intent(out) :: self
-      real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower < upper [m]
+      real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower <= upper [m]
       real(rk), intent(in) :: place(:)  !< (tips) to be evaluated first [m]
       real(rk), intent(in) :: matrix(:, :)  !< (tips, tips) estimate of d(excess)/da [1/m]
       integer :: i
@@ -70,7 +71,8 @@ contains
       self%upper = upper
       self%place = min(upper, max(lower, place))
       self%matrix = matrix
-      self%scale = [(max(-matrix(i, i), flat/(upper(i) - lower(i))), i=1, size(lower))]
+      self%length = max(upper - lower, epsilon(1.0_rk)*max(abs(upper), tiny(1.0_rk)/epsilon(1.0_rk)))
+      self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]
    end subroutine begin
 
    !> Take the excess at `place`, and set `place` to where it is to be evaluated next. It has not
@@ -84,10 +86,10 @@ contains
 
       self%evaluations = self%evaluations + 1
       if (self%evaluations > 1) call self%learn(excess)
+      if (.not. self%is_monotone) call self%judge(excess)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance))
       if (.not. has_moved) return
       if (.not. self%is_monotone) then
-         call self%judge(excess)
          if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
             call self%propose(has_moved)
             if (has_moved) return
@@ -136,8 +138,7 @@ contains
          self%residual = residual
          self%rejected = 0
       else
-         self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best) &
-                                                      /(self%upper - self%lower)))
+         self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best)/self%length))
          self%rejected = self%rejected + 1
       end if
    end subroutine judge
@@ -149,7 +150,7 @@ contains
       real(rk) :: scaled(size(excess), size(excess))
       integer :: j
 
-      associate (length => self%upper - self%lower)
+      associate (length => self%length)
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
@@ -166,14 +167,16 @@ contains
       logical, intent(out) :: has_moved
       real(rk), dimension(size(self%best)) :: change, reach
 
-      associate (length => self%upper - self%lower)
+      associate (length => self%length)
          reach = self%radius*length
          call complementary_advances(self%excess, self%matrix, &
                                      max(self%lower - self%best, -reach), &
                                      min(self%upper - self%best, reach), change)
          has_moved = any(abs(change) > resolution*length)
       end associate
-      if (has_moved) self%place = min(self%upper, max(self%lower, self%best + change))
+      if (.not. has_moved) return
+      self%place = max(self%lower, self%best + change)
+      where (self%place > self%upper - resolution*self%length) self%place = self%upper
    end subroutine propose
 
    !> Tips that exceed their toughness advance, tips below it go back into their brackets.
@@ -189,7 +192,7 @@ contains
       has_moved = .false.
       do i = 1, size(self%place)
          associate (place => self%place(i), near => self%near(i), far => self%far(i), &
-                    excess => self%excess(i), length => self%upper(i) - self%lower(i))
+                    excess => self%excess(i), length => self%length(i))
             if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance)) cycle
             if (excess > 0.0_rk) then
                near = place

@@ -31,7 +31,8 @@ program test_growth_advances
    call test_parallel()
    call test_unstable()
    call test_drop()
-   call test_recorded_cycle()
+   call test_shapes()
+   call test_moving()
    call test_random_problems()
    call test_order()
    call checks%finish()
@@ -191,35 +192,111 @@ contains
       excess = merge(0.497_rk, -0.4_rk, place < 0.3_rk)
    end function dropping
 
-   !> Excess of a tip of scene D4 at 194.226 s in which secants went round in a cycle of four tries.
-   subroutine test_recorded_cycle()
+   !> However the excess of one tip depends on its place, the search ends, and where it ends the tip
+   !! does not exceed its toughness, unless it is at its upper bound; nor is it below its toughness,
+   !! but next to a place where it exceeds it, or at its lower bound.
+   subroutine test_shapes()
+      character(len=*), parameter :: name(9) = [character(len=16) :: "monotone", "sudden", "noisy", &
+                                                "two roots", "cycle of D4", "flat", &
+                                                "always above", "always below", "steep"]
+      real(rk), parameter :: start(3) = [0.05_rk, 0.3045_rk, 0.9_rk], &
+                             slope(4) = [-0.5_rk, -0.02_rk, -40.0_rk, 0.5_rk]
+      integer :: i, j, k, most, total
+
+      most = 0
+      total = 0
+      do k = 1, size(name)
+         do i = 1, size(start)
+            do j = 1, size(slope)
+               call search(trim(name(k)), k, start(i), slope(j), most, total)
+            end do
+         end do
+      end do
+      print '(a, i0, a, f0.1)', "one tip: evaluations at most ", most, ", mean ", &
+         real(total, rk)/(size(name)*size(start)*size(slope))
+      call checks%is_true(most <= 60, "in a bounded number of evaluations")
+   end subroutine test_shapes
+
+   !> One search up to 1 m from a place that the tip cannot go back from.
+   subroutine search(name, number, start, slope, most, total)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: number  !< of the function
+      real(rk), intent(in) :: start  !< [m]
+      real(rk), intent(in) :: slope  !< first estimate [1/m]
+      integer, intent(inout) :: most, total  !< evaluations of a search, and of all so far
+      real(rk), parameter :: near = 5.0e-4_rk  !< [m]
       type(advances_t) :: advances
-      real(rk) :: excess(1)
-      real(rk) :: slope(5)
-      integer :: i
+      real(rk) :: left
+      logical :: has_moved
 
-      slope = [-60.0_rk, -20.0_rk, -5.0_rk, -100.0_rk, 30.0_rk]
-      do i = 1, size(slope)
-         call solve(recorded, reshape(slope(i:i), [1, 1]), [2.0e-3_rk], advances)
-         excess = recorded(advances%place)
-         call checks%is_close(excess(1), 0.0_rk, tolerance, "recorded cycle: at its toughness")
-         call checks%is_true(advances%evaluations <= 10, "recorded cycle: few evaluations")
+      call advances%begin([start], [1.0_rk], [start], reshape([slope], [1, 1]))
+      do
+         call advances%improve([sample(number, advances%place(1))], tolerance, has_moved)
+         if (.not. has_moved .or. advances%evaluations > 100) exit
       end do
-   end subroutine test_recorded_cycle
+      most = max(most, advances%evaluations)
+      total = total + advances%evaluations
+      associate (place => advances%place(1))
+         left = sample(number, place)
+         call checks%is_true(left <= tolerance .or. place >= 1.0_rk, name//": not beyond K_IC")
+         call checks%is_true(left >= -tolerance .or. place <= start + near .or. &
+                             sample(number, place - near) > 0.0_rk, name//": no farther than needed")
+      end associate
+   end subroutine search
 
-   pure function recorded(place) result(excess)
-      real(rk), intent(in) :: place(:)  !< [m]
-      real(rk) :: excess(size(place))
-      real(rk), parameter :: x(6) = [0.0_rk, 0.609e-3_rk, 0.975e-3_rk, 1.276e-3_rk, 1.814e-3_rk, &
-                                     2.0e-3_rk]
-      real(rk), parameter :: y(6) = [0.05_rk, 0.0275_rk, 0.0192_rk, -0.0227_rk, -0.0343_rk, &
-                                     -0.04_rk]
-      integer :: i
+   !> Excesses that have been met, or might be [-].
+   pure real(rk) function sample(number, s)
+      integer, intent(in) :: number
+      real(rk), intent(in) :: s  !< [m]
+      ! Scene D4 at 194.226 s, where secants went round in a cycle of four tries: a tip between two
+      ! others; places over the length of its segment, 2 mm.
+      real(rk), parameter :: at(4) = [0.3045_rk, 0.4875_rk, 0.638_rk, 0.907_rk], &
+                             d4(4) = [0.0275_rk, 0.0192_rk, -0.0227_rk, -0.0343_rk]
+      integer :: k
 
-      do i = 1, 5
-         if (place(1) >= x(i)) excess = y(i) + (y(i + 1) - y(i))*(place(1) - x(i))/(x(i + 1) - x(i))
+      select case (number)
+      case (1)
+         sample = sqrt(0.55_rk/s) - 1.0_rk
+      case (2)
+         sample = merge(0.497_rk, -0.3_rk, s < 0.61803_rk)
+      case (3)
+         sample = 0.5_rk*(0.7_rk - s) + 0.8_rk*tolerance*sin(1.0e4_rk*s)
+      case (4)
+         sample = (s - 0.4_rk)*(s - 0.8_rk)
+      case (5)
+         k = max(1, min(3, count(at <= s)))
+         sample = d4(k) + (d4(k + 1) - d4(k))/(at(k + 1) - at(k))*(s - at(k))
+      case (6)
+         sample = 0.02_rk*tanh(300.0_rk*(0.65_rk - s))
+      case (7)
+         sample = 0.02_rk + 0.01_rk*sin(20.0_rk*s)
+      case (8)
+         sample = -0.02_rk - 0.01_rk*sin(20.0_rk*s)
+      case default
+         sample = 33.0_rk*(0.2008_rk - s)
+      end select
+   end function sample
+
+   !> Where tips outside the problem move, the excess at a place is another one each time: the search
+   !! ends all the same, and not where the tip exceeds its toughness.
+   subroutine test_moving()
+      type(advances_t) :: advances
+      logical :: has_moved
+      real(rk) :: left
+      integer :: period, try
+
+      do period = 1, 5
+         call advances%begin([0.05_rk], [1.0_rk], [0.05_rk], reshape([-0.5_rk], [1, 1]))
+         do try = 1, 100
+            left = merge(0.1_rk, -0.1_rk, modulo(try, period + 1) < period)
+            if (period > 3) left = 0.1_rk*sin(real(try*period, rk)) + 0.02_rk
+            call advances%improve([left], tolerance, has_moved)
+            if (.not. has_moved) exit
+         end do
+         call checks%is_true(.not. has_moved, "moving: the search ends")
+         call checks%is_true(left <= tolerance .or. advances%place(1) >= 1.0_rk, "moving: at rest")
       end do
-   end function recorded
+   end subroutine test_moving
 
    !> 1,000 problems of 2 to 40 tips that help, shade or both, with slopes that differ by a hundred.
    !! None cycles.
