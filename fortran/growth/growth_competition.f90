@@ -20,31 +20,9 @@ module growth_competition
    ! Where a tip is within its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
 
-   public :: complementary_advances, corrected_advances, learn_from_trial, preference
+   public :: complementary_advances, learn_from_trial, preference
 
 contains
-
-   !> The changes of the advances of a group, but for that of one, the leader, which stays, with
-   !! which all come to their toughness. Zero where the equations have no solution.
-   subroutine corrected_advances(lack, matrix, slope, leader, change)
-      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
-      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
-      real(rk), intent(in) :: slope(:)  !< c [Pa m^1/2]
-      integer(ik), intent(in) :: leader  !< index in the group
-      real(rk), intent(out) :: change(size(lack))  !< [m]
-      real(rk) :: equations(size(lack), size(lack)), right(size(lack), 1)
-      integer(ik) :: pivots(size(lack)), info, n
-
-      n = size(lack, kind=ik)
-      equations = matrix
-      equations(:, leader) = slope  ! the change of the load factor takes the leader's place
-      right(:, 1) = lack
-      call dgesv(n, 1_ik, equations, n, pivots, right, n, info)
-      change = 0.0_rk
-      if (info /= 0) return
-      change = right(:, 1)
-      change(leader) = 0.0_rk
-   end subroutine corrected_advances
 
    !> The changes of the advances of a group, within bounds, after which no tip that could go on
    !! exceeds its toughness, and none that could go back is below it (principal pivoting, Cottle and

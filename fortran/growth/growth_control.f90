@@ -1,47 +1,96 @@
-!> Length control: how far the tips of a group go while the load factor follows them.
+!> Length control: how far the tips of a group go while the load factor follows them. One tip, the
+!! leader, goes to the end of its segment and is at its toughness by the load; the others are in
+!! equilibrium at that load (growth_advances).
+!!
+!! With K_i + sum_j M_ij da_j + c_i df for small changes, the leader L eliminates the load factor:
+!! the others answer with M_ij - c_i/c_L M_Lj, and exceed their toughness at the leader's load by
+!! excess_i - c_i/c_L excess_L.
 module growth_control
    use base_kinds, only: ik, rk
-   use growth_competition, only: corrected_advances
-   use growth_kinds, only: matrix_of_kinds, means, of_kinds
+   use growth_advances, only: advances_t
    implicit none(type, external)
    private
 
-   public :: better_advances, fitted, joined_groups
+   public :: fitted, joined_groups, length_control_t
+
+   !> A search for the advances of a group.
+   type :: length_control_t
+      integer, private :: leader = 0  !< 0: not chosen yet
+      integer, allocatable, private :: others(:)
+      type(advances_t), private :: advances  !< of the others
+   contains
+      procedure :: improve
+      procedure, private :: choose_leader
+   end type length_control_t
 
 contains
 
-   !> Better advances of tips that grow in kinds. Tips that would go back go back in steps.
-   subroutine better_advances(kind, lack, matrix, slope, room, tolerance, advance)
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
-      real(rk), intent(in) :: matrix(:, :)  !< M of growth_competition [Pa m^-1/2]
-      real(rk), intent(in) :: slope(:)  !< dK_eq/df [Pa m^1/2]
-      real(rk), intent(in) :: room(:)  !< to the ends of the pieces [m]
-      real(rk), intent(in) :: tolerance  !< on the lack of tips that have advanced [Pa m^1/2]
+   !> Better advances, with the excess at the present ones and a load at which no tip exceeds its
+   !! toughness. The tips may be groups of equal ones. They have not moved where all are in
+   !! equilibrium within the tolerance.
+   subroutine improve(self, excess, matrix, slope, room, shortest, tolerance, advance, has_moved)
+      class(length_control_t), intent(inout) :: self
+      real(rk), intent(in) :: excess(:)  !< (tips) K_eq/K_IC - 1 [-]
+      real(rk), intent(in) :: matrix(:, :)  !< first estimate of M over K_IC [1/m]
+      real(rk), intent(in) :: slope(:)  !< c over K_IC [-]
+      real(rk), intent(in) :: room(:)  !< to the ends of the segments [m]
+      real(rk), intent(in) :: shortest(:)  !< advances that the mesh can hold [m]
+      real(rk), intent(in) :: tolerance  !< on the excess [-]
       real(rk), intent(inout) :: advance(:)  !< [m]
-      real(rk), parameter :: back = 0.25_rk  ! of an advance is left at least
-      real(rk), dimension(maxval(kind)) :: gain, lack_of, room_of, slope_of
-      real(rk) :: of_all(maxval(kind), maxval(kind))
-      real(rk), allocatable :: change(:)
-      integer(ik), allocatable :: free(:)
-      logical :: is_free(maxval(kind))
-      integer(ik) :: k, leader
+      logical, intent(out) :: has_moved
+      real(rk), dimension(size(excess)) :: at_leader, before, share
+      real(rk), allocatable :: reduced(:, :)
+      integer :: i
 
-      of_all = matrix_of_kinds(kind, matrix)
-      lack_of = of_kinds(kind, means(kind, lack))
-      slope_of = of_kinds(kind, means(kind, slope))
-      room_of = of_kinds(kind, room)
-      gain = of_kinds(kind, means(kind, advance))
-      ! One that stays goes on again where it is not behind.
-      is_free = gain > 0.0_rk .or. lack_of <= tolerance
-      free = pack([(k, k=1, size(gain, kind=ik))], is_free)
-      leader = minloc(lack_of(free), dim=1, kind=ik)  ! has no need to go back
-      allocate (change(size(free)))
-      call corrected_advances(lack_of(free), of_all(free, free), slope_of(free), leader, change)
-      ! The matrix may be that of quite other places: back in steps.
-      gain(free) = min(room_of(free), max(gain(free) + change, back*gain(free)))
-      advance = gain(kind)
-   end subroutine better_advances
+      before = advance
+      call self%choose_leader(excess, slope, room, advance)
+      share = share_of_load(slope, self%leader)
+      at_leader = excess - share*excess(self%leader)
+      if (self%advances%evaluations == 0) then
+         associate (others => self%others)
+            reduced = matrix(others, others)
+            do i = 1, size(others)
+               reduced(i, :) = reduced(i, :) - share(others(i))*matrix(self%leader, others)
+            end do
+            call self%advances%begin(0.0_rk*room(others), room(others), advance(others), reduced)
+         end associate
+      end if
+      call self%advances%improve(at_leader(self%others), tolerance, has_moved)
+      if (.not. has_moved) return
+      where (self%advances%place < shortest(self%others))
+         self%advances%place = merge(shortest(self%others), 0.0_rk, &
+                                     self%advances%place > 0.5_rk*shortest(self%others))
+      end where
+      advance(self%others) = self%advances%place
+      has_moved = any(abs(advance - before) > 0.0_rk)
+   end subroutine improve
+
+   !> The leader is the tip that has come to the end of its segment; of several, the one that needs
+   !! the least load.
+   subroutine choose_leader(self, excess, slope, room, advance)
+      class(length_control_t), intent(inout) :: self
+      real(rk), intent(in) :: excess(:), slope(:), room(:)
+      real(rk), intent(inout) :: advance(:)
+      integer :: i, leader
+
+      leader = maxloc(excess/max(slope, tiny(1.0_rk)), mask=advance >= room, dim=1)
+      if (leader == 0) leader = maxloc(advance/room, dim=1)
+      if (leader == self%leader) return
+      self%leader = leader
+      advance(leader) = room(leader)
+      self%others = pack([(i, i=1, size(excess))], [(i /= leader, i=1, size(excess))])
+      self%advances = advances_t()
+   end subroutine choose_leader
+
+   !> c_i/c_L; 1 where the load does not drive the leader.
+   pure function share_of_load(slope, leader) result(share)
+      real(rk), intent(in) :: slope(:)
+      integer, intent(in) :: leader
+      real(rk) :: share(size(slope))
+
+      share = 1.0_rk
+      if (slope(leader) > 0.0_rk) share = slope/slope(leader)
+   end function share_of_load
 
    !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
    !! mesh is none, nor what hardly changes the intensities.
