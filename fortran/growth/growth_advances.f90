@@ -38,6 +38,7 @@ module growth_advances
       logical :: is_monotone = .false.  !< Newton steps have made no headway
       real(rk), allocatable, private :: lower(:), upper(:)  !< [m]
       real(rk), allocatable, private :: length(:)  !< between them [m]
+      real(rk), allocatable, private :: sliver(:)  !< below the upper bounds; counts as there [m]
       real(rk), allocatable, private :: scale(:)  !< of the natural residual [1/m]
       real(rk), allocatable, private :: best(:)  !< place with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< there [-]
@@ -60,11 +61,12 @@ module growth_advances
 contains
 
    !> Begin at a place with an estimate of the matrix.
-   subroutine begin(self, lower, upper, place, matrix)
+   subroutine begin(self, lower, upper, place, matrix, sliver)
       class(advances_t), intent(out) :: self
       real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower <= upper [m]
       real(rk), intent(in) :: place(:)  !< (tips) to be evaluated first [m]
       real(rk), intent(in) :: matrix(:, :)  !< (tips, tips) estimate of d(excess)/da [1/m]
+      real(rk), intent(in), optional :: sliver(:)  !< so near to its upper bound a tip goes there [m]
       integer :: i
 
       self%lower = lower
@@ -72,6 +74,8 @@ contains
       self%place = min(upper, max(lower, place))
       self%matrix = matrix
       self%length = max(upper - lower, epsilon(1.0_rk)*max(abs(upper), tiny(1.0_rk)/epsilon(1.0_rk)))
+      self%sliver = resolution*self%length
+      if (present(sliver)) self%sliver = max(self%sliver, sliver)
       self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]
    end subroutine begin
 
@@ -83,6 +87,7 @@ contains
       real(rk), intent(in) :: tolerance  !< on the excess [-]
       logical, intent(out) :: has_moved
       integer, parameter :: evaluations_max = 16, rejected_max = 5
+      logical :: is_stuck
 
       self%evaluations = self%evaluations + 1
       if (self%evaluations > 1) call self%learn(excess)
@@ -91,8 +96,8 @@ contains
       if (.not. has_moved) return
       if (.not. self%is_monotone) then
          if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
-            call self%propose(has_moved)
-            if (has_moved) return
+            call self%propose(has_moved, is_stuck)
+            if (.not. is_stuck) return
          end if
          has_moved = .true.
          self%is_monotone = .true.
@@ -161,22 +166,24 @@ contains
       end associate
    end subroutine learn
 
-   !> The solution of the linear problem within the trust region around the best place.
-   subroutine propose(self, has_moved)
+   !> The solution of the linear problem within the trust region around the best place. Tips that
+   !! are at an upper bound stay there if they would go back by no more than a sliver.
+   subroutine propose(self, has_moved, is_stuck)
       class(advances_t), intent(inout) :: self
       logical, intent(out) :: has_moved
-      real(rk), dimension(size(self%best)) :: change, reach
+      logical, intent(out) :: is_stuck  !< the linear problem leads nowhere
+      real(rk), dimension(size(self%best)) :: change, reach, to
 
-      associate (length => self%length)
-         reach = self%radius*length
-         call complementary_advances(self%excess, self%matrix, &
-                                     max(self%lower - self%best, -reach), &
-                                     min(self%upper - self%best, reach), change)
-         has_moved = any(abs(change) > resolution*length)
-      end associate
-      if (.not. has_moved) return
-      self%place = max(self%lower, self%best + change)
-      where (self%place > self%upper - resolution*self%length) self%place = self%upper
+      reach = self%radius*self%length
+      call complementary_advances(self%excess, self%matrix, max(self%lower - self%best, -reach), &
+                                  min(self%upper - self%best, reach), change)
+      is_stuck = .not. any(abs(change) > resolution*self%length)
+      has_moved = .false.
+      if (is_stuck) return
+      to = max(self%lower, self%best + change)
+      where (to > self%upper - self%sliver) to = self%upper
+      has_moved = any(abs(to - self%place) > resolution*self%length)
+      self%place = to
    end subroutine propose
 
    !> Tips that exceed their toughness advance, tips below it go back into their brackets.
@@ -208,6 +215,7 @@ contains
                           2.0_rk*resolution*length*growth**self%monotone_steps)
                to = min(self%upper(i), place + step)
             end if
+            if (to > self%upper(i) - self%sliver(i)) to = self%upper(i)
             has_moved = has_moved .or. abs(to - place) > 0.0_rk
             place = to
          end associate

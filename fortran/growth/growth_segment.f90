@@ -4,7 +4,7 @@ module growth_segment
    implicit none(type, external)
    private
 
-   public :: segment_t
+   public :: segment_t, sliver
 
    !> A piece of a path. The tip goes from its start to its end; then the next one begins.
    type :: segment_t
@@ -43,6 +43,9 @@ module growth_segment
    !> Share of a segment that a tip moves by at least: next to another fracture its excess has been
    !! seen to fall by 33 K_IC per segment, so that a thousandth is worth 3 % of it.
    real(rk), parameter :: closest = 1.0e-4_rk
+
+   !> Share of a segment that is not left for the next step.
+   real(rk), parameter :: sliver = 0.03_rk
 
    !> Share of a segment that a tip goes along at least: what the mesh around it can hold.
    real(rk), parameter :: least = 0.05_rk
@@ -189,7 +192,7 @@ contains
       real(rk), intent(in) :: wanted  !< from the start of the piece [m]
 
       within = min(self%length, max(self%lowest(), wanted))
-      if (within > 0.97_rk*self%length) within = self%length  ! no sliver is left for the next step
+      if (within > (1.0_rk - sliver)*self%length) within = self%length
    end function within
 
    !> How far back the tip may go [m].

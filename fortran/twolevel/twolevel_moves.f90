@@ -5,7 +5,7 @@ module twolevel_moves
    use growth_advances, only: advances_t
    use growth_company, only: lags_behind
    use growth_kinds, only: numbered
-   use growth_segment, only: segment_t
+   use growth_segment, only: segment_t, sliver
    use growth_tip, only: tip_t
    use twolevel_excess, only: excesses, shared_excesses, tolerance
    use twolevel_pieces, only: have_come
@@ -67,7 +67,7 @@ contains
       if (search%evaluations == 0) then
          first = self%segment(leader)
          call search%begin(first%lowest(), first%length, first%reached, &
-                           self%rivals%matrix_for(on_way, number, first))
+                           self%rivals%matrix_for(on_way, number, first), sliver*first%length)
       end if
       call search%improve(excess(leader), tolerance, has_moved)
       do k = 1, size(leader, kind=ik)
