@@ -1,18 +1,15 @@
 !> Tips that grow together at their toughness: how their advances are put right, and whether one of
 !! them could run ahead.
 !!
-!! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f. The
-!! tips of a group stay at their toughness together where that is K_IC for all; the advance of one
-!! of them is given, which is what is controlled instead of the load. Equal growth is stable where M
-!! is negative definite on the advances on which the load does no work, c^T da = 0: else there are
-!! others, in which one tip runs ahead and the load unloads the rest.
+!! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f
+!! (growth_control). Equal growth is stable where M is negative definite on the advances on which the
+!! load does no work, c^T da = 0: else there are others, in which one tip runs ahead and the load
+!! unloads the rest.
 !!
 !! Where a fluid drives the tips there is no such factor: what is held is its volume, and c = 0.
 !! Then each tip has not advanced and K_i <= K_IC, or has and K_i = K_IC, a linear complementarity
 !! problem. It has one solution where M is negative definite, else others too: here the tips that
 !! exceed their toughness most grow first, and others with them only as far as they must.
-!!
-!! Length control: how far the tips of a group go while the load factor follows them.
 !!
 !! Kinds of tips: those that are alike grow alike, and count as one.
 !!
@@ -26,35 +23,13 @@ module growth_competition
    implicit none(type, external)
    private
 
-   public :: better_advances, complementary_advances, corrected_advances, fitted, joined_groups
-   public :: learn_from_trial, likes, matrix_of_kinds, means, numbered, of_kinds, preference
+   public :: complementary_advances, learn_from_trial, likes, matrix_of_kinds, means, numbered
+   public :: of_kinds, preference
 
    ! Where a tip is within its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
 
 contains
-
-   !> The changes of the advances of a group, but for that of one, the leader, which stays, with
-   !! which all come to their toughness. Zero where the equations have no solution.
-   subroutine corrected_advances(lack, matrix, slope, leader, change)
-      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
-      real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
-      real(rk), intent(in) :: slope(:)  !< c [Pa m^1/2]
-      integer(ik), intent(in) :: leader  !< index in the group
-      real(rk), intent(out) :: change(size(lack))  !< [m]
-      real(rk) :: equations(size(lack), size(lack)), right(size(lack), 1)
-      integer(ik) :: pivots(size(lack)), info, n
-
-      n = size(lack, kind=ik)
-      equations = matrix
-      equations(:, leader) = slope  ! the change of the load factor takes the leader's place
-      right(:, 1) = lack
-      call dgesv(n, 1_ik, equations, n, pivots, right, n, info)
-      change = 0.0_rk
-      if (info /= 0) return
-      change = right(:, 1)
-      change(leader) = 0.0_rk
-   end subroutine corrected_advances
 
    !> The changes of the advances of a group, within bounds, after which no tip that could go on
    !! exceeds its toughness, and none that could go back is below it (principal pivoting, Cottle and
@@ -198,64 +173,6 @@ contains
       call dsyev("N", "L", n, a, n, eigenvalues, work, size(work, kind=ik), info)
       largest_eigenvalue = merge(eigenvalues(n), ieee_value(1.0_rk, ieee_quiet_nan), info == 0)
    end function largest_eigenvalue
-
-   !> Better advances of tips that grow in kinds. Tips that would go back go back in steps.
-   subroutine better_advances(kind, lack, matrix, slope, room, tolerance, advance)
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      real(rk), intent(in) :: lack(:)  !< K_IC - K_eq [Pa m^1/2]
-      real(rk), intent(in) :: matrix(:, :)  !< M of growth_competition [Pa m^-1/2]
-      real(rk), intent(in) :: slope(:)  !< dK_eq/df [Pa m^1/2]
-      real(rk), intent(in) :: room(:)  !< to the ends of the pieces [m]
-      real(rk), intent(in) :: tolerance  !< on the lack of tips that have advanced [Pa m^1/2]
-      real(rk), intent(inout) :: advance(:)  !< [m]
-      real(rk), parameter :: back = 0.25_rk  ! of an advance is left at least
-      real(rk), dimension(maxval(kind)) :: gain, lack_of, room_of, slope_of
-      real(rk) :: of_all(maxval(kind), maxval(kind))
-      real(rk), allocatable :: change(:)
-      integer(ik), allocatable :: free(:)
-      logical :: is_free(maxval(kind))
-      integer(ik) :: k, leader
-
-      of_all = matrix_of_kinds(kind, matrix)
-      lack_of = of_kinds(kind, means(kind, lack))
-      slope_of = of_kinds(kind, means(kind, slope))
-      room_of = of_kinds(kind, room)
-      gain = of_kinds(kind, means(kind, advance))
-      ! One that stays goes on again where it is not behind.
-      is_free = gain > 0.0_rk .or. lack_of <= tolerance
-      free = pack([(k, k=1, size(gain, kind=ik))], is_free)
-      leader = minloc(lack_of(free), dim=1, kind=ik)  ! has no need to go back
-      allocate (change(size(free)))
-      call corrected_advances(lack_of(free), of_all(free, free), slope_of(free), leader, change)
-      ! The matrix may be that of quite other places: back in steps.
-      gain(free) = min(room_of(free), max(gain(free) + change, back*gain(free)))
-      advance = gain(kind)
-   end subroutine better_advances
-
-   !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
-   !! mesh is none, nor what hardly changes the intensities.
-   pure function fitted(advance, room, accepted, shortest) result(fit)
-      real(rk), intent(in) :: advance(:), room(:), accepted(:)  !< [m]
-      real(rk), intent(in) :: shortest  !< of a piece, what the mesh can hold [m]
-      real(rk) :: fit(size(advance))
-      real(rk), parameter :: negligible = 1.0e-3_rk  ! of the room
-
-      fit = room
-      if (.not. maxval(advance/room) > 0.0_rk) return
-      fit = advance/maxval(advance/room)
-      where (accepted + fit < shortest .or. fit < negligible*room) fit = 0.0_rk
-      where (fit > 0.999_rk*room) fit = room
-   end function fitted
-
-   !> All tips of two groups, in their order.
-   pure function joined_groups(a, b) result(group)
-      integer(ik), intent(in) :: a(:), b(:)
-      integer(ik), allocatable :: group(:)
-      integer(ik) :: i
-
-      group = pack([(i, i=1, max(maxval(a), maxval(b)))], &
-                   [(any(a == i) .or. any(b == i), i=1, max(maxval(a), maxval(b)))])
-   end function joined_groups
 
    !> The first tip that is like each, itself if there is none before it, by what is alike in pairs
    !! and all that follows from that.

@@ -7,8 +7,7 @@
 !! runs ahead where nothing else does.
 module growth_rivals
    use base_kinds, only: ik, rk
-   use growth_competition, only: complementary_advances, learn_from_trial, likes, &
-                                 matrix_of_kinds, numbered, preference
+   use growth_competition, only: learn_from_trial, likes, matrix_of_kinds, numbered, preference
    use growth_segment, only: segment_t
    implicit none(type, external)
    private
@@ -41,7 +40,7 @@ module growth_rivals
       procedure :: note
       procedure :: learn
       procedure :: preference_of
-      procedure :: changes
+      procedure :: matrix_for
    end type rivals_t
 
    !> Share of an increment within which tips have come equally far [-].
@@ -146,26 +145,22 @@ contains
       preference_of = preference(self%measured(group, group), spread(1.0_rk, 1, size(group)))
    end function preference_of
 
-   !> How far the kinds of a group should move, so that each is at rest.
-   function changes(self, group, kind, excess, segment) result(change)
+   !> Influence of the advances of kinds on the excess of each.
+   pure function matrix_for(self, group, kind, segment) result(matrix)
       class(rivals_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
       integer(ik), intent(in) :: kind(:)  !< of each, from 1
-      real(rk), intent(in) :: excess(:)  !< (kinds) of K_eq over K_IC [-]
       type(segment_t), intent(in) :: segment(:)  !< (kinds)
-      real(rk) :: change(size(excess))  !< [m]
-      real(rk) :: matrix(size(excess), size(excess))
+      real(rk) :: matrix(size(segment), size(segment))  !< d(K_eq,k/K_IC)/da_l [1/m]
       integer :: k
 
       matrix = matrix_of_kinds(kind, self%matrix(group, group))
-      do k = 1, size(excess)
-         ! Of what has not been measured, its secants know something.
-         if (.not. all(pack(self%is_known(group), kind == k))) matrix(k, k) = segment(k)%slope
-         matrix(k, k) = segment(k)%steep(matrix(k, k))
+      do k = 1, size(segment)
+         if (.not. all(pack(self%is_known(group), kind == k))) then
+            matrix(k, k) = segment(k)%falling_slope()
+         end if
       end do
-      call complementary_advances(excess, matrix, segment%lowest() - segment%reached, &
-                                  segment%length - segment%reached, change)
-   end function changes
+   end function matrix_for
 
    !> The kinds of the tips, from 1, in an accepted state. Tips of one kind shall go on equally far.
    subroutine find_kinds(self, drive, off, gain, is_arrested, increment, rivals, kind)

@@ -9,8 +9,9 @@ module mechanics_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use growth_competition, only: better_advances, fitted, joined_groups, learn_from_trial, &
-                                 matrix_of_kinds, means, numbered, of_kinds, preference
+   use growth_competition, only: learn_from_trial, matrix_of_kinds, means, numbered, of_kinds, &
+                                 preference
+   use growth_control, only: fitted, joined_groups, length_control_t
    use growth_tip, only: tip_t
    use mechanics_balance, only: balance_load, needed_intensity, share_misfit, tolerance
    use mechanics_state, only: loaded_body_t, together
@@ -182,8 +183,9 @@ contains
       integer(ik) :: kind(size(group))
       real(rk), dimension(size(group)) :: advance, before, intensity, lack, room
       real(rk) :: slope(size(body%tip)), share, share_held, share_missed
-      logical :: is_placed
+      logical :: has_moved, is_placed
       integer :: try
+      type(length_control_t) :: control
 
       is_done = .false.
       begun = body%tip
@@ -203,7 +205,7 @@ contains
          if (.not. self%prefers_one .and. &
              maxval(means(kind, lack)) > tolerance*body%rules%toughness) then
             advance = room
-            call correct(self, body, group, kind, lack, slope, room, advance)
+            call correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
          end if
       end if
       do try = 1, tries
@@ -246,6 +248,7 @@ contains
                call self%tries%part(group, abs(lack - means(kind, lack)) &
                                     > tolerance*body%rules%toughness)
                kind = numbered(self%tries%alike(group))
+               control = length_control_t()
             end if
          end if
          if (maxval(merge(means(kind, lack), 0.0_rk, advance > 0.0_rk)) &
@@ -254,9 +257,8 @@ contains
             group = pack(group, means(kind, lack) <= tolerance*body%rules%toughness)
             return
          end if
-         call correct(self, body, group, kind, lack, slope, room, advance)
-         ! One that hardly moves in its piece may be far from where it has to be in its own measure.
-         if (all(abs(advance - before) <= min(1.0e-3_rk*room, 0.1_rk*advance))) exit
+         call correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
+         if (.not. has_moved) exit
       end do
       self%misfit = maxval(merge(lack, 0.0_rk, advance > 0.0_rk))/body%rules%toughness
       is_done = .true.
@@ -323,21 +325,30 @@ contains
                          *body%rules%increment > -2.0_rk*together*body%rules%toughness
    end subroutine probe_group
 
-   !> Better advances, with which one of the tips comes to the end of its piece.
-   subroutine correct(self, body, group, kind, lack, slope, room, advance)
+   !> Better advances, with which one of the tips comes to the end of its segment.
+   subroutine correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
       integer(ik), intent(in) :: group(:)  !< tips
       integer(ik), intent(in) :: kind(:)  !< of each, from 1
       real(rk), intent(in) :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
       real(rk), intent(in) :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
-      real(rk), intent(in) :: room(:)  !< of each, to the end of the piece [m]
+      real(rk), intent(in) :: room(:)  !< of each, to the end of the segment [m]
+      type(length_control_t), intent(inout) :: control
       real(rk), intent(inout) :: advance(:)  !< of each [m]
+      logical, intent(out) :: has_moved
+      real(rk) :: change(maxval(kind))
 
-      call better_advances(kind, lack, self%matrix, slope(group), room, &
-                           tolerance*needed_intensity(body), advance)
-      advance = fitted(advance, room, self%tries%segment(group)%accepted, &
-                       least*body%rules%increment)
+      associate (needed => needed_intensity(body), accepted => self%tries%segment(group)%accepted)
+         change = of_kinds(kind, advance)
+         call control%improve(of_kinds(kind, means(kind, -lack))/needed, &
+                              matrix_of_kinds(kind, self%matrix)/needed, &
+                              of_kinds(kind, means(kind, slope(group)))/needed, &
+                              of_kinds(kind, room), &
+                              of_kinds(kind, max(0.0_rk, least*body%rules%increment - accepted)), &
+                              tolerance, change, has_moved)
+      end associate
+      advance = change(kind)
    end subroutine correct
 
    !> No load held the tips of a group in the state before. A dead load has not tried to.

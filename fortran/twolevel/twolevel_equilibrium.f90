@@ -12,6 +12,7 @@ module twolevel_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: guess_t, step_report_t
+   use growth_advances, only: advances_t
    use growth_network, only: total_length
    use growth_rivals, only: company_t, rivals_t
    use growth_segment, only: segment_t
@@ -22,7 +23,7 @@ module twolevel_equilibrium
    use twolevel_certainty, only: certainty_t
    use twolevel_doubt, only: improve_windows
    use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, tolerance
-   use twolevel_moves, only: judge_tips, keep_together, part_company, several_kinds, tips_in_play
+   use twolevel_moves, only: judge_tips, keep_together, part_company, tips_in_play
    use twolevel_pieces, only: begin_pieces, can_join, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
@@ -71,6 +72,7 @@ module twolevel_equilibrium
       integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
       logical, allocatable :: has_begun(:)  !< (tips) a new piece
       type(lesson_t) :: lesson
+      type(advances_t) :: advances  !< search for the places of the tips on segments
       logical :: is_over = .false.  !< there is no more to be tried
       logical :: is_found = .false.  !< the state is an equilibrium
    end type search_t
@@ -102,7 +104,7 @@ contains
       do k = 1, most
          call find_state(self, search, k == 1, timers, report, trial, error)
          if (search%is_over .or. allocated(error)) exit
-         call move_tips(self, search, k, timers, any_moves, wants, error)
+         call move_tips(self, search, timers, any_moves, wants, error)
          if (allocated(error)) exit
          if (.not. any_moves) call go_on(self, search, wants, timers, trial, error)
          if (search%is_over .or. allocated(error)) exit
@@ -211,26 +213,21 @@ contains
    end subroutine find_state
 
    !> Let the tips go where their excess will probably vanish.
-   subroutine move_tips(self, search, try, timers, any_moves, wants, error)
+   subroutine move_tips(self, search, timers, any_moves, wants, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      integer, intent(in) :: try  !< its number
       type(timers_t), intent(inout) :: timers
       logical, intent(out) :: any_moves  !< or is to be asked anew where it is
       logical, intent(out) :: wants(:)  !< (tips) a new piece
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: coupled_tries_max = 10  ! then what is known of the tips misleads
-      logical, dimension(size(self%tip)) :: in_play, moves
-      logical :: is_coupled
+      logical :: moves(size(self%tip))
 
-      in_play = tips_in_play(self)
       call search%lesson%tell(self)
-      call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
+      call measure_rivals(self, tips_in_play(self), search%dt, timers, any_moves, error)
       if (allocated(error)) return
       call search%lesson%begin(self)
-      is_coupled = try <= coupled_tries_max
-      if (is_coupled) is_coupled = several_kinds(search%kind, in_play)
-      call judge_tips(self, search%kind, is_coupled, moves, wants)
+      if (any_moves) search%advances = advances_t()  ! with the influences that have been measured
+      call judge_tips(self, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 
@@ -246,6 +243,7 @@ contains
       logical :: any_parted, joins(size(self%tip))
 
       call part_company(self, search%tip, wants, search%kind, any_parted)
+      if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Not while others are on their way: they may go back.
       if (.not. search%may_jump) trial%onset = first_onset(self, search%tip%drive%intensity)
@@ -310,6 +308,7 @@ contains
       call join_targets(self, joins)
       trial%has_joined = .true.
       search%lesson = lesson_t()
+      search%advances = advances_t()
    end subroutine join
 
    !> Tips begin new pieces, unless they have gone too far by that, or are not known well enough.
@@ -355,6 +354,7 @@ contains
       ! Not those that have come to something already: nothing lies between.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%segment%stays())
       search%lesson = lesson_t()  ! of other pieces
+      search%advances = advances_t()
    end subroutine begin_wanted
 
    !> No tip is to go on. If that holds for those that have not been asked too, and all are known

@@ -82,7 +82,7 @@ contains
       real(rk), dimension(size(self%tip)) :: beyond, room, rise
 
       room = self%segment%length - self%segment%accepted
-      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
+      beyond = max(0.0_rk, excesses(self))/abs(self%segment%falling_slope())
       share = room/max(room + beyond, tiny(1.0_rk))
       share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excesses(self), tolerance))
       rise = (self%tip%drive%intensity - before)/self%rules%toughness

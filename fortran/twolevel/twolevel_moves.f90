@@ -2,8 +2,10 @@
 !! have to together.
 module twolevel_moves
    use base_kinds, only: ik, rk
+   use growth_advances, only: advances_t
    use growth_competition, only: numbered
    use growth_rivals, only: lags_behind
+   use growth_segment, only: segment_t, sliver
    use growth_tip, only: tip_t
    use twolevel_excess, only: excesses, shared_excesses, tolerance
    use twolevel_pieces, only: have_come
@@ -11,17 +13,17 @@ module twolevel_moves
    implicit none(type, external)
    private
 
-   public :: judge_tips, keep_together, part_company, several_kinds, tips_in_play
+   public :: judge_tips, keep_together, part_company, tips_in_play
 
 contains
 
    !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
    !! they exceed the toughness. Tips of one kind take the largest of their excesses, and so go on
    !! equally far.
-   subroutine judge_tips(self, kind, is_coupled, moves, wants)
+   subroutine judge_tips(self, kind, search, moves, wants)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      logical, intent(in) :: is_coupled  !< the kinds move together
+      type(advances_t), intent(inout) :: search  !< for the places of the tips on segments
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
       real(rk), dimension(size(self%tip)) :: alone, excess
       integer(ik) :: i
@@ -33,7 +35,7 @@ contains
       ! Nothing but a rest before them: it fails as soon as they are at the toughness, before others
       ! go on, for which they would wait else where all are at it alike.
       where (have_come(self)) excess = excess + 2.0_rk*tolerance
-      call move_kinds(self, kind, excess, is_coupled, moves)
+      call move_kinds(self, kind, excess, search, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
       where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
    end subroutine judge_tips
@@ -47,36 +49,34 @@ contains
                                             self%segment%reached > self%segment%lowest())
    end function tips_in_play
 
-   !> Of tips that all exceed their toughness or may go back there are several kinds.
-   pure logical function several_kinds(kind, in_play)
-      integer(ik), intent(in) :: kind(:)  !< from 1
-      logical, intent(in) :: in_play(:)
-
-      several_kinds = any(in_play)
-      if (several_kinds) several_kinds = minval(kind, mask=in_play) < maxval(kind, mask=in_play)
-   end function several_kinds
-
-   !> The first tip of each kind moves by its own secants, or as all of them have to together; those
-   !! that are like it keep up with it.
-   subroutine move_kinds(self, kind, excess, is_coupled, moves)
+   !> The kinds move to where equilibrium is sought next; tips of one kind go equally far.
+   subroutine move_kinds(self, kind, excess, search, moves)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
       real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
-      logical, intent(in) :: is_coupled
+      type(advances_t), intent(inout) :: search
       logical, intent(out) :: moves(:)
       integer(ik), allocatable :: leader(:), number(:), on_way(:)
+      type(segment_t), allocatable :: first(:)
       logical :: has_moved
       integer(ik) :: i, k
 
       moves = .false.
       call find_leaders(self, kind, on_way, number, leader)
-      if (is_coupled) then
-         call move_together(self, on_way, number, leader, excess(leader), moves)
-      else
-         do k = 1, size(leader, kind=ik)
-            call self%segment(leader(k))%improve(excess(leader(k)), tolerance, moves(leader(k)))
-         end do
+      if (size(leader) == 0) return
+      if (search%evaluations == 0) then
+         first = self%segment(leader)
+         call search%begin(first%lowest(), first%length, first%reached, &
+                           self%rivals%matrix_for(on_way, number, first), sliver*first%length)
       end if
+      call search%improve(excess(leader), tolerance, has_moved)
+      do k = 1, size(leader, kind=ik)
+         associate (segment => self%segment(leader(k)))
+            if (search%matrix(k, k) < 0.0_rk) segment%slope = search%matrix(k, k)
+            moves(leader(k)) = abs(search%place(k) - segment%reached) > 0.0_rk
+            segment%reached = search%place(k)
+         end associate
+      end do
       do k = 1, size(on_way, kind=ik)
          i = leader(number(k))
          if (on_way(k) == i) cycle
@@ -116,30 +116,6 @@ contains
          end associate
       end do
    end subroutine keep_together
-
-   !> The first tips of the kinds move together, unless all are at rest.
-   subroutine move_together(self, on_way, number, leader, excess, moves)
-      class(two_levels_t), intent(inout) :: self
-      integer(ik), intent(in) :: on_way(:)  !< tips
-      integer(ik), intent(in) :: number(:)  !< of the kind of each
-      integer(ik), intent(in) :: leader(:)  !< (kinds) tips
-      real(rk), intent(in) :: excess(:)  !< (kinds) of K_eq over K_IC [-]
-      logical, intent(inout) :: moves(:)  !< (all tips)
-      real(rk) :: to(size(leader))
-      integer :: k
-
-      associate (segment => self%segment)
-         do k = 1, size(leader)
-            call segment(leader(k))%learn(excess(k))
-         end do
-         if (all(segment(leader)%is_at_rest(excess, tolerance))) return
-         to = segment(leader)%reached &
-              + self%rivals%changes(on_way, number, excess, segment(leader))
-         do k = 1, size(leader)
-            call segment(leader(k))%go_to(to(k), moves(leader(k)))
-         end do
-      end associate
-   end subroutine move_together
 
    !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
    !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that

@@ -119,7 +119,7 @@ contains
                                       tip%advance > 0.0_rk, tolerance + hypot( &
                                       tip%intensity%k1_error, tip%intensity%k2_error) &
                                       /(toughness*tip%drive%resistance), &
-                                      levels%segment%steep(levels%segment%slope), &
+                                      levels%segment%falling_slope(), &
                                       tip_cell_lengths(levels), total_length(levels%network), &
                                       levels%trend%pressure_rise(), leaked)
       end associate

@@ -1,14 +1,12 @@
 !> Tips that compete: small systems whose answers are written down by hand.
 program test_growth_competition
    use base_kinds, only: ik, rk
-   use growth_competition, only: complementary_advances, corrected_advances, learn_from_trial, &
-                                 preference
+   use growth_competition, only: complementary_advances, learn_from_trial, preference
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks
 
-   call test_correction()
    call test_learning()
    call test_preference()
    call test_complementarity()
@@ -16,21 +14,6 @@ program test_growth_competition
    call checks%finish()
 
 contains
-
-   !> Two tips: the first is given, the second and the load bring both to their toughness.
-   subroutine test_correction()
-      real(rk) :: change(2)
-
-      ! K_1 = -2 a_1 + f, K_2 = -4 a_2 + f + 1 at a = 1: K_1 = f - 2, K_2 = f - 3, K_IC = 1, f = 3.
-      call corrected_advances([0.0_rk, 1.0_rk], &
-                              reshape([-2.0_rk, 0.0_rk, 0.0_rk, -4.0_rk], [2, 2]), &
-                              [1.0_rk, 1.0_rk], 1_ik, change)
-      call checks%is_close(change(1), 0.0_rk, 0.0_rk, "the leader is given")
-      call checks%is_close(change(2), -0.25_rk, 1.0e-14_rk, "the other goes back")
-      call corrected_advances([0.0_rk, 1.0_rk], reshape([0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk], [2, 2]), &
-                              [1.0_rk, 1.0_rk], 1_ik, change)
-      call checks%is_close(sum(abs(change)), 0.0_rk, 0.0_rk, "nothing to tell them apart")
-   end subroutine test_correction
 
    !> Trials along the axes give the matrix of a linear answer.
    subroutine test_learning()

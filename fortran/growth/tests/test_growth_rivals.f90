@@ -13,7 +13,7 @@ program test_growth_rivals
 
    call test_measure()
    call test_learning()
-   call test_places()
+   call test_matrix()
    call checks%finish()
 
 contains
@@ -99,25 +99,25 @@ contains
       call checks%is_close(maxval(abs(rivals%measured - truth())), 0.0_rk, 1.0e-15_rk, "measured")
    end subroutine test_learning
 
-   !> Kinds come to rest: alike they go equally far; where the cracks differ, the one with the
-   !! larger excess goes on and the other stays where it was, whichever of them it is.
-   subroutine test_places()
+   !> Influences of kinds: those of their tips together, or the slope of a segment where a tip has not
+   !! been measured.
+   subroutine test_matrix()
       type(rivals_t) :: rivals
       type(segment_t) :: segment(n)
-      real(rk) :: change(2), single(1)
-      integer :: ahead
+      real(rk) :: all_of_it(n, n), matrix(2, 2), single(1, 1)
 
+      all_of_it = truth()
       segment = pieces()
+      segment%slope = -7.0_rk
       call measure(rivals, segment)
-      single = rivals%changes(all_tips, spread(1_ik, 1, n), [0.15_rk], segment(1:1))
-      call checks%is_close(single(1), 0.15_rk/(-own - shadow), 1.0e-14_rk, "one kind")
-      do ahead = 1, 2
-         change = rivals%changes(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], &
-                                 merge(0.02_rk, 0.01_rk, [1, 2] == ahead), segment([1, 3]))
-         call checks%is_close(change(3 - ahead), -0.3_rk, 1.0e-14_rk, "one stays")
-         call checks%is_close(change(ahead), (0.02_rk - 0.3_rk*shadow)/(-own), 1.0e-14_rk, &
-                              "the other goes on")
-      end do
-   end subroutine test_places
+      single = rivals%matrix_for(all_tips, spread(1_ik, 1, n), segment(1:1))
+      call checks%is_close(single(1, 1), sum(all_of_it)/n, 1.0e-14_rk, "one kind")
+      matrix = rivals%matrix_for(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], segment([1, 3]))
+      call checks%is_close(matrix(1, 2), sum(all_of_it(:2, 3:))/2, 1.0e-14_rk, "two kinds")
+      call rivals%begin(n)
+      matrix = rivals%matrix_for(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], segment([1, 3]))
+      call checks%is_close(maxval(abs(matrix - reshape([-7.0_rk, 0.0_rk, 0.0_rk, -7.0_rk], &
+                                                       [2, 2]))), 0.0_rk, 0.0_rk, "not measured")
+   end subroutine test_matrix
 
 end program test_growth_rivals

@@ -1,0 +1,225 @@
+!> Advances of tips in equilibrium: the bounded nonlinear complementarity problem of model.md,
+!! section 5,
+!!
+!!    lower <= a <= upper,   excess_i(a) = K_eq,i/K_IC - 1,
+!!    excess_i <= 0 where a_i = lower_i,   = 0 between the bounds,   >= 0 where a_i = upper_i.
+!!
+!! The caller evaluates the tips at `place`, passes their excess to `improve`, and evaluates them at
+!! the new `place` until that has not moved. Each proposal solves the linear complementarity problem
+!! of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates improve the
+!! matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei and Pang,
+!! Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003, sections 1.5 and
+!! 8.3); otherwise the trust region shrinks. Where this makes no headway, as at jumps of K_eq, each
+!! tip advances from its lower bound until it does not exceed its toughness, and its place is found by
+!! bisection. The farthest place at which it exceeded its toughness never falls, so that this search
+!! ends. It may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or where
+!! others have grown past it.
+module growth_advances
+   use base_kinds, only: rk
+   use growth_competition, only: complementary_advances, learn_from_trial
+   implicit none(type, external)
+   private
+
+   public :: advances_t, in_equilibrium
+
+   !> Shortest change of a place, over the distance between its bounds. The excess has been seen to
+   !! change by 33 over a segment, so that this is worth 3e-3 of K_IC.
+   real(rk), parameter :: resolution = 1.0e-4_rk
+
+   !> Slope of the excess, over the distance between the bounds, below which a tip is not expected
+   !! to come to rest.
+   real(rk), parameter :: flat = 0.05_rk
+
+   !> A solution on its way.
+   type :: advances_t
+      real(rk), allocatable :: place(:)  !< (tips) to be evaluated next [m]
+      real(rk), allocatable :: matrix(:, :)  !< (tips, tips) d(excess)/da [1/m]
+      integer :: evaluations = 0
+      logical :: is_monotone = .false.  !< Newton steps have made no headway
+      real(rk), allocatable, private :: lower(:), upper(:)  !< [m]
+      real(rk), allocatable, private :: length(:)  !< between them [m]
+      real(rk), allocatable, private :: sliver(:)  !< below the upper bounds; counts as there [m]
+      real(rk), allocatable, private :: scale(:)  !< of the natural residual [1/m]
+      real(rk), allocatable, private :: best(:)  !< place with the least residual so far [m]
+      real(rk), allocatable, private :: excess(:)  !< there [-]
+      real(rk), private :: residual = huge(1.0_rk)  !< there [-]
+      real(rk), private :: radius = 1.0_rk  !< of the trust region, over the distance of the bounds
+      integer, private :: rejected = 0  !< proposals in a row
+      ! Bracket of each tip in the monotone search.
+      real(rk), allocatable, private :: near(:)  !< farthest place with K_eq > K_IC [m]
+      real(rk), allocatable, private :: far(:)  !< nearest beyond that with K_eq <= K_IC [m]
+      integer, private :: monotone_steps = 0
+   contains
+      procedure :: begin
+      procedure :: improve
+      procedure, private :: judge
+      procedure, private :: learn
+      procedure, private :: propose
+      procedure, private :: advance
+   end type advances_t
+
+contains
+
+   !> Begin at a place with an estimate of the matrix.
+   subroutine begin(self, lower, upper, place, matrix, sliver)
+      class(advances_t), intent(out) :: self
+      real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower <= upper [m]
+      real(rk), intent(in) :: place(:)  !< (tips) to be evaluated first [m]
+      real(rk), intent(in) :: matrix(:, :)  !< (tips, tips) estimate of d(excess)/da [1/m]
+      real(rk), intent(in), optional :: sliver(:)  !< so near to its upper bound a tip goes there [m]
+      integer :: i
+
+      self%lower = lower
+      self%upper = upper
+      self%place = min(upper, max(lower, place))
+      self%matrix = matrix
+      self%length = max(upper - lower, epsilon(1.0_rk)*max(abs(upper), tiny(1.0_rk)/epsilon(1.0_rk)))
+      self%sliver = resolution*self%length
+      if (present(sliver)) self%sliver = max(self%sliver, sliver)
+      self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]
+   end subroutine begin
+
+   !> Take the excess at `place`, and set `place` to where it is to be evaluated next. It has not
+   !! moved where the tips are in equilibrium there within the tolerance.
+   subroutine improve(self, excess, tolerance, has_moved)
+      class(advances_t), intent(inout) :: self
+      real(rk), intent(in) :: excess(:)  !< (tips) K_eq/K_IC - 1 at `place` [-]
+      real(rk), intent(in) :: tolerance  !< on the excess [-]
+      logical, intent(out) :: has_moved
+      integer, parameter :: evaluations_max = 16, rejected_max = 5
+      logical :: is_stuck
+
+      self%evaluations = self%evaluations + 1
+      if (self%evaluations > 1) call self%learn(excess)
+      if (.not. self%is_monotone) call self%judge(excess)
+      has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance))
+      if (.not. has_moved) return
+      if (.not. self%is_monotone) then
+         if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
+            call self%propose(has_moved, is_stuck)
+            if (.not. is_stuck) return
+         end if
+         has_moved = .true.
+         self%is_monotone = .true.
+         self%place = self%lower
+         self%near = self%lower
+         self%far = spread(huge(1.0_rk), 1, size(self%lower))
+      else
+         self%best = self%place
+         self%excess = excess
+         call self%advance(tolerance, has_moved)
+      end if
+   end subroutine improve
+
+   !> The tips are where the conditions hold within the tolerance.
+   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance)
+      real(rk), intent(in) :: place, lower, upper  !< [m]
+      real(rk), intent(in) :: excess, tolerance  !< [-]
+
+      if (excess > tolerance) then
+         in_equilibrium = place >= upper
+      else if (excess < -tolerance) then
+         in_equilibrium = place <= lower
+      else
+         in_equilibrium = .true.
+      end if
+   end function in_equilibrium
+
+   !> Accept the evaluated place if the residual has fallen; shrink the trust region otherwise.
+   pure subroutine judge(self, excess)
+      class(advances_t), intent(inout) :: self
+      real(rk), intent(in) :: excess(:)  !< (tips) [-]
+      real(rk) :: residual
+
+      associate (scale => self%scale, place => self%place)
+         residual = norm2(scale*(place - min(self%upper, max(self%lower, place + excess/scale))))
+      end associate
+      if (self%evaluations == 1 .or. residual < 0.95_rk*self%residual) then
+         if (self%evaluations > 1 .and. residual < 0.5_rk*self%residual) then
+            self%radius = min(1.0_rk, 2.0_rk*self%radius)
+         end if
+         self%best = self%place
+         self%excess = excess
+         self%residual = residual
+         self%rejected = 0
+      else
+         self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best)/self%length))
+         self%rejected = self%rejected + 1
+      end if
+   end subroutine judge
+
+   !> Broyden update of the matrix, in lengths of the segments.
+   pure subroutine learn(self, excess)
+      class(advances_t), intent(inout) :: self
+      real(rk), intent(in) :: excess(:)  !< (tips) at `place` [-]
+      real(rk) :: scaled(size(excess), size(excess))
+      integer :: j
+
+      associate (length => self%length)
+         do j = 1, size(excess)
+            scaled(:, j) = self%matrix(:, j)*length(j)
+         end do
+         call learn_from_trial(scaled, (self%place - self%best)/length, excess - self%excess)
+         do j = 1, size(excess)
+            self%matrix(:, j) = scaled(:, j)/length(j)
+         end do
+      end associate
+   end subroutine learn
+
+   !> The solution of the linear problem within the trust region around the best place. Tips that
+   !! are at an upper bound stay there if they would go back by no more than a sliver.
+   subroutine propose(self, has_moved, is_stuck)
+      class(advances_t), intent(inout) :: self
+      logical, intent(out) :: has_moved
+      logical, intent(out) :: is_stuck  !< the linear problem leads nowhere
+      real(rk), dimension(size(self%best)) :: change, reach, to
+
+      reach = self%radius*self%length
+      call complementary_advances(self%excess, self%matrix, max(self%lower - self%best, -reach), &
+                                  min(self%upper - self%best, reach), change)
+      is_stuck = .not. any(abs(change) > resolution*self%length)
+      has_moved = .false.
+      if (is_stuck) return
+      to = max(self%lower, self%best + change)
+      where (to > self%upper - self%sliver) to = self%upper
+      has_moved = any(abs(to - self%place) > resolution*self%length)
+      self%place = to
+   end subroutine propose
+
+   !> Tips that exceed their toughness advance, tips below it go back into their brackets.
+   pure subroutine advance(self, tolerance, has_moved)
+      class(advances_t), intent(inout) :: self
+      real(rk), intent(in) :: tolerance  !< on the excess [-]
+      logical, intent(out) :: has_moved
+      real(rk), parameter :: growth = 2.0_rk**0.25_rk  ! of the least step
+      real(rk) :: step, to
+      integer :: i
+
+      self%monotone_steps = self%monotone_steps + 1
+      has_moved = .false.
+      do i = 1, size(self%place)
+         associate (place => self%place(i), near => self%near(i), far => self%far(i), &
+                    excess => self%excess(i), length => self%length(i))
+            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance)) cycle
+            if (excess > 0.0_rk) then
+               near = place
+               if (far <= near) far = huge(1.0_rk)
+            else
+               far = place
+            end if
+            if (far <= self%upper(i)) then
+               to = far
+               if (far - near > 2.0_rk*resolution*length) to = 0.5_rk*(near + far)
+            else
+               step = max(0.9_rk*excess/max(-self%matrix(i, i), 2.0_rk*flat/length), &
+                          2.0_rk*resolution*length*growth**self%monotone_steps)
+               to = min(self%upper(i), place + step)
+            end if
+            if (to > self%upper(i) - self%sliver(i)) to = self%upper(i)
+            has_moved = has_moved .or. abs(to - place) > 0.0_rk
+            place = to
+         end associate
+      end do
+   end subroutine advance
+
+end module growth_advances
