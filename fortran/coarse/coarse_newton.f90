@@ -4,7 +4,6 @@ module coarse_newton
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_equations, only: equations_t
-   use coarse_guess, only: guess_t
    use coarse_joints, only: joints_t
    use coarse_loops, only: flows_in_loops, unknown_flow
    use coarse_fractures, only: cell_fluid_t, newton_settings_t, prepare
@@ -26,11 +25,10 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(condensed, factors, guess, cells, connections, joints, wells, &
-                              settings, dt, g, state, q, report)
+   subroutine solve_fractures(condensed, factors, cells, connections, joints, wells, settings, dt, &
+                              g, state, q, report)
       type(condensed_t), intent(inout), target :: condensed
       type(sparse_step_t), intent(inout), target :: factors  !< of linear steps so far
-      type(guess_t), intent(inout) :: guess  !< from earlier solutions
       type(fracture_cells_t), intent(in), target :: cells
       integer(ik), intent(in), target :: connections(:, :)  !< (2, m) cells that exchange fluid
       type(joints_t), intent(in), target :: joints
@@ -56,8 +54,8 @@ contains
       x = start
       eq%start = start
       spent = 0
-      if (guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
-         x = guess%from(start, dt)
+      if (state%guess%is_known(size(start, kind=ik)) .and. .not. settings%equilibrate) then
+         x = state%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
          how%perseveres = .true.
@@ -71,7 +69,7 @@ contains
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
       found%iterations = found%iterations + spent
       if (found%outcome == outcome_converged .and. .not. settings%equilibrate) then
-         call guess%remember(dt, start, x)
+         call state%guess%remember(dt, start, x)
       end if
       q = eq%q
       report%stress_scale = eq%stress_scale

@@ -1,11 +1,12 @@
 !> The state of the coarse level at one time, and the properties of its fracture cells.
 module coarse_state
    use base_kinds, only: ik, rk
+   use coarse_guess, only: guess_t
    use contact_law, only: contact_law_t
    implicit none(type, external)
    private
 
-   public :: fracture_cells_t, state_t, step_report_t
+   public :: fracture_cells_t, go_back, state_t, step_report_t
 
    !> What each fracture cell is made of.
    type :: fracture_cells_t
@@ -17,7 +18,7 @@ module coarse_state
       !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
       real(rk), allocatable :: skin(:)  !< (n) on each face; unallocated: none has any [Pa s/m]
-      real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
+      real(rk), allocatable :: injection(:)  !< Q asked for in the present step [m2/s]
       !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
    end type fracture_cells_t
@@ -53,7 +54,10 @@ module coarse_state
       real(rk), allocatable :: well_flow(:)  !< into the fracture [m2/s]
       real(rk), allocatable :: well_head(:)  !< pressure at the head [Pa]
       real(rk), allocatable :: well_rate(:)  !< into the well at its head, mean of the step [m2/s]
+      integer(ik), allocatable :: rock_well_control(:)  !< of coarse_wells: of those in rock
+      real(rk), allocatable :: injection(:)  !< (n) of wells into the cells in the last step [m2/s]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
+      type(guess_t) :: guess  !< what the next step will probably lead to
    end type state_t
 
    !> How a step was found.
@@ -70,5 +74,19 @@ module coarse_state
       real(rk) :: rock_outflow = 0.0_rk  !< fluid out of the rock through the boundary [m2]
       character(len=:), allocatable :: reason  !< why it did not converge
    end type step_report_t
+
+contains
+
+   !> The state before a step again, for another try of it; what its first iteration starts from is
+   !! what the last try has found.
+   pure subroutine go_back(state, before)
+      type(state_t), intent(inout) :: state
+      type(state_t), intent(in) :: before
+      type(guess_t) :: guess
+
+      guess = state%guess
+      state = before
+      state%guess = guess
+   end subroutine go_back
 
 end module coarse_state

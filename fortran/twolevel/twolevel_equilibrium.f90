@@ -11,8 +11,7 @@ module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_guess, only: guess_t
-   use coarse_state, only: step_report_t
+   use coarse_state, only: go_back, step_report_t
    use growth_company, only: company_t
    use growth_network, only: total_length
    use growth_rivals, only: rivals_t
@@ -63,7 +62,6 @@ module twolevel_equilibrium
       type(tip_t), allocatable :: tip(:)
       type(segment_t), allocatable :: segment(:)
       type(network_t) :: network
-      type(guess_t) :: guess
       type(certainty_t) :: certainty
       type(company_t) :: company
       type(rivals_t) :: rivals
@@ -108,7 +106,7 @@ contains
          if (allocated(error)) exit
          if (.not. any_moves) call go_on(self, search, wants, timers, trial, error)
          if (search%is_over .or. allocated(error)) exit
-         self%state = self%before
+         call go_back(self%state, self%before)
       end do
       if (search%is_found) return
       trial%goes_too_far = trial%goes_too_far .or. k > most
@@ -135,7 +133,6 @@ contains
       search%segment = self%segment
       search%network = self%network
       search%was_undrained = self%undrained
-      search%guess = self%model%guess
       search%certainty = self%certainty
       search%company = self%company
       search%rivals = self%rivals
@@ -168,7 +165,6 @@ contains
       self%tip = search%tip
       self%segment = search%segment
       self%network = search%network
-      self%model%guess = search%guess
       self%certainty = search%certainty
       self%company = search%company
       self%rivals = search%rivals

@@ -8,7 +8,6 @@ module twolevel_fed
    use coarse_model, only: coarse_model_t
    use coarse_rock_wells, only: well_index
    use coarse_state, only: state_t
-   use coarse_wells, only: control_rate
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
    use simulation_types, only: simulation_t
@@ -115,7 +114,6 @@ contains
       associate (wells => self%model%wells, rock => self%model%rock_wells)
          rock%n = wells%n_all - wells%n
          rock%cell = self%rock_cell(wells%number(wells%n + 1:))
-         if (.not. allocated(rock%way)) rock%way = spread(control_rate, 1, int(rock%n))
          rock%conductance = spread(0.0_rk, 1, int(rock%n))
          rock%index = [(well_index(self%scene%injections(wells%number(wells%n + k))%radius, &
                                    cell_area(self%mesh, rock%cell(k)), &
@@ -190,10 +188,10 @@ contains
       between = between_cells(self%scene%injections, self%share)
       do w = 1, size(between, kind=ik)
          if (.not. between(w)) cycle
-         associate (cells => self%model%cells, length => self%model%condensed%length, &
+         associate (length => self%model%condensed%length, &
                     viscosity => self%model%settings%viscosity, thickness => self%thickness())
             where (self%share(:, w) > 0.0_rk)
-               pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
+               pressure = pressure + 6.0_rk*viscosity*length*self%state%injection &
                           /self%state%aperture**3*thickness
             end where
          end associate

@@ -16,6 +16,7 @@ module twolevel_pieces
    use base_plane, only: point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
+   use coarse_state, only: go_back
    use growth_network, only: end_gain, end_place, extend, move_end, straighten_end
    use growth_targets, only: find_beside, target_boundary, target_none
    use growth_tip, only: tip_t
@@ -69,7 +70,7 @@ contains
          end associate
       end do
       if (.not. any(is_new)) then
-         self%state = self%before
+         call go_back(self%state, self%before)
          return
       end if
       tip = self%tip
@@ -87,7 +88,7 @@ contains
          end if
       end do
       call end_pieces(self, tip, ahead, is_new, centres)
-      self%state = self%before
+      call go_back(self%state, self%before)
       if (size(centres, 2) == 0) return
       call self%remesh_coarse(centres, timers, error)
       self%before = self%state

@@ -9,7 +9,7 @@ module twolevel_probe
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: go_back, state_t, step_report_t
    use growth_tip, only: tip_t
    use twolevel_places, only: place_tips
    use twolevel_state, only: two_levels_t
@@ -62,7 +62,7 @@ contains
             shift = -probe*segment%length
             segment%reached = segment%reached + shift
             call place_tips(self)
-            self%state = self%before
+            call go_back(self%state, self%before)
             call self%try_step(dt, timers, report, error)
             if (allocated(error)) return
             if (report%converged) then
@@ -76,7 +76,7 @@ contains
       end do
       call place_tips(self)
       self%tip = tip
-      self%state = state
+      call go_back(self%state, state)
       self%values_are_current = .false.
    end subroutine measure_rivals
 

@@ -6,7 +6,6 @@ module twolevel_steps
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_guess, only: guess_t
    use coarse_state, only: step_report_t
    use results_chronicle, only: event_step_cut, event_unstable
    use simulation_limits, only: limit_time_error
@@ -127,14 +126,12 @@ contains
       type(trial_t), intent(out) :: trial
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(guess_t) :: guess
 
       if (self%is_equilibrium()) then
          call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
                                error)
       else
          self%before = self%state
-         guess = self%model%guess
          call self%try_step(self%dt, timers, self%report, error)
          if (allocated(error)) return
          trial%converged = self%report%converged
@@ -148,7 +145,6 @@ contains
                end if
                if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) then
                   self%state = self%before
-                  self%model%guess = guess
                end if
             end if
          else

@@ -10,8 +10,7 @@ module twolevel_well_limits
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_guess, only: guess_t
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: go_back, state_t, step_report_t
    use coarse_wells, only: control_limited, control_pressure, control_rate
    use results_chronicle, only: event_well
    use scene_types, only: injection_t
@@ -138,8 +137,7 @@ contains
       if (allocated(well%pressure)) words = words//" "//brief_text(well%pressure(stage), 4)//" Pa"
    end function what_begins
 
-   !> Try the step with one well held as it was. What it gives is forgotten again, and all that it
-   !! leaves in the model.
+   !> Try the step with one well held as it was. What it gives is forgotten again.
    subroutine find_share(self, w, was_at_limit, dt, share, timers, error)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: w  !< controlled well
@@ -150,9 +148,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: state
       type(step_report_t) :: report
-      type(guess_t) :: guess
-      real(rk), allocatable :: injection(:), into_joints(:), source(:, :)
-      integer(ik), allocatable :: way(:)
       logical :: is_current, is_undrained
 
       share = 0.0_rk
@@ -160,14 +155,9 @@ contains
       state = self%state
       is_current = self%values_are_current
       is_undrained = self%undrained
-      guess = self%model%guess
-      injection = self%model%cells%injection
-      if (self%model%joints%n > 0) into_joints = self%model%joints%injection
-      if (allocated(self%model%source)) source = self%model%source
-      if (self%model%rock_wells%n > 0) way = self%model%rock_wells%way
       self%held_well = w
       self%held_control = merge(control_pressure, control_rate, was_at_limit)
-      self%state = self%before
+      call go_back(self%state, self%before)
       call self%try_step(dt, timers, report, error)
       self%held_well = 0
       share = 0.5_rk
@@ -187,11 +177,6 @@ contains
       self%state = state
       self%values_are_current = is_current
       self%undrained = is_undrained
-      self%model%guess = guess
-      self%model%cells%injection = injection
-      if (self%model%joints%n > 0) self%model%joints%injection = into_joints
-      if (allocated(self%model%source)) self%model%source = source
-      if (self%model%rock_wells%n > 0) self%model%rock_wells%way = way
       self%model%wells%control(w) = control_limited
    end subroutine find_share
 
