@@ -15,7 +15,6 @@ module coarse_guess
 
    !> What is remembered of the last solution.
    type :: guess_t
-      private
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk), allocatable :: change(:)  !< of the unknowns in that time [Pa]
    contains

@@ -35,9 +35,9 @@ module growth_company
 
    !> Tips on their way, and the company that they have kept so far.
    type :: company_t
-      integer(ik), allocatable, private :: kind(:)  !< (tips) those of one have gone equally far
-      real(rk), allocatable, private :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
-      logical, allocatable, private :: is_alone(:)  !< (tips) has lagged behind its company
+      integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far
+      real(rk), allocatable :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
+      logical, allocatable :: is_alone(:)  !< (tips) has lagged behind its company
    contains
       procedure :: find_kinds
       procedure :: part

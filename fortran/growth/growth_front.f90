@@ -17,7 +17,7 @@ module growth_front
    implicit none(type, external)
    private
 
-   public :: front_t, growth_rules_t
+   public :: front_state_t, front_t, growth_rules_t
 
    !> How tips grow.
    type :: growth_rules_t
@@ -37,11 +37,15 @@ module growth_front
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
    end type growth_rules_t
 
-   !> Tips, the network whose ends they are, and the level that evaluates them.
-   type, abstract :: front_t
-      type(network_t) :: start  !< network of the scene
+   !> Tips, and the network whose ends they are: what growth changes.
+   type :: front_state_t
       type(network_t) :: network  !< as it has grown
       type(tip_t), allocatable :: tip(:)
+   end type front_state_t
+
+   !> The same with the level that evaluates the tips.
+   type, abstract, extends(front_state_t) :: front_t
+      type(network_t) :: start  !< network of the scene
       type(growth_rules_t) :: rules
       type(network_t), private :: network_before  !< before the last increment
    contains

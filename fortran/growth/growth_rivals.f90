@@ -29,8 +29,8 @@ module growth_rivals
    type :: rivals_t
       real(rk), allocatable :: measured(:, :)  !< (tips, tips) mean of d(K_eq,i/K_IC)/da_j [1/m]
       real(rk), allocatable :: matrix(:, :)  !< as measured last, with what tries have taught
-      logical, allocatable, private :: is_known(:)  !< (tips) columns of it
-      real(rk), allocatable, private :: known_at(:)  !< (tips) gain of each then [m]
+      logical, allocatable :: is_known(:)  !< (tips) columns of it
+      real(rk), allocatable :: known_at(:)  !< (tips) gain of each then [m]
    contains
       procedure :: begin
       procedure :: has_to_ask

@@ -31,7 +31,7 @@ contains
       real(rk), allocatable :: unknowns(:, :)
       integer(ik), allocatable :: speaker(:)
 
-      associate (model => self%model)
+      associate (model => self%problem%model)
          speaker = speakers(self)
          allocate (q(model%condensed%layout%count()), g(model%condensed%layout%count()))
          call find_differences(self, speaker, difference, q, error)
@@ -44,10 +44,10 @@ contains
          allocate (unknowns, mold=force)
          call model%condensed%expand(q, force, unknowns, error)
          if (allocated(error)) return
-         unknowns = unknowns + self%state%unknowns
+         unknowns = unknowns + self%now%coarse%unknowns
          call corner_tractions(model%regions, unknowns, tractions)
-         call curved_displacement(self%mesh, model%rock, model%regions, unknowns, tractions, &
-                                  displacement, gradient)
+         call curved_displacement(self%problem%mesh, model%rock, model%regions, unknowns, &
+                                  tractions, displacement, gradient)
       end associate
    end subroutine improve
 
@@ -58,7 +58,7 @@ contains
       integer(ik), allocatable :: speaker(:)  !< (blocks)
       integer(ik) :: cell
 
-      associate (mesh => self%mesh, fracture => self%mesh%fracture)
+      associate (mesh => self%problem%mesh, fracture => self%problem%mesh%fracture)
          allocate (speaker(block_count(mesh)))
          do cell = 1, mesh%n_cells
             speaker(cell) = nearest_window(self, spread(centre_of(mesh, cell), 2, 2))
@@ -91,7 +91,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
          associate (w => self%windows%window_of(i))
-            if (.not. self%windows%window(w)%holds(points)) cycle
+            if (.not. self%windows%slot(w)%window%holds(points)) cycle
             distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(i)%xy)
             if (distance >= shortest) cycle
             shortest = distance
@@ -108,8 +108,8 @@ contains
       integer(ik) :: i, k
 
       within = speaker > 0
-      within(self%mesh%n_cells + 1:) = .false.
-      associate (columns => self%model%matrix%columns)
+      within(self%problem%mesh%n_cells + 1:) = .false.
+      associate (columns => self%problem%model%matrix%columns)
          do i = 1, size(speaker, kind=ik)
             do k = columns%first(i), columns%last(i)
                associate (j => columns%item(k))
@@ -132,13 +132,14 @@ contains
       integer(ik), allocatable :: cells(:)
       integer(ik) :: cell, end, i, w
 
-      allocate (difference, mold=self%state%unknowns)
+      allocate (difference, mold=self%now%coarse%unknowns)
       difference = 0.0_rk
       q = 0.0_rk
-      associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
-         do w = 1, size(self%windows%window, kind=ik)
+      associate (mesh => self%problem%mesh, state => self%now%coarse, &
+                 condensed => self%problem%model%condensed)
+         do w = 1, size(self%windows%slot, kind=ik)
             if (.not. self%windows%is_asked(w, self%tip)) cycle
-            associate (window => self%windows%window(w))
+            associate (window => self%windows%slot(w)%window)
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(centre_of(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
                displacement = xy

@@ -51,7 +51,7 @@ contains
 
       first_onset = onset(before/self%rules%toughness, &
                           self%tip%drive%intensity/self%rules%toughness, &
-                          .not. (self%tip%arrested .or. self%segment%gain > 0.0_rk))
+                          .not. (self%tip%arrested .or. self%now%segment%gain > 0.0_rk))
    end function first_onset
 
    !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
@@ -81,12 +81,12 @@ contains
       real(rk) :: share(size(self%tip))
       real(rk), dimension(size(self%tip)) :: beyond, room, rise
 
-      room = self%segment%length - self%segment%accepted
-      beyond = max(0.0_rk, excesses(self))/abs(self%segment%steep(self%segment%slope))
+      room = self%now%segment%length - self%now%segment%accepted
+      beyond = max(0.0_rk, excesses(self))/abs(self%now%segment%steep(self%now%segment%slope))
       share = room/max(room + beyond, tiny(1.0_rk))
       share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excesses(self), tolerance))
       rise = (self%tip%drive%intensity - before)/self%rules%toughness
-      where (self%segment%stays() .and. rise > 0.0_rk)
+      where (self%now%segment%stays() .and. rise > 0.0_rk)
          share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - allowed)/rise))
       end where
    end function arrivals

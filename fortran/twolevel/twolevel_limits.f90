@@ -20,17 +20,16 @@ module twolevel_limits
 contains
 
    !> Take note of a converged step, before it is accepted.
-   subroutine watch_levels(self, report, mass_error, mass_error_relative)
+   subroutine watch_levels(self, report, mass_error_relative)
       class(two_levels_t), intent(inout) :: self
       type(step_report_t), intent(in) :: report
-      real(rk), intent(in) :: mass_error  !< of all steps, with this one [m2]
       real(rk), intent(in) :: mass_error_relative  !< of all steps, with this one [-]
       character(len=:), allocatable :: when
       real(rk) :: strain(2), lost, storable
 
       when = present_time(self)
-      associate (watch => self%watch, d => self%scene%domain, n => self%mesh%n_cells, &
-                 u => self%state%unknowns)
+      associate (watch => self%watch, d => self%scene%domain, n => self%problem%mesh%n_cells, &
+                 u => self%now%coarse%unknowns)
          call watch%see(limit_forward_error, report%error_bound, when)
          call watch%see(limit_loop_flow, report%loop_flow_error, when)
          ! A body without fractures may keep all its fluid where it is, and nothing has flown that
@@ -38,8 +37,8 @@ contains
          lost = mass_error_relative
          storable = (d%x_max - d%x_min)*(d%y_max - d%y_min)*maxval(abs(u(3, :n))) &
                     /self%scene%material%young
-         if (self%mesh%fracture%n_cells == 0 .and. storable > 0.0_rk) then
-            lost = min(lost, abs(mass_error)/storable)
+         if (self%problem%mesh%fracture%n_cells == 0 .and. storable > 0.0_rk) then
+            lost = min(lost, abs(self%now%fluid%mass_error)/storable)
          end if
          call watch%see(limit_mass, lost, when)
          call watch%see(limit_contact, report%contact_residual, when)
@@ -48,7 +47,7 @@ contains
          call watch%see(limit_strain, strain(worst_place(strain)), when)
       end associate
       call watch_pressure(self, when)
-      if (self%mesh%fracture%n_cells > 0) call watch_fractures(self, when)
+      if (self%problem%mesh%fracture%n_cells > 0) call watch_fractures(self, when)
    end subroutine watch_levels
 
    !> Pressure in the rock and in the fractures.
@@ -58,13 +57,13 @@ contains
       real(rk) :: pressure, scale, xy(2)
       integer(ik) :: i
 
-      associate (mesh => self%mesh, p => self%rock_pressure())
+      associate (mesh => self%problem%mesh, p => self%problem%rock_pressure(self%now%coarse))
          i = worst_place(abs(p))
          pressure = abs(p(i))
          xy = sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk
       end associate
-      if (self%mesh%fracture%n_cells > 0) then
-         associate (p => self%fracture_pressure())
+      if (self%problem%mesh%fracture%n_cells > 0) then
+         associate (p => self%problem%fracture_pressure(self%now%coarse))
             i = worst_place(abs(p))
             if (.not. abs(p(i)) <= pressure) then
                pressure = abs(p(i))
@@ -72,7 +71,7 @@ contains
             end if
          end associate
       end if
-      if (allocated(self%model%settings%fluid_law)) call watch_fluid(self, when)
+      if (allocated(self%problem%model%settings%fluid_law)) call watch_fluid(self, when)
       call self%watch%see(limit_pressure_stiffness, pressure/self%scene%material%young, when, xy)
       scale = pressure_scale(self%scene)
       if (scale > 0.0_rk) call self%watch%see(limit_pressure_load, pressure/scale, when, xy)
@@ -82,18 +81,19 @@ contains
    subroutine watch_fluid(self, when)
       class(two_levels_t), intent(inout) :: self
       character(len=*), intent(in) :: when
-      real(rk) :: beyond(self%mesh%fracture%n_cells), differs(self%mesh%n_cells)
+      real(rk) :: beyond(self%problem%mesh%fracture%n_cells), differs(self%problem%mesh%n_cells)
       integer(ik) :: i
 
-      associate (law => self%model%settings%fluid_law, mesh => self%mesh)
-         differs = abs(law%thickness_at(self%rock_pressure()) - 1.0_rk)
+      associate (law => self%problem%model%settings%fluid_law, mesh => self%problem%mesh)
+         differs = abs(law%thickness_at(self%problem%rock_pressure(self%now%coarse)) - 1.0_rk)
          i = worst_place(differs)
          call self%watch%see(limit_fluid_in_rock, differs(i), when, &
                              sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk)
       end associate
       if (.not. allocated(self%scene%fluid%table_pressure)) return
-      if (self%mesh%fracture%n_cells == 0) return
-      associate (range => self%scene%fluid%table_pressure, p => self%fracture_pressure())
+      if (self%problem%mesh%fracture%n_cells == 0) return
+      associate (range => self%scene%fluid%table_pressure, &
+                 p => self%problem%fracture_pressure(self%now%coarse))
          beyond = max(range(1) - p, p - range(size(range)), 0.0_rk)/(range(size(range)) - range(1))
          i = worst_place(beyond)
          call self%watch%see(limit_table, beyond(i), when, middle(self, i))
@@ -104,11 +104,11 @@ contains
    subroutine watch_fractures(self, when)
       class(two_levels_t), intent(inout) :: self
       character(len=*), intent(in) :: when
-      real(rk) :: ratio(self%mesh%fracture%n_cells)
+      real(rk) :: ratio(self%problem%mesh%fracture%n_cells)
       integer(ik) :: i
 
-      associate (d => self%scene%domain, state => self%state, &
-                 length => self%model%condensed%length)
+      associate (d => self%scene%domain, state => self%now%coarse, &
+                 length => self%problem%model%condensed%length)
          i = worst_place(state%aperture)
          call self%watch%see(limit_aperture, &
                              state%aperture(i)/min(d%x_max - d%x_min, d%y_max - d%y_min), when, &
@@ -127,10 +127,10 @@ contains
       real(rk) :: angle
       integer(ik) :: cell
 
-      call mesh_quality(self%mesher, angle, cell, error)
+      call mesh_quality(self%problem%mesher, angle, cell, error)
       if (allocated(error)) return
       call self%watch%see(limit_angle, angle*degrees, present_time(self), middle_of(cell))
-      associate (rock => self%model%rock)
+      associate (rock => self%problem%model%rock)
          if (rock%most_layered_cell == 0) return
          call self%watch%see(limit_layering, rock%most_layered, present_time(self), &
                              middle_of(rock%most_layered_cell))
@@ -143,7 +143,7 @@ contains
          integer(ik), intent(in) :: cell
          real(rk) :: xy(2)
 
-         xy = sum(self%mesh%xy(:, self%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
+         xy = sum(self%problem%mesh%xy(:, self%problem%mesh%cell_nodes(:, cell)), dim=2)/3.0_rk
       end function middle_of
 
    end subroutine watch_mesh
@@ -172,7 +172,7 @@ contains
       integer(ik), intent(in) :: cell
       real(rk) :: xy(2)
 
-      associate (fracture => self%mesh%fracture)
+      associate (fracture => self%problem%mesh%fracture)
          xy = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
       end associate
    end function middle
@@ -181,7 +181,7 @@ contains
       class(two_levels_t), intent(in) :: self
       character(len=:), allocatable :: words
 
-      words = brief_text(self%state%time, 6)//" s"
+      words = brief_text(self%now%coarse%time, 6)//" s"
    end function present_time
 
 end module twolevel_limits

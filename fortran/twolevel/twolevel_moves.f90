@@ -35,7 +35,7 @@ contains
       where (have_come(self)) excess = excess + 2.0_rk*tolerance
       call move_kinds(self, kind, excess, is_coupled, moves)
       wants = .not. (moves .or. excess <= tolerance .or. self%tip%arrested)
-      where (self%segment%is_open) wants = wants .and. self%segment%is_complete()
+      where (self%now%segment%is_open) wants = wants .and. self%now%segment%is_complete()
    end subroutine judge_tips
 
    !> Tips on their way that exceed their toughness, or have advanced in the step.
@@ -43,8 +43,8 @@ contains
       class(two_levels_t), intent(in) :: self
       logical :: in_play(size(self%tip))
 
-      in_play = self%segment%is_open .and. (excesses(self) > -tolerance .or. &
-                                            self%segment%reached > self%segment%lowest())
+      in_play = self%now%segment%is_open .and. (excesses(self) > -tolerance .or. &
+                                            self%now%segment%reached > self%now%segment%lowest())
    end function tips_in_play
 
    !> Of tips that all exceed their toughness or may go back there are several kinds.
@@ -74,13 +74,13 @@ contains
          call move_together(self, on_way, number, leader, excess(leader), moves)
       else
          do k = 1, size(leader, kind=ik)
-            call self%segment(leader(k))%improve(excess(leader(k)), tolerance, moves(leader(k)))
+            call self%now%segment(leader(k))%improve(excess(leader(k)), tolerance, moves(leader(k)))
          end do
       end if
       do k = 1, size(on_way, kind=ik)
          i = leader(number(k))
          if (on_way(k) == i) cycle
-         call self%segment(on_way(k))%keep_up_with(self%segment(i), has_moved)
+         call self%now%segment(on_way(k))%keep_up_with(self%now%segment(i), has_moved)
          moves(on_way(k)) = moves(i) .or. has_moved
       end do
    end subroutine move_kinds
@@ -94,7 +94,7 @@ contains
       integer(ik), allocatable, intent(out) :: leader(:)  !< (kinds) tips
       integer(ik) :: i, k
 
-      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%segment%is_open)
+      on_way = pack([(i, i=1, size(self%tip, kind=ik))], self%now%segment%is_open)
       number = numbered(kind(on_way))
       leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
    end subroutine find_leaders
@@ -109,7 +109,8 @@ contains
 
       call find_leaders(self, kind, on_way, number, leader)
       do k = 1, size(on_way, kind=ik)
-         associate (segment => self%segment(on_way(k)), first => self%segment(leader(number(k))))
+         associate (segment => self%now%segment(on_way(k)), &
+                    first => self%now%segment(leader(number(k))))
             if (on_way(k) /= leader(number(k))) then
                call segment%go_to(segment%length*(first%reached/first%length), has_moved)
             end if
@@ -128,13 +129,13 @@ contains
       real(rk) :: to(size(leader))
       integer :: k
 
-      associate (segment => self%segment)
+      associate (segment => self%now%segment)
          do k = 1, size(leader)
             call segment(leader(k))%learn(excess(k))
          end do
          if (all(segment(leader)%is_at_rest(excess, tolerance))) return
          to = segment(leader)%reached &
-              + self%rivals%changes(on_way, number, excess, segment(leader))
+              + self%now%rivals%changes(on_way, number, excess, segment(leader))
          do k = 1, size(leader)
             call segment(leader(k))%go_to(to(k), moves(leader(k)))
          end do
@@ -158,7 +159,7 @@ contains
 
       first = [(min(0.0_rk, maxval(self%tip%drive%intensity/self%rules%toughness - 1.0_rk, &
                                    mask=kind == kind(i))), i=1, size(kind))]
-      associate (segment => self%segment)
+      associate (segment => self%now%segment)
          lags = (wants .or. (segment%is_open .and. segment%reached > segment%lowest())) .and. &
                 lacks(self%tip, first) .and. &
                 (lacks(before, 0.0_rk) .or. .not. segment%gain > 0.0_rk)
@@ -167,8 +168,8 @@ contains
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
          kind(i) = maxval(kind) + 1
-         call self%company%part(i)
-         if (self%segment(i)%is_open) call self%segment(i)%restart()
+         call self%now%company%part(i)
+         if (self%now%segment(i)%is_open) call self%now%segment(i)%restart()
          any_parted = .true.
       end do
 

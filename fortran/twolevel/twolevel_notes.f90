@@ -47,16 +47,16 @@ contains
          associate (tip => levels%tip(i), approach => self%approach(i), &
                     toughness => levels%rules%toughness)
             if (approach%is_over) cycle
-            approach%is_over = levels%segment(i)%gain > 0.0_rk
+            approach%is_over = levels%now%segment(i)%gain > 0.0_rk
             if (approach%is_over) then
                error = approach%uncertainty(tolerance*toughness)
-               onset = approach%onset_before(levels%state%time, toughness)
+               onset = approach%onset_before(levels%now%coarse%time, toughness)
                how_well = "known to "//brief_text(error, 3)//" s"
                if (.not. error < huge(1.0_rk)) how_well = "K_eq was not rising: not known when"
                call levels%chronicle%add_event(onset, event_growth_onset, how_well, &
                                                tip%fracture, tip%origin)
             else
-               call approach%follow(levels%state%time, tip%drive%intensity, &
+               call approach%follow(levels%now%coarse%time, tip%drive%intensity, &
                                     norm2([tip%intensity%k1_error, tip%intensity%k2_error]) &
                                     /tip%drive%resistance, &
                                     toughness)
@@ -76,7 +76,7 @@ contains
          associate (tip => levels%tip(i))
             share = tip%drive%intensity/levels%rules%toughness
             if (tip%arrested .or. .not. share > 1.0_rk + tolerance) cycle
-            call levels%chronicle%add_event(levels%state%time, event_unstable, "K_eq is "// &
+            call levels%chronicle%add_event(levels%now%coarse%time, event_unstable, "K_eq is "// &
                                             brief_text(share, 4)//" K_IC in the initial "// &
                                             "state: growth is unstable from the start", &
                                             tip%fracture, tip%origin)
@@ -95,10 +95,10 @@ contains
 
       group = pack([(i, i=1, size(levels%tip, kind=ik))], levels%tip%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = levels%rivals%preference_of(group)*levels%rules%increment
+      lead = levels%now%rivals%preference_of(group)*levels%rules%increment
       is_bifurcation = lead > could_part
       if (is_bifurcation .and. .not. self%was_bifurcation) then
-         call levels%chronicle%add_event(levels%state%time, event_bifurcation, &
+         call levels%chronicle%add_event(levels%now%coarse%time, event_bifurcation, &
                                          integer_text(size(group, kind=ik))// &
                                          " tips grow; a lead of one increment is worth "// &
                                          brief_text(100.0_rk*lead, 3)//" % of K")
@@ -113,15 +113,17 @@ contains
       real(rk) :: leaked
 
       leaked = 0.0_rk
-      if (levels%injected > 0.0_rk) leaked = max(0.0_rk, min(1.0_rk, levels%leaked/levels%injected))
-      associate (tip => levels%tip, toughness => levels%rules%toughness)
-         call levels%certainty%accept(dt, levels%well_pressure(), &
-                                      tip%advance > 0.0_rk, tolerance + hypot( &
-                                      tip%intensity%k1_error, tip%intensity%k2_error) &
-                                      /(toughness*tip%drive%resistance), &
-                                      levels%segment%steep(levels%segment%slope), &
-                                      tip_cell_lengths(levels), total_length(levels%network), &
-                                      levels%trend%pressure_rise(), leaked)
+      associate (fluid => levels%now%fluid)
+         if (fluid%injected > 0.0_rk) leaked = max(0.0_rk, min(1.0_rk, fluid%leaked/fluid%injected))
+      end associate
+      associate (tip => levels%tip, toughness => levels%rules%toughness, now => levels%now)
+         call now%certainty%accept(dt, levels%problem%well_pressure(levels%scene, now%coarse), &
+                                   tip%advance > 0.0_rk, tolerance + hypot( &
+                                   tip%intensity%k1_error, tip%intensity%k2_error) &
+                                   /(toughness*tip%drive%resistance), &
+                                   now%segment%steep(now%segment%slope), &
+                                   tip_cell_lengths(levels), total_length(levels%network), &
+                                   now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_certainty
 

@@ -1,8 +1,7 @@
 !> Where tips are along the last pieces of their paths, on both levels.
 !!
 !! The last cell of a fracture ends with its last piece, at a joint if that ends on something. As
-!! long as its tip has not come to it, nothing flows there. Tries that were not taken may have left
-!! several pieces before the tip.
+!! long as its tip has not come to it, nothing flows there.
 module twolevel_places
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
@@ -25,7 +24,7 @@ contains
 
       do i = 1, size(self%tip, kind=ik)
          advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
-                       - self%segment(i)%gain
+                       - self%now%segment(i)%gain
       end do
       ! Rounding is left of tips that have not moved, where the other end of their fracture has.
       where (abs(advances) <= same_place*self%rules%increment) advances = 0.0_rk
@@ -37,9 +36,9 @@ contains
       integer(ik), allocatable :: free(:)
       integer(ik) :: i, k
 
-      associate (fracture => self%mesh%fracture)
+      associate (fracture => self%problem%mesh%fracture)
          do i = 1, size(self%tip, kind=ik)
-            associate (tip => self%tip(i), segment => self%segment(i))
+            associate (tip => self%tip(i), segment => self%now%segment(i))
                if (.not. segment%is_open) cycle
                tip%xy = segment%place()
                tip%direction = segment%direction
@@ -47,41 +46,16 @@ contains
             end associate
          end do
          free = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%is_free)
-         associate (ends => self%model%ends)
+         associate (ends => self%problem%model%ends)
             ends%cell = [(end_cell(fracture, self%tip(free(k))), k=1, size(free))]
             ends%inwards = merge(1_ik, -1_ik, self%tip(free)%end == 1)
-            ends%ahead = [(length_ahead(self, free(k), fracture%point_xy(:, fracture%cell_points( &
-                                                           self%tip(free(k))%end, ends%cell(k)))), &
-                           k=1, size(free))]
-            call self%model%joints%shut_only(ends%cell, self%tip(free)%end)
+            ends%ahead = [(norm2(fracture%point_xy(:, fracture%cell_points(self%tip(free(k))%end, &
+                                                                           ends%cell(k))) &
+                                 - self%tip(free(k))%xy), k=1, size(free))]
+            call self%problem%model%joints%shut_only(ends%cell, self%tip(free)%end)
          end associate
       end associate
    end subroutine place_tips
-
-   !> Length of the coarse cells that lie before a tip [m].
-   pure real(rk) function length_ahead(self, i, end)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: end(2)  !< of its fracture in the coarse mesh [m]
-      integer(ik) :: number
-
-      associate (tip => self%tip(i), segment => self%segment(i), prepared => self%prepared(i), &
-                 within => same_place*self%rules%increment)
-         if (segment%is_open) then
-            number = prepared%find(segment%start, within)
-         else
-            number = prepared%find(tip%xy, within)
-         end if
-         if (number == 0) then
-            length_ahead = norm2(end - tip%xy)
-         else if (segment%is_open) then
-            length_ahead = norm2(prepared%end_of(number) - tip%xy) &
-                           + prepared%length_from(number + 1)
-         else
-            length_ahead = prepared%length_from(number)
-         end if
-      end associate
-   end function length_ahead
 
    !> The fracture cell that a fracture ends with at a tip; cells are stored along each fracture.
    pure integer(ik) function end_cell(fracture, tip)
@@ -100,7 +74,8 @@ contains
       length = 0.0_rk
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
-         length(i) = self%model%condensed%length(end_cell(self%mesh%fracture, self%tip(i)))
+         length(i) = self%problem%model%condensed%length(end_cell(self%problem%mesh%fracture, &
+                                                                self%tip(i)))
       end do
    end function tip_cell_lengths
 

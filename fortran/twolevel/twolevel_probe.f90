@@ -51,33 +51,33 @@ contains
 
       has_measured = .false.
       if (count(in_play) < 2) return
-      asked = self%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
-                                     self%segment)
+      asked = self%now%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
+                                         self%now%segment)
       has_measured = size(asked) > 0
       if (.not. has_measured) return
-      state = self%state
+      state = self%now%coarse
       tip = self%tip
       do k = 1, size(asked, kind=ik)
-         associate (segment => self%segment(asked(k)))
+         associate (segment => self%now%segment(asked(k)))
             shift = -probe*segment%length
             segment%reached = segment%reached + shift
             call place_tips(self)
-            call go_back(self%state, self%before)
+            call go_back(self%now%coarse, self%before)
             call self%try_step(dt, timers, report, error)
             if (allocated(error)) return
             if (report%converged) then
                call self%evaluate(timers, error)
                if (allocated(error)) return
-               call self%rivals%note(asked(k), shift, tip%drive%intensity/self%rules%toughness, &
-                                     self%tip%drive%intensity/self%rules%toughness, segment)
+               call self%now%rivals%note(asked(k), shift, &
+                                         tip%drive%intensity/self%rules%toughness, &
+                                         self%tip%drive%intensity/self%rules%toughness, segment)
             end if
             segment%reached = segment%reached - shift
          end associate
       end do
       call place_tips(self)
       self%tip = tip
-      call go_back(self%state, state)
-      self%values_are_current = .false.
+      call go_back(self%now%coarse, state)
    end subroutine measure_rivals
 
    !> Remember a try.
@@ -85,7 +85,7 @@ contains
       class(lesson_t), intent(out) :: self
       class(two_levels_t), intent(in) :: levels
 
-      self%reached = levels%segment%reached
+      self%reached = levels%now%segment%reached
       self%drive = levels%tip%drive%intensity
    end subroutine begin
 
@@ -95,7 +95,7 @@ contains
       class(two_levels_t), intent(inout) :: levels
 
       if (.not. allocated(self%reached)) return
-      call levels%rivals%learn(levels%segment%reached - self%reached, &
+      call levels%now%rivals%learn(levels%now%segment%reached - self%reached, &
                                (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
    end subroutine tell
 

@@ -74,19 +74,19 @@ contains
       call simulation%begin(two_fractures(), timers, error)
       do i = 1, most
          if (i > 2) then
-            matrix = simulation%rivals%matrix
-            measured = simulation%rivals%measured
-            reached = simulation%segment%reached
+            matrix = simulation%now%rivals%matrix
+            measured = simulation%now%rivals%measured
+            reached = simulation%now%segment%reached
             place = reshape([simulation%tip%xy(1), simulation%tip%xy(2)], [size(reached), 2])
             associate (kinds => kinds_of(simulation))
                call reject(simulation, 1.0_rk, rejected)
                call checks%is_true(all(kinds == kinds_of(simulation)), "the same kinds of tips")
             end associate
             call same(reshape(matrix, [size(matrix)]), &
-                      reshape(simulation%rivals%matrix, [size(matrix)]), "rivals")
+                      reshape(simulation%now%rivals%matrix, [size(matrix)]), "rivals")
             call same(reshape(measured, [size(matrix)]), &
-                      reshape(simulation%rivals%measured, [size(matrix)]), "measured rivals")
-            call same(reached, simulation%segment%reached, "places along pieces")
+                      reshape(simulation%now%rivals%measured, [size(matrix)]), "measured rivals")
+            call same(reached, simulation%now%segment%reached, "places along pieces")
             call same(reshape(place, [size(place)]), [simulation%tip%xy(1), simulation%tip%xy(2)], &
                       "places")
          end if
@@ -103,11 +103,11 @@ contains
       integer(ik) :: kind(size(simulation%tip))
       type(company_t) :: company
 
-      company = simulation%company
+      company = simulation%now%company
       associate (drive => simulation%tip%drive%intensity/simulation%rules%toughness)
-         call company%find_kinds(drive, 0.0_rk*drive, simulation%segment%gain, &
+         call company%find_kinds(drive, 0.0_rk*drive, simulation%now%segment%gain, &
                                  simulation%tip%arrested, simulation%rules%increment, &
-                                 simulation%rivals, kind)
+                                 simulation%now%rivals, kind)
       end associate
    end function kinds_of
 
@@ -174,13 +174,13 @@ contains
 
       time = simulation%time()
       tolerance = simulation%scene%time%tolerance
-      call simulation%windows%accept()
-      call simulation%reference%accept()
+      call simulation%begin_step()
       simulation%scene%time%tolerance = tiny(1.0_rk)
       do k = 1, 2
          call find_equilibrium(simulation, length*simulation%stepper%next, .false., .false., &
                                timers, report, trial, error)
          call checks%no_error(error, "a try")
+         call simulation%put_back()
          simulation%scene%time%tolerance = trial%time_error/3.0_rk
          rejected = rejected + 1
       end do
