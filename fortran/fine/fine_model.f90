@@ -97,8 +97,8 @@ contains
       end do
    end subroutine set_mesh
 
-   !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere. That
-   !! one has to be prepared again.
+   !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere.
+   !! That one has to be prepared again.
    subroutine take_order(self, from)
       class(fine_model_t), intent(inout) :: self
       type(fine_model_t), intent(inout) :: from

@@ -44,7 +44,7 @@ contains
       logical :: in_play(size(self%tip))
 
       in_play = self%now%segment%is_open .and. (excesses(self) > -tolerance .or. &
-                                            self%now%segment%reached > self%now%segment%lowest())
+                                               self%now%segment%reached > self%now%segment%lowest())
    end function tips_in_play
 
    !> Of tips that all exceed their toughness or may go back there are several kinds.

@@ -215,7 +215,7 @@ contains
 
       associate (tip => self%tip(i))
          call self%now%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
-                                           norm2(to - tip%xy))
+                                               norm2(to - tip%xy))
          call self%now%segment(i)%stay_at_start()
       end associate
    end subroutine stay_before

@@ -75,7 +75,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
          length(i) = self%problem%model%condensed%length(end_cell(self%problem%mesh%fracture, &
-                                                                self%tip(i)))
+                                                                  self%tip(i)))
       end do
    end function tip_cell_lengths
 

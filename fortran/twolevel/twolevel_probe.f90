@@ -96,7 +96,7 @@ contains
 
       if (.not. allocated(self%reached)) return
       call levels%now%rivals%learn(levels%now%segment%reached - self%reached, &
-                               (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
+                                   (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
    end subroutine tell
 
 end module twolevel_probe

@@ -8,8 +8,11 @@ module twolevel_problem
    use base_tolerances, only: same_value
    use coarse_geometry, only: cell_area
    use coarse_model, only: coarse_model_t
+   use coarse_nodes, only: nodal_fields
+   use coarse_own_pressure, only: own_pressure
    use coarse_rock_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
+   use contact_law, only: contact_law_t
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
@@ -19,7 +22,18 @@ module twolevel_problem
    implicit none(type, external)
    private
 
-   public :: cell_heights, coarse_problem_t
+   public :: cell_heights, coarse_problem_t, coarse_values_t
+
+   !> What windows take from the coarse level.
+   type :: coarse_values_t
+      real(rk), allocatable :: of(:, :)  !< the unknowns that the following are of [m], [m], [Pa]
+      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      !> For interpolation that is exact for quadratic fields (curved_displacement)
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
+      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
+      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
+   end type coarse_values_t
 
    !> What belongs to one mesh.
    type :: coarse_problem_t
@@ -29,11 +43,13 @@ module twolevel_problem
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
       integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
+      type(coarse_values_t) :: values  !< of the state that tips were evaluated in last
    contains
       procedure :: feed_wells
       procedure :: rest_wells
       procedure :: ask
       procedure :: advance
+      procedure :: find_values
       procedure :: well_pressure
       procedure :: well_in_situ
       procedure :: rock_pressure
@@ -183,6 +199,26 @@ contains
       if (present(held)) self%model%wells%control(held) = control
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
+
+   !> What windows take from a state, unless it is that which was asked for last.
+   subroutine find_values(self, state)
+      class(coarse_problem_t), intent(inout) :: self
+      type(state_t), intent(in) :: state
+
+      if (allocated(self%values%of)) then
+         if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) return
+      end if
+      self%values = coarse_values_t(of=state%unknowns, law=self%model%cells%law, &
+                                    is_grown=self%model%cells%roughness > 0.0_rk)
+      associate (values => self%values, model => self%model, mesh => self%mesh, &
+                 n => self%mesh%n_nodes)
+         allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
+         call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, &
+                           values%nodal, values%displacement, values%gradient)
+         values%nodal(3, :) = own_pressure(mesh, state%unknowns(3, :mesh%n_cells), &
+                                           values%nodal(3, :), state%pressure)
+      end associate
+   end subroutine find_values
 
    !> Wells in the rock.
    pure subroutine feed_rock(self, rates)

@@ -8,8 +8,6 @@ module twolevel_state
    use coarse_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t
    use coarse_model, only: new_state, rest_fluid
-   use coarse_nodes, only: nodal_fields
-   use coarse_own_pressure, only: own_pressure
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: network_of_scene
@@ -29,7 +27,6 @@ module twolevel_state
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_wells, only: rate, share_wells, transfer_shares
-   use twolevel_window, only: coarse_values_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
@@ -58,7 +55,6 @@ module twolevel_state
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, against which these are held
       integer(ik) :: reference_most = 800  !< coarse fracture cells up to which they are
-      type(coarse_values_t) :: coarse_values  !< of the state that tips were evaluated in last
    contains
       procedure :: mesh_levels
       procedure :: begin_step
@@ -369,23 +365,6 @@ contains
       end associate
    end subroutine book_step
 
-   !> Coarse values at the mesh's nodes, for windows.
-   subroutine find_values(problem, state, values)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      type(coarse_values_t), intent(out) :: values
-
-      associate (model => problem%model, mesh => problem%mesh, n => problem%mesh%n_nodes)
-         allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
-         call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, &
-                           values%nodal, values%displacement, values%gradient)
-         values%nodal(3, :) = own_pressure(mesh, state%unknowns(3, :mesh%n_cells), &
-                                           values%nodal(3, :), state%pressure)
-         values%law = model%cells%law
-         values%is_grown = model%cells%roughness > 0.0_rk
-      end associate
-   end subroutine find_values
-
    !> Stress intensity factors of the tips asked for, in windows on the present network.
    subroutine evaluate(self, timers, error)
       class(two_levels_t), intent(inout) :: self
@@ -400,10 +379,10 @@ contains
       associate (now => self%now)
          call follow_sides(self%scene, now%coarse%time, now%coarse%time)
          call timers%start(phase_tips)
-         call find_values(self%problem, now%coarse, self%coarse_values)
+         call self%problem%find_values(now%coarse)
          call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
-                                    self%has_reference(), self%problem, self%coarse_values, &
-                                    now%coarse, now%undrained, now%windows, error)
+                                    self%has_reference(), self%problem, now%coarse, &
+                                    now%undrained, now%windows, error)
          call timers%stop(phase_tips)
       end associate
    end subroutine evaluate

@@ -105,8 +105,8 @@ contains
       tips = self%tip
       associate (now => self%now)
          call self%reference%evaluate(self%scene, self%network, tips, tips%is_free, .false., &
-                                      self%problem, self%coarse_values, now%coarse, &
-                                      now%undrained, now%reference, error)
+                                      self%problem, now%coarse, now%undrained, now%reference, &
+                                      error)
       end associate
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
@@ -174,7 +174,7 @@ contains
       if (allocated(error)) return
       straight = 0.0_rk
       associate (tips => self%now%windows%tip, scene => self%scene, mesh => self%problem%mesh, &
-                 linear => self%coarse_values%nodal(:2, :))
+                 linear => self%problem%values%nodal(:2, :))
          do w = 1, size(self%windows%slot, kind=ik)
             if (.not. self%windows%is_asked(w, self%tip)) cycle
             associate (window => self%windows%slot(w)%window, &
@@ -190,8 +190,10 @@ contains
          end do
          do i = 1, size(tips, kind=ik)
             if (.not. self%tip(i)%is_free) cycle
-            call judge_edges(self, self%windows%slot(self%windows%window_of(i))%window, better(:, i), &
-                             worse(:, i), tips(i))
+            associate (w => self%windows%window_of(i))
+               call judge_edges(self, self%windows%slot(w)%window, better(:, i), worse(:, i), &
+                                tips(i))
+            end associate
          end do
       end associate
    end subroutine compare_edges
@@ -261,7 +263,7 @@ contains
       associate (of => self%tip(tip), found => self%now%windows%tip(tip)%found, &
                  time => self%now%coarse%time)
          layer = layer_at_tip(self%problem%mesh, self%problem%model%rock, self%now%coarse, &
-                              self%coarse_values%nodal(3, :), of%fracture, of%end)
+                              self%problem%values%nodal(3, :), of%fracture, of%end)
          ! A tip that moves meets rock that the fluid has not reached.
          age = time
          if (of%advance > 0.0_rk) age = min(age, (time - self%before%time)*layer%cell/of%advance)

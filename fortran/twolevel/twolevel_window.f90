@@ -8,7 +8,7 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use contact_law, only: contact_law_t, is_same
+   use contact_law, only: is_same
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
@@ -27,6 +27,7 @@ module twolevel_window
    use tips_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use tips_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: face_map_t, match_faces
+   use twolevel_problem, only: coarse_values_t
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_map, only: window_map_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
@@ -37,17 +38,7 @@ module twolevel_window
    implicit none(type, external)
    private
 
-   public :: coarse_values_t, window_t
-
-   !> What a window takes from the coarse level.
-   type :: coarse_values_t
-      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      !> For interpolation that is exact for quadratic fields (curved_displacement)
-      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
-      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
-      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
-      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
-   end type coarse_values_t
+   public :: window_t
 
    !> What the mesh of a window was made for, or has followed since.
    type :: made_for_t

@@ -16,7 +16,7 @@ module twolevel_windows
    use simulation_rocks, only: has_other_toughness, relative_toughness
    use tips_types, only: intensity_t
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_window, only: coarse_values_t, window_t
+   use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows_state, only: window_history_t, windows_state_t
    implicit none(type, external)
@@ -142,7 +142,7 @@ contains
 
    !> Intensities, drive and rosette radius of every tip that is asked for, in a state of the coarse
    !! level.
-   subroutine evaluate(self, scene, network, tips, asked, is_beside_body, problem, values, state, &
+   subroutine evaluate(self, scene, network, tips, asked, is_beside_body, problem, state, &
                        undrained, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -150,8 +150,7 @@ contains
       type(tip_t), intent(inout) :: tips(:)
       logical, intent(in) :: asked(:)  !< (tips)
       logical, intent(in) :: is_beside_body  !< they are held against the body as one window
-      type(coarse_problem_t), intent(in) :: problem
-      type(coarse_values_t), intent(in) :: values
+      type(coarse_problem_t), intent(in) :: problem  !< with its values of the state
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(windows_state_t), intent(inout) :: known
@@ -171,8 +170,8 @@ contains
          if (.not. self%is_asked(w, tips)) cycle
          if (.not. any(asked(self%slot(w)%window%serves))) cycle
          !$omp task firstprivate(w) default(shared)
-         call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, values, &
-                              state, undrained, self%resistance, known%tip, known%history(w), &
+         call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, state, &
+                              undrained, self%resistance, known%tip, known%history(w), &
                               failure(w)%error)
          !$omp end task
       end do
@@ -211,7 +210,7 @@ contains
    end subroutine first_failure
 
    !> The same for the tips of one window. It changes nothing of other windows or tips.
-   subroutine evaluate_window(slot, scene, network, tips, is_beside_body, problem, values, state, &
+   subroutine evaluate_window(slot, scene, network, tips, is_beside_body, problem, state, &
                               undrained, resistance, seen, history, error)
       type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
@@ -219,7 +218,6 @@ contains
       type(tip_t), intent(inout) :: tips(:)
       logical, intent(in) :: is_beside_body
       type(coarse_problem_t), intent(in) :: problem
-      type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained
       real(rk), intent(in) :: resistance(:)  !< (tips) [-]
@@ -234,14 +232,15 @@ contains
       end if
       associate (window => slot%window)
          if (.not. window%made%is_projected) then
-            call window%project(problem%mesher, problem%mesh, values, error)
+            call window%project(problem%mesher, problem%mesh, problem%values, error)
             if (allocated(error)) return
          end if
          if (window%undrained .neqv. undrained) then
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
-         call window%find_intensities(scene, problem%mesh, values, state, seen, history, error)
+         call window%find_intensities(scene, problem%mesh, problem%values, state, seen, history, &
+                                      error)
          if (allocated(error)) return
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => tips(window%serves(i)))
@@ -326,7 +325,7 @@ contains
 
       associate (window => self%slot(self%window_of(tip))%window)
          intensity = seen%with_coarse_error(window%crack_modulus(window%at(findloc( &
-                                                                 window%serves, tip, dim=1))))
+                                                                       window%serves, tip, dim=1))))
       end associate
    end function intensity_of
 
