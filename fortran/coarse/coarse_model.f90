@@ -394,7 +394,9 @@ contains
       rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - state%content
       if (allocated(self%source)) then
          fluid = self%source(3, :)
-         if (self%rock_wells%n > 0) call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+         if (paths%wells%n_all > paths%wells%n) then
+            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+         end if
          rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
          rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*fluid
       end if

@@ -23,6 +23,7 @@ module coarse_rock_wells
       real(rk), allocatable :: source(:)  !< (n) q of the step where p_c is 0 [m2/s]
       !> (n) what q loses per p_c, as the matrix has it [m2/(Pa s)]
       real(rk), allocatable :: conductance(:)
+      real(rk), allocatable :: rock(:)  !< (n) what the matrix has without wells [m2/(Pa s)]
    contains
       procedure :: set_terms
       procedure :: find_flows
@@ -65,6 +66,9 @@ contains
 
       any_changed = .false.
       self%source = spread(0.0_rk, 1, int(self%n))
+      if (.not. allocated(self%rock)) then
+         self%rock = [(matrix%flow(matrix%columns%last(self%cell(w))), w=1, self%n)]
+      end if
       do w = 1, self%n
          at = wells%n + w
          conductance = 0.0_rk
@@ -84,10 +88,12 @@ contains
          end if
          if (.not. abs(conductance - self%conductance(w)) > 0.0_rk) cycle
          any_changed = .true.
-         associate (entry => matrix%flow(matrix%columns%last(self%cell(w))))
-            entry = entry - (conductance - self%conductance(w))
-         end associate
          self%conductance(w) = conductance
+      end do
+      if (.not. any_changed) return
+      do w = 1, self%n
+         matrix%flow(matrix%columns%last(self%cell(w))) = &
+            self%rock(w) - sum(self%conductance, mask=self%cell == self%cell(w))
       end do
    end subroutine set_terms
 

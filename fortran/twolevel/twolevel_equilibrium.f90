@@ -16,9 +16,10 @@ module twolevel_equilibrium
    use growth_targets, only: target_none
    use simulation_doubt, only: doubtful
    use twolevel_doubt, only: find_improvements
-   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, tolerance
-   use twolevel_moves, only: judge_tips, keep_together, part_company, several_kinds, tips_in_play
-   use twolevel_pieces, only: begin_pieces, can_join, join_targets
+   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, shared_excesses, &
+                              tolerance
+   use twolevel_moves, only: is_in_play, judge_tips, keep_together, part_company, several_kinds
+   use twolevel_pieces, only: begin_pieces, can_join, have_come, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
@@ -117,7 +118,7 @@ contains
          call segment%restart()
          if (.not. may_jump) then
             call segment%keep_pace(dt)
-            call keep_together(self, search%kind)
+            call keep_together(self%now%segment, search%kind)
          end if
       end associate
       call self%now%certainty%begin_step()
@@ -133,7 +134,7 @@ contains
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
 
-      call place_tips(self)
+      call place_tips(self%front_state_t, self%now%segment, self%problem)
       call self%try_step(search%dt, timers, report, error)
       if (allocated(error)) return
       trial%converged = report%converged
@@ -153,10 +154,17 @@ contains
                                       self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%drive%intensity
-      if (.not. search%is_last) trial%onset = first_onset(self, self%last%front%tip%drive%intensity)
+      if (.not. search%is_last) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (.not. search%is_over) self%now%asked = are_asked(self)
    end subroutine find_state
+
+   !> Share of the step after which the first tip that has not grown before begins to [-].
+   pure real(rk) function onset_of(self)
+      class(two_levels_t), intent(in) :: self
+
+      onset_of = first_onset(self%last%front%tip, self%tip, self%now%segment, self%rules%toughness)
+   end function onset_of
 
    !> Let the tips go where their excess will probably vanish.
    subroutine move_tips(self, search, try, timers, any_moves, wants, error)
@@ -171,14 +179,15 @@ contains
       logical, dimension(size(self%tip)) :: in_play, moves
       logical :: is_coupled
 
-      in_play = tips_in_play(self)
-      call search%lesson%tell(self)
+      in_play = is_in_play(self%now%segment, excesses(self%tip, self%rules%toughness))
+      call search%lesson%tell(self%now%segment, self%tip, self%rules%toughness, self%now%rivals)
       call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
-      call search%lesson%begin(self)
+      call search%lesson%begin(self%now%segment, self%tip)
       is_coupled = try <= coupled_tries_max
       if (is_coupled) is_coupled = several_kinds(search%kind, in_play)
-      call judge_tips(self, search%kind, is_coupled, moves, wants)
+      call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
+                      self%tip%arrested, search%kind, is_coupled, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 
@@ -193,12 +202,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_parted, joins(size(self%tip))
 
-      call part_company(self, self%last%front%tip, wants, search%kind, any_parted)
+      call part_company(self%now%segment, self%now%company, self%tip, self%last%front%tip, &
+                        self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) return
       ! Not while others are on their way: they may go back.
-      if (.not. search%may_jump) then
-         trial%onset = first_onset(self, self%last%front%tip%drive%intensity)
-      end if
+      if (.not. search%may_jump) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
@@ -232,11 +240,11 @@ contains
       wants = wants .and. .not. stops
       if (search%may_jump) return
       trial%goes_too_far = any(stops .and. search%has_begun)
-      stops = stops .and. excesses(self) > tolerance
+      stops = stops .and. excesses(self%tip, self%rules%toughness) > tolerance
       trial%gains_all = any(stops)
       if (trial%gains_all) then
-         trial%arrival = minval(arrivals(self, self%last%front%tip%drive%intensity, 0.0_rk), &
-                                mask=stops)
+         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
+                                         self%rules%toughness, 0.0_rk), mask=stops)
       end if
       trial%is_late = trial%gains_all
       search%is_over = trial%goes_too_far .or. trial%is_late
@@ -252,8 +260,8 @@ contains
 
       if (.not. search%may_jump) then
          trial%goes_too_far = any(joins .and. search%has_begun)
-         trial%arrival = minval(arrivals(self, self%last%front%tip%drive%intensity, at_joints), &
-                                mask=joins)
+         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
+                                         self%rules%toughness, at_joints), mask=joins)
          trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
@@ -281,7 +289,8 @@ contains
             call find_improvements(self, self%before%time, trial%improvements, error)
             return
          end if
-         if (any(wants .and. (search%has_begun .or. excesses(self) > excess_max))) then
+         if (any(wants .and. (search%has_begun .or. &
+                              excesses(self%tip, toughness) > excess_max))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! what jumps has no rates
          end if
@@ -294,15 +303,15 @@ contains
             return
          end if
       end associate
-      excess = [(maxval(excesses(self), mask=wants .and. search%kind == search%kind(i)), &
-                 i=1, size(wants))]
+      excess = excesses(self%tip, self%rules%toughness)
+      excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
       call begin_pieces(self, wants, timers, error)
       if (allocated(error)) return
       if (.not. search%may_jump) then
          do i = 1, size(wants)
             if (wants(i)) call self%now%segment(i)%set_out(excess(i))
          end do
-         call keep_together(self, search%kind)
+         call keep_together(self%now%segment, search%kind)
       end if
       ! Not those that have come to something already: nothing lies between.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
@@ -322,7 +331,8 @@ contains
       call ask_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
-      trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
+      trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
+                                               self%rules%increment)])/self%rules%increment
       if (.not. search%is_last) then
          if (self%errs(trial%time_error)) return
          call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
@@ -359,7 +369,8 @@ contains
       self%now%asked = others
       if (any(others)) call self%evaluate(timers, error)
       deallocate (self%now%asked)
-      if (.not. allocated(error)) any_exceeds = any(others .and. excesses(self) > tolerance)
+      if (allocated(error)) return
+      any_exceeds = any(others .and. excesses(self%tip, self%rules%toughness) > tolerance)
    end subroutine ask_others
 
    !> The tried state is accepted.
@@ -367,8 +378,10 @@ contains
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
 
-      self%tip%advance = advances(self)
-      call self%now%segment%pace(self%tip%advance, dt, excesses(self) >= -tolerance)
+      self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
+                                  self%rules%increment)
+      call self%now%segment%pace(self%tip%advance, dt, &
+                                 excesses(self%tip, self%rules%toughness) >= -tolerance)
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%company%accept(self%tip%drive%intensity/self%rules%toughness, &

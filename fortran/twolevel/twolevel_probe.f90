@@ -10,6 +10,8 @@ module twolevel_probe
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: go_back, state_t, step_report_t
+   use growth_rivals, only: rivals_t
+   use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use twolevel_places, only: place_tips
    use twolevel_state, only: two_levels_t
@@ -61,7 +63,7 @@ contains
          associate (segment => self%now%segment(asked(k)))
             shift = -probe*segment%length
             segment%reached = segment%reached + shift
-            call place_tips(self)
+            call place_tips(self%front_state_t, self%now%segment, self%problem)
             call go_back(self%now%coarse, self%before)
             call self%try_step(dt, timers, report, error)
             if (allocated(error)) return
@@ -75,28 +77,32 @@ contains
             segment%reached = segment%reached - shift
          end associate
       end do
-      call place_tips(self)
+      call place_tips(self%front_state_t, self%now%segment, self%problem)
       self%tip = tip
       call go_back(self%now%coarse, state)
    end subroutine measure_rivals
 
    !> Remember a try.
-   subroutine begin(self, levels)
+   subroutine begin(self, segments, tips)
       class(lesson_t), intent(out) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(tip_t), intent(in) :: tips(:)
 
-      self%reached = levels%now%segment%reached
-      self%drive = levels%tip%drive%intensity
+      self%reached = segments%reached
+      self%drive = tips%drive%intensity
    end subroutine begin
 
    !> What the last try has shown beside the one before.
-   subroutine tell(self, levels)
+   subroutine tell(self, segments, tips, toughness, rivals)
       class(lesson_t), intent(in) :: self
-      class(two_levels_t), intent(inout) :: levels
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      type(rivals_t), intent(inout) :: rivals
 
       if (.not. allocated(self%reached)) return
-      call levels%now%rivals%learn(levels%now%segment%reached - self%reached, &
-                                   (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
+      call rivals%learn(segments%reached - self%reached, &
+                        (tips%drive%intensity - self%drive)/toughness)
    end subroutine tell
 
 end module twolevel_probe

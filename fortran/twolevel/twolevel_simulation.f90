@@ -63,7 +63,7 @@ contains
       call self%catalogue%begin(scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump, scene%output%seismic_slip_rate)
       call self%notes%begin(size(self%tip))
-      call watch_mesh(self, error)
+      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
@@ -121,7 +121,8 @@ contains
          call book_change(self)
          self%now%fluid%mass_error = self%now%fluid%mass_error + self%report%mass_error
          row = self%history()
-         call watch_levels(self, self%report, row%mass_error_relative)
+         call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%report, &
+                           self%now%fluid%mass_error, row%mass_error_relative)
          call self%heed_limits(error)
       end if
       if (allocated(error)) then
@@ -251,14 +252,20 @@ contains
             end if
          end if
          if (allocated(error)) return
-         if (self%is_equilibrium()) call self%notes%note_onsets(self)
-         if (self%is_equilibrium() .and. self%is_initial) call note_excess(self)
+         associate (toughness => self%rules%toughness, time => self%now%coarse%time)
+            if (self%is_equilibrium()) then
+               call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
+                                           self%chronicle)
+               if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
+            end if
+            call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+         end associate
          call count_unknowns(self, self%summary)
-         call watch_windows(self, may_grow)
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      if (states_errors(self)) call note_certainty(self, self%dt)
+      if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
+                                                   self%dt, self%now)
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.
@@ -295,7 +302,7 @@ contains
       if (any(self%tip%advance > 0.0_rk)) self%chronicle%has_new_network = .true.
       if (.not. self%shows_growth) return
       call self%note_mesh(self%problem%mesh)
-      call watch_mesh(self, error)
+      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
    end subroutine note_equilibrium
 
    !> Errors of length and pressure are estimated: not with increments of a given law.
@@ -324,7 +331,7 @@ contains
          call self%end_at_gain()
          if (coarse_grew) then
             call self%note_mesh(self%problem%mesh)
-            call watch_mesh(self, error)
+            call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
             if (allocated(error)) return
             call self%stepper%network_grew()
          end if

@@ -170,7 +170,8 @@ contains
       real(rk), dimension(2, size(self%tip)) :: better, worse
       integer(ik) :: i, w
 
-      call improve(self, displacement, gradient, error)
+      call improve(self%windows, self%tip, self%problem, self%now%coarse, displacement, gradient, &
+                   error)
       if (allocated(error)) return
       straight = 0.0_rk
       associate (tips => self%now%windows%tip, scene => self%scene, mesh => self%problem%mesh, &
