@@ -19,6 +19,7 @@ program test_twolevel_simulation
    type(checks_t) :: checks
    type(timers_t) :: timers
 
+   call test_rock_well()
    call test_wells()
    call test_refused_step()
    call test_growth("conserved")
@@ -30,6 +31,53 @@ program test_twolevel_simulation
    call checks%finish()
 
 contains
+
+   !> A well in the rock, with a rate up to a pressure, after an initial state in equilibrium: it
+   !! gives its rate, then what its pressure lets through; a try that is put back leaves the same
+   !! matrix, though its conductances depend on the step's length.
+   subroutine test_rock_well()
+      real(rk), parameter :: limit = 8.0e6_rk
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: flow(:)
+      real(rk) :: dt
+      integer :: step, try
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%growth%intensities = .false.
+      scene%initial%fracture_pressure = "equilibrated"
+      scene%time = time_t(end=1.0e6_rk, tolerance=3.0e-2_rk, smallest_factor=1.0e-9_rk)
+      call add_fracture(scene, "far", [0.2_rk, 0.4_rk], [0.2_rk, 0.3_rk], 0.5_rk, 0.0_rk)
+      scene%injections = [injection_t(x=1.2_rk, y=1.1_rk, radius=0.004_rk, rate=[1.0e-6_rk], &
+                                      pressure=[limit], storage=1.0e-12_rk)]
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "a well in the rock")
+      do step = 1, 40
+         call simulation%next_state(timers, error)
+         if (.not. allocated(error)) call simulation%grow(timers, error)
+         call checks%no_error(error, "a state of it")
+         if (allocated(error)) return
+         call simulation%begin_step()
+         do try = 1, 3
+            dt = merge(0.3_rk, 1.0_rk, try == 2)*simulation%dt
+            if (simulation%is_initial) dt = 1.0_rk
+            call simulation%try_step(dt, timers, report, error)
+            call checks%no_error(error, "a try of it")
+            call simulation%put_back()
+            if (try == 1) flow = simulation%problem%model%matrix%flow
+         end do
+         call checks%is_close(maxval(abs(simulation%problem%model%matrix%flow - flow)), 0.0_rk, &
+                              0.0_rk, "the same matrix")
+         associate (state => simulation%now%coarse)
+            call checks%is_true(state%well_head(1) <= limit*(1.0_rk + 1.0e-6_rk), "up to its limit")
+         end associate
+      end do
+      call checks%is_true(simulation%now%at_limit(1), "it has come to it")
+      call checks%is_close(simulation%now%fluid%mass_error/simulation%now%fluid%injected, 0.0_rk, &
+                           1.0e-9_rk, "all fluid is accounted for")
+   end subroutine test_rock_well
 
    !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
    subroutine test_wells()
