@@ -79,6 +79,7 @@ module coarse_model
       procedure :: change_sides
       procedure :: equilibrate
       procedure :: advance
+      procedure :: release
    end type coarse_model_t
 
 contains
@@ -511,6 +512,16 @@ contains
          injection = injection + matmul(paths%wells%joint_share, state%well_flow(:paths%wells%n))
       end if
    end function into_joints
+
+   !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
+   !! types that its components extend.
+   subroutine release(self)
+      class(coarse_model_t), intent(inout) :: self
+      type(regions_t) :: none
+
+      call self%condensed%factors%release()
+      self%regions = none
+   end subroutine release
 
    !> Pairs of fracture cells that exchange fluid along their fracture.
    subroutine find_connections(mesh, connections)

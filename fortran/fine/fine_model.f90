@@ -98,7 +98,7 @@ contains
    end subroutine set_mesh
 
    !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere.
-   !! That one has to be prepared again.
+   !! That one has to be set up again.
    subroutine take_order(self, from)
       class(fine_model_t), intent(inout) :: self
       type(fine_model_t), intent(inout) :: from
@@ -109,6 +109,7 @@ contains
       deallocate (from%analysed%first_unknown)
       self%ready = .false.
       from%ready = .false.
+      if (allocated(from%stiffness)) deallocate (from%stiffness)
    end subroutine take_order
 
    !> Assemble and factorize for the given face conditions; may be called again when they change.

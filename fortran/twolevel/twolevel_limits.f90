@@ -104,7 +104,7 @@ contains
          differs = abs(law%thickness_at(problem%rock_pressure(state)) - 1.0_rk)
          i = worst_place(differs)
          call watch%see(limit_fluid_in_rock, differs(i), when, &
-                             sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk)
+                        sum(mesh%xy(:, mesh%cell_nodes(:, i)), dim=2)/3.0_rk)
       end associate
       if (.not. allocated(scene%fluid%table_pressure)) return
       if (problem%mesh%fracture%n_cells == 0) return
@@ -130,8 +130,8 @@ contains
                  length => problem%model%condensed%length)
          i = worst_place(state%aperture)
          call watch%see(limit_aperture, &
-                             state%aperture(i)/min(d%x_max - d%x_min, d%y_max - d%y_min), when, &
-                             middle(problem%mesh%fracture, i))
+                        state%aperture(i)/min(d%x_max - d%x_min, d%y_max - d%y_min), when, &
+                        middle(problem%mesh%fracture, i))
          ratio = maxval(norm2(state%jump, dim=1), dim=1)/length
          i = worst_place(ratio)
          call watch%see(limit_jump, ratio(i), when, middle(problem%mesh%fracture, i))
@@ -154,7 +154,7 @@ contains
       associate (rock => problem%model%rock)
          if (rock%most_layered_cell == 0) return
          call watch%see(limit_layering, rock%most_layered, name_of(time), &
-                             middle_of(rock%most_layered_cell))
+                        middle_of(rock%most_layered_cell))
       end associate
 
    contains

@@ -22,7 +22,7 @@ module twolevel_problem
    implicit none(type, external)
    private
 
-   public :: cell_heights, coarse_problem_t, coarse_values_t
+   public :: cell_heights, coarse_problem_t, coarse_values_t, discard
 
    !> What windows take from the coarse level.
    type :: coarse_values_t
@@ -59,6 +59,15 @@ module twolevel_problem
    end type coarse_problem_t
 
 contains
+
+   !> A problem is not needed any more.
+   subroutine discard(problem)
+      type(coarse_problem_t), allocatable, intent(inout) :: problem
+
+      if (.not. allocated(problem)) return
+      call problem%model%release()
+      deallocate (problem)
+   end subroutine discard
 
    !> What the wells feed on the present mesh.
    subroutine feed_wells(self, scene, error)

@@ -22,7 +22,7 @@ module twolevel_state
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
-   use twolevel_problem, only: coarse_problem_t
+   use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
@@ -138,7 +138,7 @@ contains
 
       self%last = self%present_state()
       self%before = self%now%coarse
-      if (allocated(self%kept_problem)) deallocate (self%kept_problem)
+      call discard(self%kept_problem)
       call self%windows%begin_step()
       call self%reference%begin_step()
    end subroutine remember
@@ -153,7 +153,7 @@ contains
       call self%windows%put_back()
       call self%reference%put_back()
       if (.not. allocated(self%kept_problem)) return
-      deallocate (self%problem)
+      call discard(self%problem)
       call move_alloc(self%kept_problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()
@@ -417,7 +417,7 @@ contains
          call self%reference%network_changed()
       end if
       call self%remesh_coarse(centres, timers, error)
-      if (allocated(self%kept_problem)) deallocate (self%kept_problem)
+      call discard(self%kept_problem)
    end subroutine grow_coarse
 
    !> A mesh of the coarse network, new around the places where that has grown; the state goes
@@ -445,7 +445,7 @@ contains
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
       if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
-      if (allocated(self%problem)) deallocate (self%problem)
+      call discard(self%problem)
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()

@@ -235,7 +235,7 @@ contains
             call window%project(problem%mesher, problem%mesh, problem%values, error)
             if (allocated(error)) return
          end if
-         if (window%undrained .neqv. undrained) then
+         if ((window%undrained .neqv. undrained) .or. .not. allocated(window%model%stiffness)) then
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
