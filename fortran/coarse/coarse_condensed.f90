@@ -56,6 +56,7 @@ module coarse_condensed
       real(rk), allocatable :: rock(:)
       !> (6 n) diagonal of S where it has been asked for, else huge; unless full
       real(rk), allocatable :: diagonal(:)
+      real(rk), allocatable :: body(:)  !< (6 n) its diagonal without springs [Pa]; if full
       real(rk), allocatable :: spring(:)  !< (6 n) part of its diagonal that is not the body's [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
@@ -289,6 +290,7 @@ contains
          end do
       end associate
       self%spring = spread(0.0_rk, 1, self%layout%count())
+      self%body = [(self%stiffness(i, i), i=1, size(self%spring))]
    end subroutine find_stiffness
 
    !> Springs on the unknowns of q, instead of those so far.
@@ -299,7 +301,7 @@ contains
 
       if (self%is_full) then
          do i = 1, size(spring, kind=ik)
-            self%stiffness(i, i) = self%stiffness(i, i) + (spring(i) - self%spring(i))
+            self%stiffness(i, i) = self%body(i) + spring(i)
          end do
       end if
       self%spring = spring

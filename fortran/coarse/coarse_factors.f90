@@ -59,8 +59,10 @@ contains
    !> Forget a mesh.
    subroutine release(self)
       class(coarse_factors_t), intent(inout) :: self
+      type(multifrontal_t) :: none
 
       call self%exchanging%release()
+      self%fronts = none
       self%analysed = .false.
    end subroutine release
 

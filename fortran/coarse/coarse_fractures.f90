@@ -21,7 +21,7 @@ module coarse_fractures
    implicit none(type, external)
    private
 
-   public :: cell_fluid_t, fracture_problem_t, fracture_system_t, most_of_rock
+   public :: cell_fluid_t, flow_paths_t, fracture_problem_t, fracture_system_t, most_of_rock
    public :: newton_settings_t, prepare
 
    !> What the iteration needs to know.
@@ -39,11 +39,18 @@ module coarse_fractures
       type(fluid_law_t), allocatable :: fluid_law  !< of viscosity and density, if there is one
    end type newton_settings_t
 
+   !> How the fluid of fractures flows in a step, and what is solved for.
+   type :: flow_paths_t
+      type(newton_settings_t) :: settings
+      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
+      type(joints_t) :: joints
+      type(wells_t) :: wells
+   end type flow_paths_t
+
    !> What the equations of the fractures of one mesh are made of, from step to step.
    type :: fracture_problem_t
       type(condensed_t) :: condensed
       type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
-      type(guess_t) :: guess  !< what the next step will probably lead to
       type(newton_settings_t) :: settings
       type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
       integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
@@ -120,8 +127,9 @@ module coarse_fractures
 contains
 
    !> Units, and what does not change within the step.
-   subroutine prepare(problem, dt, g, before, eq)
+   subroutine prepare(problem, paths, dt, g, before, eq)
       type(fracture_problem_t), intent(inout), target :: problem
+      type(flow_paths_t), intent(in), target :: paths  !< of this step
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(in), target :: before
@@ -133,18 +141,18 @@ contains
       reference = sum(problem%condensed%length)/real(n, rk)
       eq%condensed => problem%condensed
       eq%cells => problem%cells
-      eq%connections => problem%connections
-      eq%joints => problem%joints
-      eq%wells => problem%wells
+      eq%connections => paths%connections
+      eq%joints => paths%joints
+      eq%wells => paths%wells
       eq%g => g
       eq%before => before
-      eq%settings = problem%settings
-      eq%layout = fracture_layout(n, size(problem%connections, 2, kind=ik), &
-                                  problem%joints%branch_count(), problem%wells%n, problem%joints%n)
+      eq%settings = paths%settings
+      eq%layout = fracture_layout(n, size(paths%connections, 2, kind=ik), &
+                                  paths%joints%branch_count(), paths%wells%n, paths%joints%n)
       eq%dt = dt
-      eq%stiffness = problem%settings%young/reference
-      eq%unit = reference**2/problem%settings%young
-      allocate (eq%lowest(n), source=problem%settings%vapour_pressure)
+      eq%stiffness = paths%settings%young/reference
+      eq%unit = reference**2/paths%settings%young
+      allocate (eq%lowest(n), source=paths%settings%vapour_pressure)
       if (allocated(problem%cells%pressure_in_situ)) then
          eq%lowest = eq%lowest - problem%cells%pressure_in_situ
       end if

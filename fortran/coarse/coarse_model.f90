@@ -10,21 +10,22 @@ module coarse_model
    use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
                           phase_solve, timers_t
    use base_tolerances, only: same_time
+   use contact_law, only: state_stick
+   use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
-   use coarse_fractures, only: fracture_problem_t, newton_settings_t
+   use coarse_fractures, only: flow_paths_t, fracture_problem_t, newton_settings_t
+   use mesh_geometry, only: cell_area
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
-   use coarse_loads, only: add_point_forces, find_weight, hold_points
    use coarse_matrix, only: discretize, matrix_t, renew_sides
    use coarse_newton, only: solve_fractures
-   use coarse_permeability, only: place_regions, relative_resistance
+   use coarse_loads, only: add_point_forces, find_weight, hold_points
    use coarse_regions, only: new_rock, regions_t, rock_t
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
-   use coarse_wells, only: rock_wells_t, wells_t
-   use contact_law, only: state_stick
+   use coarse_permeability, only: place_regions, relative_resistance
+   use coarse_wells, only: choose_ways, control_rate, correct_ways, rock_wells_t, wells_t
+   use coarse_state, only: fracture_cells_t, go_back, state_t, step_report_t
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene
@@ -57,7 +58,7 @@ module coarse_model
       procedure :: change_sides
       procedure :: equilibrate
       procedure :: advance
-      procedure, private :: is_damped
+      procedure :: release
    end type coarse_model_t
 
 contains
@@ -108,7 +109,6 @@ contains
       self%ends = free_ends(mesh%fracture)
       call self%condensed%forget(is_full(mesh, scene%discretization%condensation))
       call self%factors%release()
-      call self%guess%forget()
       call timers%stop(phase_discretize)
    end subroutine set_mesh
 
@@ -214,7 +214,8 @@ contains
       state%unknowns(:2, :) = 0.0_rk
       allocate (state%pressure(n), source=pressure)
       allocate (state%contact(2, n), source=state_stick)
-      allocate (state%void(n), source=0.0_rk)
+      allocate (state%void(n), state%injection(n), source=0.0_rk)
+      state%rock_well_control = spread(control_rate, 1, int(model%rock_wells%n))
       state%aperture = cells%residual_aperture
       call rest_fluid(model, state)
    end subroutine new_state
@@ -230,7 +231,8 @@ contains
       state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
    end subroutine rest_fluid
 
-   !> Undrained response to the load, the fractures having the pressure of the rock around them.
+   !> Undrained response to the load, the fractures having the pressure of the rock around them: no
+   !! fluid flows along them, through joints or wells.
    subroutine equilibrate(self, mesh, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -239,28 +241,16 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
+      type(flow_paths_t) :: none
       real(rk) :: time
-      integer(ik), allocatable :: connections(:, :)
-      type(joints_t) :: joints
-      type(wells_t) :: wells
-      integer(ik) :: n_rock_wells
 
+      call timers%heed(error)
+      if (allocated(error)) return
       time = state%time
-      self%settings%equilibrate = .true.
-      connections = self%connections
-      self%connections = connections(:, :0)
-      joints = self%joints
-      self%joints = joints_t()
-      wells = self%wells
-      self%wells = wells_t()
-      n_rock_wells = self%rock_wells%n
-      self%rock_wells%n = 0
-      call self%advance(mesh, dt, state, timers, report, error)
-      self%settings%equilibrate = .false.
-      self%connections = connections
-      self%joints = joints
-      self%wells = wells
-      self%rock_wells%n = n_rock_wells
+      none%settings = self%settings
+      none%settings%equilibrate = .true.
+      allocate (none%connections(2, 0))
+      call solve_step(self, mesh, none, dt, state, timers, report, error)
       state%time = time
       if (report%converged) call rest_fluid(self, state)
    end subroutine equilibrate
@@ -275,65 +265,59 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
+      type(flow_paths_t) :: paths
 
       call timers%heed(error)
       if (allocated(error)) return
+      paths = flow_paths_t(self%settings, self%connections, self%joints, self%wells)
       if (self%rock_wells%n > 0) then
-         call advance_with_wells(self, mesh, dt, state, timers, report, error)
+         call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       else
-         call advance_as_is(self, mesh, dt, state, timers, report, error)
+         call solve_step(self, mesh, paths, dt, state, timers, report, error)
       end if
    end subroutine advance
 
    !> The same with wells in the rock whose rate depends on pressures, repeated until these agree
    !! with how they have been tried.
-   subroutine advance_with_wells(self, mesh, dt, state, timers, report, error)
+   subroutine advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
+      type(flow_paths_t), intent(in) :: paths
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(inout) :: state
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: before
-      real(rk), allocatable :: fluid(:), injection(:), into_joints(:)
+      integer(ik), allocatable :: way(:)
       logical :: any_changed
       integer(ik) :: first, k, last, most
 
       before = state
-      fluid = self%source(3, :)
-      injection = self%cells%injection
-      if (self%joints%n > 0) into_joints = self%joints%injection
+      way = state%rock_well_control
       first = self%wells%n + 1
       last = self%wells%n_all
-      call self%rock_wells%choose_ways(self%wells)
+      call choose_ways(self%wells, way)
       most = 3*self%rock_wells%n + 1
       do k = 1, 2*most + 30
-         call self%rock_wells%set_terms(self%wells, dt, before%well_head(first:), self%matrix, &
-                                        any_changed)
+         call self%rock_wells%set_terms(self%wells, way, dt, before%well_head(first:), &
+                                        self%matrix, any_changed)
          if (any_changed) self%condensed%dt = -1.0_rk
-         associate (cell => self%rock_wells%cell, source => self%rock_wells%source)
-            self%source(3, :) = fluid
-            call add_at(cell, source, self%source(3, :))
-         end associate
-         call advance_as_is(self, mesh, dt, state, timers, report, error)
+         call solve_step(self, mesh, paths, dt, state, timers, report, error)
          if (allocated(error) .or. .not. report%converged) return
-         call self%rock_wells%find_flows(self%wells, dt, before%well_head(first:), &
+         call self%rock_wells%find_flows(self%wells, way, dt, before%well_head(first:), &
                                          state%unknowns(3, :mesh%n_cells), &
                                          state%well_flow(first:last), state%well_head(first:last), &
                                          state%well_rate(first:last))
          ! The balance has counted what would flow into cells without pressure.
          report%mass_error = report%mass_error + dt*sum(self%rock_wells%source &
                                                         - state%well_flow(first:last))
-         self%source(3, :) = fluid
-         call add_at(self%rock_wells%cell, state%well_flow(first:last), self%source(3, :))
-         call self%rock_wells%correct_ways(self%wells, state%well_head(first:last), &
-                                           state%well_rate(first:last), k > most, any_changed)
+         call correct_ways(self%wells, state%well_head(first:last), state%well_rate(first:last), &
+                           k > most, way, any_changed)
          if (.not. any_changed) exit
-         state = before
-         self%cells%injection = injection
-         if (self%joints%n > 0) self%joints%injection = into_joints
+         call go_back(state, before)
       end do
+      state%rock_well_control = way
       report%converged = .not. any_changed
       if (any_changed) report%reason = "no way was found in which the wells in the rock agree "// &
                                        "with their limits"
@@ -352,15 +336,16 @@ contains
    end subroutine add_at
 
    !> The step with sources and matrix as they are.
-   subroutine advance_as_is(self, mesh, dt, state, timers, report, error)
+   subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
+      type(flow_paths_t), intent(in) :: paths
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(inout) :: state
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: rhs(:, :), g(:), q(:), spring(:)
+      real(rk), allocatable :: fluid(:), rhs(:, :), g(:), q(:), spring(:)
       type(state_t) :: before
       integer(ik) :: n
 
@@ -373,7 +358,9 @@ contains
       end if
       if (n > 0) then
          spring = tip_springs(self%ends, self%rock, mesh, self%condensed)
-         if (self%is_damped()) spring = spring + dampers(self%condensed, self%settings%damping/dt)
+         if (is_damped(paths%settings)) then
+            spring = spring + dampers(self%condensed, self%settings%damping/dt)
+         end if
          call self%condensed%support(spring)
          call place_tips(self%ends, self%condensed%length, self%cells)
          if (allocated(self%rock_resistance)) then
@@ -386,8 +373,12 @@ contains
       rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
       rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - state%content
       if (allocated(self%source)) then
+         fluid = self%source(3, :)
+         if (paths%wells%n_all > paths%wells%n) then
+            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+         end if
          rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
-         rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*self%source(3, :)
+         rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*fluid
       end if
       if (allocated(self%weight)) then
          rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%weight
@@ -397,7 +388,7 @@ contains
       call self%condensed%condense(rhs, g, error)
       call timers%stop(phase_solve)
       if (allocated(error)) return
-      if (n > 0 .and. self%is_damped()) then
+      if (n > 0 .and. is_damped(paths%settings)) then
          g = g + dampers(self%condensed, self%settings%damping/dt) &
              *jumps_of(self%condensed, state%jump)
       end if
@@ -410,10 +401,14 @@ contains
       report%converged = .true.
       if (n > 0) then
          call timers%start(phase_contact)
-         call solve_fractures(self%fracture_problem_t, dt, g, state, q, report)
+         call solve_fractures(self%fracture_problem_t, paths, dt, g, state, q, report)
          call timers%stop(phase_contact)
          if (.not. report%converged) return
-         if (self%wells%n > 0) call feed(self, state%well_flow(:self%wells%n))
+         state%injection = self%cells%injection
+         if (paths%wells%n > 0) then
+            state%injection = state%injection + matmul(paths%wells%share, &
+                                                       state%well_flow(:paths%wells%n))
+         end if
       end if
       call timers%start(phase_solve)
       call self%condensed%expand(q, rhs, state%unknowns, error)
@@ -424,35 +419,27 @@ contains
       call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
                          state%tractions, state%content)
       state%time = state%time + dt
-      call book_fluid(self, mesh, dt, before, state, report)
+      call book_fluid(self, mesh, paths, fluid, dt, before, state, report)
       call timers%stop(phase_assemble)
       if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
-   end subroutine advance_as_is
+   end subroutine solve_step
 
    !> Fast slip radiates energy. Not in the initial state, which takes no time.
-   pure logical function is_damped(self)
-      class(coarse_model_t), intent(in) :: self
+   pure logical function is_damped(settings)
+      type(newton_settings_t), intent(in) :: settings
 
-      is_damped = self%settings%damping > 0.0_rk .and. .not. self%settings%equilibrate
+      is_damped = settings%damping > 0.0_rk .and. .not. settings%equilibrate
    end function is_damped
-
-   !> The flow of wells that was an unknown is one of the sources of the step.
-   subroutine feed(self, flow)
-      class(coarse_model_t), intent(inout) :: self
-      real(rk), intent(in) :: flow(:)  !< (wells in fractures) [m2/s]
-
-      self%cells%injection = self%cells%injection + matmul(self%wells%share, flow)
-      if (self%joints%n > 0) self%joints%injection = self%joints%injection &
-                                                     + matmul(self%wells%joint_share, flow)
-   end subroutine feed
 
    !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
    !! in.
-   subroutine book_fluid(self, mesh, dt, before, after, report)
+   subroutine book_fluid(self, mesh, paths, fluid, dt, before, after, report)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
+      type(flow_paths_t), intent(in) :: paths
+      real(rk), allocatable, intent(in) :: fluid(:)  !< (n_cells) into the rock [m2/s]
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
       type(step_report_t), intent(inout) :: report
@@ -473,11 +460,11 @@ contains
             end if
             held = held - (before%aperture - before%void)
             balance = balance + sum(self%condensed%length*held) + report%compressed &
-                      - dt*sum(self%cells%injection)
-            if (self%joints%n > 0) balance = balance - dt*sum(self%joints%injection) &
-                                             + dt*self%joints%outflow(after%branch_flow)
+                      - dt*sum(after%injection)
+            if (paths%joints%n > 0) balance = balance - dt*sum(into_joints(paths, after)) &
+                                              + dt*paths%joints%outflow(after%branch_flow)
          end if
-         if (allocated(self%source)) balance = balance - dt*sum(self%source(3, :))
+         if (allocated(fluid)) balance = balance - dt*sum(fluid)
          if (self%drained) then
             allocate (outflow(mesh%n_cells))
             call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
@@ -491,6 +478,28 @@ contains
          end if
       end associate
    end subroutine book_fluid
+
+   !> What wells feed into the joints themselves [m2/s].
+   pure function into_joints(paths, state) result(injection)
+      type(flow_paths_t), intent(in) :: paths
+      type(state_t), intent(in) :: state
+      real(rk) :: injection(paths%joints%n)
+
+      injection = paths%joints%injection
+      if (paths%wells%n > 0) then
+         injection = injection + matmul(paths%wells%joint_share, state%well_flow(:paths%wells%n))
+      end if
+   end function into_joints
+
+   !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
+   !! types that its components extend.
+   subroutine release(self)
+      class(coarse_model_t), intent(inout) :: self
+      type(regions_t) :: none
+
+      call self%condensed%factors%release()
+      self%regions = none
+   end subroutine release
 
    !> Pairs of fracture cells that exchange fluid along their fracture.
    subroutine find_connections(mesh, connections)

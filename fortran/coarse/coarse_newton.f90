@@ -10,14 +10,15 @@ module coarse_newton
    use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
                                    fill_flow, fill_joint
-   use coarse_fractures, only: cell_fluid_t, fracture_problem_t, fracture_system_t, prepare
+   use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_problem_t, fracture_system_t, &
+                               prepare
    use coarse_joints, only: flows_in_loops, unknown_flow
    use coarse_pivoting, only: pivot_fractures
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_well_flow, only: fill_well, find_well
    use contact_law, only: contact_equations, contact_residual
-   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, &
-                             outcome_converged, outcome_not_a_number, outcome_singular
+   use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged, &
+                             outcome_not_a_number, outcome_singular
    implicit none(type, external)
    private
 
@@ -36,8 +37,9 @@ contains
 
    !> One time step of the fractures, the rock condensed. `state` holds the state before and is
    !! replaced only if the iteration converges.
-   subroutine solve_fractures(problem, dt, g, state, q, report)
+   subroutine solve_fractures(problem, paths, dt, g, state, q, report)
       type(fracture_problem_t), intent(inout), target :: problem
+      type(flow_paths_t), intent(in), target :: paths
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(inout), target :: state
@@ -50,18 +52,18 @@ contains
       integer(ik) :: spent
       logical :: equilibrate
 
-      equilibrate = problem%settings%equilibrate
-      call prepare(problem, dt, g, state, eq)
+      equilibrate = paths%settings%equilibrate
+      call prepare(problem, paths, dt, g, state, eq)
       eq%factors => problem%factors
-      how = iteration_settings_t(tolerance=problem%settings%tolerance, &
-                                 iterations_max=problem%settings%iterations_max, &
+      how = iteration_settings_t(tolerance=paths%settings%tolerance, &
+                                 iterations_max=paths%settings%iterations_max, &
                                  with_condition=.true., allows_rounding=.true.)
       call find_start(eq, state, start)
       x = start
       eq%start = start
       spent = 0
-      if (problem%guess%is_known(size(start, kind=ik)) .and. .not. equilibrate) then
-         x = problem%guess%from(start, dt)
+      if (state%guess%is_known(size(start, kind=ik)) .and. .not. equilibrate) then
+         x = state%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
          how%perseveres = .true.
@@ -75,7 +77,7 @@ contains
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
       found%iterations = found%iterations + spent
       if (found%outcome == outcome_converged .and. .not. equilibrate) then
-         call problem%guess%remember(dt, start, x)
+         call state%guess%remember(dt, start, x)
       end if
       q = eq%q
       report%stress_scale = eq%stress_scale

@@ -12,7 +12,7 @@ module coarse_state
    implicit none(type, external)
    private
 
-   public :: fracture_cells_t, guess_t, state_t, step_report_t
+   public :: fracture_cells_t, go_back, guess_t, state_t, step_report_t
 
    !> What each fracture cell is made of.
    type :: fracture_cells_t
@@ -24,10 +24,23 @@ module coarse_state
       !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
       real(rk), allocatable :: skin(:)  !< (n) on each face; unallocated: none has any [Pa s/m]
-      real(rk), allocatable :: injection(:)  !< Q into the cell now [m2/s]
+      real(rk), allocatable :: injection(:)  !< Q asked for in the present step [m2/s]
       !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
    end type fracture_cells_t
+
+   real(rk), parameter :: farthest = 4.0_rk  !< that is gone on, over the last step's length [-]
+
+   !> What is remembered of the last solution.
+   type :: guess_t
+      real(rk) :: dt = 0.0_rk  !< [s]
+      real(rk), allocatable :: change(:)  !< of the unknowns in that time [Pa]
+   contains
+      procedure :: forget
+      procedure :: remember
+      procedure :: is_known
+      procedure :: from
+   end type guess_t
 
    !> Unknowns and what is remembered of them.
    type :: state_t
@@ -60,7 +73,10 @@ module coarse_state
       real(rk), allocatable :: well_flow(:)  !< into the fracture [m2/s]
       real(rk), allocatable :: well_head(:)  !< pressure at the head [Pa]
       real(rk), allocatable :: well_rate(:)  !< into the well at its head, mean of the step [m2/s]
+      integer(ik), allocatable :: rock_well_control(:)  !< of coarse_wells: of those in rock
+      real(rk), allocatable :: injection(:)  !< (n) of wells into the cells in the last step [m2/s]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
+      type(guess_t) :: guess  !< what the next step will probably lead to
    end type state_t
 
    !> How a step was found.
@@ -79,19 +95,6 @@ module coarse_state
       integer(ik) :: cell = 0  !< fracture cell where it did not; 0: none in particular
       logical :: is_drained = .false.  !< for more fluid is drawn from that than it has
    end type step_report_t
-
-   real(rk), parameter :: farthest = 4.0_rk  !< that is gone on, over the last step's length [-]
-
-   !> What is remembered of the last solution.
-   type :: guess_t
-      real(rk) :: dt = 0.0_rk  !< [s]
-      real(rk), allocatable :: change(:)  !< of the unknowns in that time [Pa]
-   contains
-      procedure :: forget
-      procedure :: remember
-      procedure :: is_known
-      procedure :: from
-   end type guess_t
 
 contains
 
@@ -130,5 +133,17 @@ contains
 
       x = start + min(dt/self%dt, farthest)*self%change
    end function from
+
+   !> The state before a step again, for another try of it; what its first iteration starts from is
+   !! what the last try has found.
+   pure subroutine go_back(state, before)
+      type(state_t), intent(inout) :: state
+      type(state_t), intent(in) :: before
+      type(guess_t) :: guess
+
+      guess = state%guess
+      state = before
+      state%guess = guess
+   end subroutine go_back
 
 end module coarse_state

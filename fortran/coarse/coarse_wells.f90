@@ -20,6 +20,7 @@ module coarse_wells
    implicit none(type, external)
    private
 
+   public :: choose_ways, correct_ways
    public :: control_limited, control_pressure, control_rate, control_shut, rock_wells_t
    public :: well_index, wells_t
 
@@ -55,15 +56,13 @@ module coarse_wells
       integer(ik) :: n = 0
       integer(ik), allocatable :: cell(:)  !< (n)
       real(rk), allocatable :: index(:)  !< (n) flow per p_w - p_c [m2/(Pa s)]
-      integer(ik), allocatable :: way(:)  !< (n) how it is tried: control_shut, _rate or _pressure
       real(rk), allocatable :: source(:)  !< (n) q of the step where p_c is 0 [m2/s]
       !> (n) what q loses per p_c, as the matrix has it [m2/(Pa s)]
       real(rk), allocatable :: conductance(:)
+      real(rk), allocatable :: rock(:)  !< (n) what the matrix has without wells [m2/(Pa s)]
    contains
-      procedure :: choose_ways
       procedure :: set_terms
       procedure :: find_flows
-      procedure :: correct_ways
    end type rock_wells_t
 
 contains
@@ -114,21 +113,18 @@ contains
 
    !> How each well is tried first: as it is asked for, or under a limit as it was in the step
    !! before.
-   pure subroutine choose_ways(self, wells)
-      class(rock_wells_t), intent(inout) :: self
+   pure subroutine choose_ways(wells, way)
       type(wells_t), intent(in) :: wells
+      integer(ik), intent(inout) :: way(:)  !< (n) control_shut, _rate or _pressure
 
-      associate (control => wells%control(wells%n + 1:))
-         where (control /= control_limited)
-            self%way = control
-         end where
-      end associate
+      way = merge(wells%control(wells%n + 1:), way, wells%control(wells%n + 1:) /= control_limited)
    end subroutine choose_ways
 
    !> Sources of a step of length dt, and conductances in the matrix.
-   pure subroutine set_terms(self, wells, dt, head_before, matrix, any_changed)
+   pure subroutine set_terms(self, wells, way, dt, head_before, matrix, any_changed)
       class(rock_wells_t), intent(inout) :: self
       type(wells_t), intent(in) :: wells
+      integer(ik), intent(in) :: way(:)  !< (n) how each is tried
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: head_before(:)  !< (n) p_w before it [Pa]
       type(matrix_t), intent(inout) :: matrix
@@ -138,17 +134,20 @@ contains
 
       any_changed = .false.
       self%source = spread(0.0_rk, 1, int(self%n))
+      if (.not. allocated(self%rock)) then
+         self%rock = [(matrix%flow(matrix%columns%last(self%cell(w))), w=1, self%n)]
+      end if
       do w = 1, self%n
          at = wells%n + w
          conductance = 0.0_rk
          if (wells%control(at) /= control_shut) then
             associate (index => self%index(w))
-               if (self%way(w) == control_pressure) then
+               if (way(w) == control_pressure) then
                   self%source(w) = index*wells%pressure(at)
                   conductance = index
                else
                   ! Under a limit nothing may flow.
-                  rate = merge(wells%rate(at), 0.0_rk, self%way(w) == control_rate)
+                  rate = merge(wells%rate(at), 0.0_rk, way(w) == control_rate)
                   stored = wells%storage(at)/dt
                   self%source(w) = index*(rate + stored*head_before(w))/(stored + index)
                   conductance = index*stored/(stored + index)
@@ -157,17 +156,20 @@ contains
          end if
          if (.not. abs(conductance - self%conductance(w)) > 0.0_rk) cycle
          any_changed = .true.
-         associate (entry => matrix%flow(matrix%columns%last(self%cell(w))))
-            entry = entry - (conductance - self%conductance(w))
-         end associate
          self%conductance(w) = conductance
+      end do
+      if (.not. any_changed) return
+      do w = 1, self%n
+         matrix%flow(matrix%columns%last(self%cell(w))) = &
+            self%rock(w) - sum(self%conductance, mask=self%cell == self%cell(w))
       end do
    end subroutine set_terms
 
    !> What flows at the cells' pressures.
-   pure subroutine find_flows(self, wells, dt, head_before, pressure, flow, head, rate)
+   pure subroutine find_flows(self, wells, way, dt, head_before, pressure, flow, head, rate)
       class(rock_wells_t), intent(in) :: self
       type(wells_t), intent(in) :: wells
+      integer(ik), intent(in) :: way(:)  !< (n) how each was tried
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: head_before(:)  !< (n) p_w before the step [Pa]
       real(rk), intent(in) :: pressure(:)  !< (cells) [Pa]
@@ -179,39 +181,39 @@ contains
       head = pressure(self%cell) + flow/self%index
       rate = flow + wells%storage(wells%n + 1:)*(head - head_before)/dt
       ! What is asked for is not left to rounding.
-      where (self%way == control_shut) rate = 0.0_rk
-      where (self%way == control_rate) rate = wells%rate(wells%n + 1:)
+      where (way == control_shut) rate = 0.0_rk
+      where (way == control_rate) rate = wells%rate(wells%n + 1:)
    end subroutine find_flows
 
    !> Wells whose way contradicts what it has led to, by more than rounding, take another one: all
    !! of them at once, or where that does not end the first one (Murty 1974).
-   pure subroutine correct_ways(self, wells, head, rate, one_by_one, any_changed)
-      class(rock_wells_t), intent(inout) :: self
+   pure subroutine correct_ways(wells, head, rate, one_by_one, way, any_changed)
       type(wells_t), intent(in) :: wells
       real(rk), intent(in) :: head(:), rate(:)  !< of find_flows [Pa], [m2/s]
       logical, intent(in) :: one_by_one
+      integer(ik), intent(inout) :: way(:)  !< (n)
       logical, intent(out) :: any_changed
       integer(ik) :: at, before, w
       real(rk) :: beyond, share
 
       any_changed = .false.
-      do w = 1, self%n
+      do w = 1, size(way, kind=ik)
          at = wells%n + w
          if (wells%control(at) /= control_limited) cycle
-         before = self%way(w)
+         before = way(w)
          beyond = sign(1.0_rk, wells%rate(at))*(head(w) - wells%pressure(at)) &
                   /max(abs(head(w)), abs(wells%pressure(at)), tiny(1.0_rk))
          share = rate(w)/wells%rate(at)
          select case (before)
          case (control_rate)
-            if (beyond > same_value) self%way(w) = control_pressure
+            if (beyond > same_value) way(w) = control_pressure
          case (control_pressure)
-            if (share > 1.0_rk + same_value) self%way(w) = control_rate
-            if (share < -same_value) self%way(w) = control_shut
+            if (share > 1.0_rk + same_value) way(w) = control_rate
+            if (share < -same_value) way(w) = control_shut
          case default
-            if (beyond < -same_value) self%way(w) = control_pressure
+            if (beyond < -same_value) way(w) = control_pressure
          end select
-         any_changed = any_changed .or. self%way(w) /= before
+         any_changed = any_changed .or. way(w) /= before
          if (any_changed .and. one_by_one) return
       end do
    end subroutine correct_ways

@@ -46,12 +46,13 @@ module fine_model
       type(contact_problem_t) :: contact_problem
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
       logical :: ready = .false.
-      type(multifrontal_t), private :: solver
+      type(multifrontal_t), allocatable, private :: solver
       !> The unknowns of the elements that the solver has analysed: meshes whose nodes have moved
       !! have the same.
       type(pattern_t), private :: analysed
    contains
       procedure :: set_mesh
+      procedure :: take_order
       procedure :: prepare
       procedure :: solve
       procedure :: influence
@@ -108,6 +109,21 @@ contains
       end do
    end subroutine set_mesh
 
+   !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere.
+   !! That one has to be set up again.
+   subroutine take_order(self, from)
+      class(fine_model_t), intent(inout) :: self
+      type(fine_model_t), intent(inout) :: from
+
+      if (.not. allocated(from%analysed%first_unknown)) return
+      call move_alloc(from%solver, self%solver)
+      self%analysed = from%analysed
+      deallocate (from%analysed%first_unknown)
+      self%ready = .false.
+      from%ready = .false.
+      if (allocated(from%stiffness)) deallocate (from%stiffness)
+   end subroutine take_order
+
    !> Assemble and factorize for the given face conditions; may be called again when they change.
    subroutine prepare(self, conditions, error, boundary)
       class(fine_model_t), intent(inout) :: self
@@ -160,6 +176,7 @@ contains
       pattern%kept = self%constraints%kept_dofs
       if (.not. pattern%is_same_as(self%analysed)) then
          if (allocated(self%analysed%first_unknown)) deallocate (self%analysed%first_unknown)
+         if (.not. allocated(self%solver)) allocate (self%solver)
          call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, kept=pattern%kept)
          if (allocated(error)) return
          self%analysed = pattern

@@ -6,9 +6,6 @@
 !!
 !! One increment of growth of many tips, on whichever level they were evaluated: which of them grow,
 !! and how far each.
-!!
-!! Pieces of a path that a mesh has cells for already, though the tip has not gone along them: tries
-!! of a step that were not taken have begun them, and the next ones go the same way.
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,7 +19,7 @@ module growth_front
    implicit none(type, external)
    private
 
-   public :: front_t, growth_rules_t, plan_increment, prepared_t, tips_at_onset
+   public :: front_state_t, front_t, growth_rules_t, plan_increment, tips_at_onset
 
    !> How tips grow.
    type :: growth_rules_t
@@ -42,11 +39,15 @@ module growth_front
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
    end type growth_rules_t
 
-   !> Tips, the network whose ends they are, and the level that evaluates them.
-   type, abstract :: front_t
-      type(network_t) :: start  !< network of the scene
+   !> Tips, and the network whose ends they are: what growth changes.
+   type :: front_state_t
       type(network_t) :: network  !< as it has grown
       type(tip_t), allocatable :: tip(:)
+   end type front_state_t
+
+   !> The same with the level that evaluates the tips.
+   type, abstract, extends(front_state_t) :: front_t
+      type(network_t) :: start  !< network of the scene
       type(growth_rules_t) :: rules
       type(network_t), private :: network_before  !< before the last increment
    contains
@@ -78,23 +79,6 @@ module growth_front
          type(error_t), allocatable, intent(out) :: error
       end subroutine evaluate_tips
    end interface
-
-   !> A piece of a path.
-   type :: piece_t
-      type(tip_t) :: tip  !< as it was when the piece was begun, with its direction
-      real(rk) :: to(2) = 0.0_rk  !< where the piece ends [m]
-   end type piece_t
-
-   !> The pieces of one tip, one after the other, those that it has gone along included.
-   type :: prepared_t
-      type(piece_t), allocatable, private :: piece(:)
-   contains
-      procedure :: add
-      procedure :: find
-      procedure :: tip_of
-      procedure :: end_of
-      procedure :: length_from
-   end type prepared_t
 
 contains
 
@@ -473,62 +457,5 @@ contains
          tips(i)%carried = left
       end do
    end subroutine plan_increment
-
-   !> One more piece, from where the last one ends.
-   pure subroutine add(self, tip, to)
-      class(prepared_t), intent(inout) :: self
-      type(tip_t), intent(in) :: tip  !< its origin is where the piece begins
-      real(rk), intent(in) :: to(2)  !< [m]
-
-      if (.not. allocated(self%piece)) allocate (self%piece(0))
-      self%piece = [self%piece, piece_t(tip=tip, to=to)]
-   end subroutine add
-
-   !> The number of the piece that begins at a place; 0: none does.
-   pure integer(ik) function find(self, from, within)
-      class(prepared_t), intent(in) :: self
-      real(rk), intent(in) :: from(2)  !< [m]
-      real(rk), intent(in) :: within  !< [m]
-      integer(ik) :: k
-
-      find = 0
-      if (.not. allocated(self%piece)) return
-      do k = size(self%piece, kind=ik), 1, -1
-         if (norm2(self%piece(k)%tip%origin - from) > within) cycle
-         find = k
-         return
-      end do
-   end function find
-
-   !> The tip at the beginning of a piece.
-   pure type(tip_t) function tip_of(self, number)
-      class(prepared_t), intent(in) :: self
-      integer(ik), intent(in) :: number
-
-      tip_of = self%piece(number)%tip
-   end function tip_of
-
-   !> Where a piece ends [m].
-   pure function end_of(self, number) result(to)
-      class(prepared_t), intent(in) :: self
-      integer(ik), intent(in) :: number
-      real(rk) :: to(2)
-
-      to = self%piece(number)%to
-   end function end_of
-
-   !> The length of a piece and all that follow it [m]; 0 beyond the last one.
-   pure function length_from(self, number) result(length)
-      class(prepared_t), intent(in) :: self
-      integer(ik), intent(in) :: number
-      real(rk) :: length
-      integer(ik) :: k
-
-      length = 0.0_rk
-      if (.not. allocated(self%piece)) return
-      do k = number, size(self%piece, kind=ik)
-         length = length + norm2(self%piece(k)%to - self%piece(k)%tip%origin)
-      end do
-   end function length_from
 
 end module growth_front

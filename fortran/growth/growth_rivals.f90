@@ -32,8 +32,8 @@ module growth_rivals
    type :: rivals_t
       real(rk), allocatable :: measured(:, :)  !< (tips, tips) mean of d(K_eq,i/K_IC)/da_j [1/m]
       real(rk), allocatable :: matrix(:, :)  !< as measured last, with what tries have taught
-      logical, allocatable, private :: is_known(:)  !< (tips) columns of it
-      real(rk), allocatable, private :: known_at(:)  !< (tips) gain of each then [m]
+      logical, allocatable :: is_known(:)  !< (tips) columns of it
+      real(rk), allocatable :: known_at(:)  !< (tips) gain of each then [m]
    contains
       procedure :: begin
       procedure :: has_to_ask
@@ -68,9 +68,9 @@ module growth_rivals
 
    !> Tips on their way, and the company that they have kept so far.
    type :: company_t
-      integer(ik), allocatable, private :: kind(:)  !< (tips) those of one have gone equally far
-      real(rk), allocatable, private :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
-      logical, allocatable, private :: is_alone(:)  !< (tips) has lagged behind its company
+      integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far
+      real(rk), allocatable :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
+      logical, allocatable :: is_alone(:)  !< (tips) has lagged behind its company
    contains
       procedure :: find_kinds
       procedure :: part

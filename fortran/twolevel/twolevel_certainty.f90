@@ -27,11 +27,11 @@ module twolevel_certainty
    type :: certainty_t
       real(rk) :: length = 0.0_rk  !< how far the length of all fractures may be off [m]
       real(rk) :: pressure = 0.0_rk  !< how far that at the wells may be off [Pa]
-      real(rk), private, allocatable :: tip(:)  !< how far each tip may be off [m]
-      integer, private :: tries = 0  !< of the present step
-      real(rk), private :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two
-      real(rk), private :: slope = 0.0_rk  !< of the pressure over the length [Pa/m]
-      type(course_t), private :: course  !< of the pressure [Pa]
+      real(rk), allocatable :: tip(:)  !< how far each tip may be off [m]
+      integer :: tries = 0  !< of the present step
+      real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two
+      real(rk) :: slope = 0.0_rk  !< of the pressure over the length [Pa/m]
+      type(course_t) :: course  !< of the pressure [Pa]
    contains
       procedure :: begin_step
       procedure :: see_try

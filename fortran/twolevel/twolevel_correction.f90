@@ -6,11 +6,15 @@ module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: corner_tractions
-   use coarse_layout, only: block_count, end_block
    use coarse_nodes, only: curved_displacement
+   use coarse_layout, only: block_count, end_block
+   use coarse_state, only: state_t
+   use growth_tip, only: tip_t
    use mesh_geometry, only: cell_centre
+   use mesh_types, only: mesh_t
    use twolevel_faces, only: coarse_jumps
-   use twolevel_state, only: two_levels_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
@@ -22,8 +26,11 @@ contains
    !! windows inside of them: jumps on the fractures are theirs, and cells all of whose neighbours
    !! lie in the same window get the forces that make the windows' displacements fulfil their
    !! equations.
-   subroutine improve(self, displacement, gradient, error)
-      class(two_levels_t), intent(inout) :: self
+   subroutine improve(windows, tips, problem, state, displacement, gradient, error)
+      type(windows_t), intent(in) :: windows
+      type(tip_t), intent(in) :: tips(:)
+      type(coarse_problem_t), intent(inout) :: problem  !< its factors are used
+      type(state_t), intent(in) :: state
       real(rk), intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
       real(rk), intent(out) :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
       type(error_t), allocatable, intent(out) :: error
@@ -31,48 +38,51 @@ contains
       real(rk), allocatable :: unknowns(:, :)
       integer(ik), allocatable :: speaker(:)
 
-      associate (model => self%model)
-         speaker = speakers(self)
+      associate (model => problem%model)
+         speaker = speakers(windows, tips, problem%mesh)
          allocate (q(model%condensed%layout%count()), g(model%condensed%layout%count()))
-         call find_differences(self, speaker, difference, q, error)
+         call find_differences(windows, tips, problem, state, speaker, difference, q, error)
          if (allocated(error)) return
          force = model%matrix%elastic_forces(difference)
          force(3, :) = 0.0_rk
-         where (spread(.not. is_within(self, speaker), 1, 3)) force = 0.0_rk
+         where (spread(.not. is_within(problem, speaker), 1, 3)) force = 0.0_rk
          call model%condensed%condense(force, g, error)
          if (allocated(error)) return
          allocate (unknowns, mold=force)
          call model%condensed%expand(q, force, unknowns, error)
          if (allocated(error)) return
-         unknowns = unknowns + self%state%unknowns
+         unknowns = unknowns + state%unknowns
          call corner_tractions(model%regions, unknowns, tractions)
-         call curved_displacement(self%mesh, model%rock, model%regions, unknowns, tractions, &
-                                  displacement, gradient)
+         call curved_displacement(problem%mesh, model%rock, model%regions, unknowns, &
+                                  tractions, displacement, gradient)
       end associate
    end subroutine improve
 
    !> The window that speaks for each block of the coarse level, 0 for none: that whose tip is
    !! nearest, of those that hold the centre of the cell, or the whole fracture cell.
-   pure function speakers(self) result(speaker)
-      class(two_levels_t), intent(in) :: self
+   pure function speakers(windows, tips, mesh) result(speaker)
+      type(windows_t), intent(in) :: windows
+      type(tip_t), intent(in) :: tips(:)
+      type(mesh_t), intent(in) :: mesh
       integer(ik), allocatable :: speaker(:)  !< (blocks)
       integer(ik) :: cell
 
-      associate (mesh => self%mesh, fracture => self%mesh%fracture)
+      associate (fracture => mesh%fracture)
          allocate (speaker(block_count(mesh)))
          do cell = 1, mesh%n_cells
-            speaker(cell) = nearest_window(self, spread(cell_centre(mesh, cell), 2, 2))
+            speaker(cell) = nearest_window(windows, tips, spread(cell_centre(mesh, cell), 2, 2))
          end do
          do cell = 1, fracture%n_cells
             speaker(end_block(mesh, cell, [1_ik, 2_ik])) = &
-               nearest_window(self, fracture%point_xy(:, fracture%cell_points(:, cell)))
+               nearest_window(windows, tips, fracture%point_xy(:, fracture%cell_points(:, cell)))
          end do
       end associate
    end function speakers
 
    !> Of the windows that hold both points, the one whose tip is nearest, else 0.
-   pure function nearest_window(self, points) result(nearest)
-      class(two_levels_t), intent(in) :: self
+   pure function nearest_window(windows, tips, points) result(nearest)
+      type(windows_t), intent(in) :: windows
+      type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: points(2, 2)  !< xy in columns [m]
       integer(ik) :: nearest
       real(rk) :: distance, shortest
@@ -80,11 +90,11 @@ contains
 
       nearest = 0
       shortest = huge(1.0_rk)
-      do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
-         associate (w => self%windows%window_of(i))
-            if (.not. self%windows%window(w)%holds(points)) cycle
-            distance = norm2(0.5_rk*sum(points, dim=2) - self%tip(i)%xy)
+      do i = 1, size(tips, kind=ik)
+         if (.not. tips(i)%is_free) cycle
+         associate (w => windows%window_of(i))
+            if (.not. windows%slot(w)%window%holds(points)) cycle
+            distance = norm2(0.5_rk*sum(points, dim=2) - tips(i)%xy)
             if (distance >= shortest) cycle
             shortest = distance
             nearest = w
@@ -93,15 +103,15 @@ contains
    end function nearest_window
 
    !> Cells whose equations know nothing but what one window speaks for.
-   pure function is_within(self, speaker) result(within)
-      class(two_levels_t), intent(in) :: self
+   pure function is_within(problem, speaker) result(within)
+      type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: speaker(:)  !< (blocks)
       logical, allocatable :: within(:)  !< (blocks)
       integer(ik) :: i, k
 
       within = speaker > 0
-      within(self%mesh%n_cells + 1:) = .false.
-      associate (columns => self%model%matrix%columns)
+      within(problem%mesh%n_cells + 1:) = .false.
+      associate (columns => problem%model%matrix%columns)
          do i = 1, size(speaker, kind=ik)
             do k = columns%first(i), columns%last(i)
                associate (j => columns%item(k))
@@ -114,8 +124,11 @@ contains
    end function is_within
 
    !> What the windows find where they speak, less what the coarse level has there; no pressures.
-   subroutine find_differences(self, speaker, difference, q, error)
-      class(two_levels_t), intent(in) :: self
+   subroutine find_differences(windows, tips, problem, state, speaker, difference, q, error)
+      type(windows_t), intent(in) :: windows
+      type(tip_t), intent(in) :: tips(:)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       integer(ik), intent(in) :: speaker(:)  !< (blocks)
       real(rk), allocatable, intent(out) :: difference(:, :)  !< (3, blocks) [m]
       real(rk), intent(out) :: q(:)  !< that of the jumps, as in coarse_condensed [m]
@@ -124,13 +137,13 @@ contains
       integer(ik), allocatable :: cells(:)
       integer(ik) :: cell, end, i, w
 
-      allocate (difference, mold=self%state%unknowns)
+      allocate (difference, mold=state%unknowns)
       difference = 0.0_rk
       q = 0.0_rk
-      associate (mesh => self%mesh, state => self%state, condensed => self%model%condensed)
-         do w = 1, size(self%windows%window, kind=ik)
-            if (.not. self%windows%is_asked(w, self%tip)) cycle
-            associate (window => self%windows%window(w))
+      associate (mesh => problem%mesh, condensed => problem%model%condensed)
+         do w = 1, size(windows%slot, kind=ik)
+            if (.not. windows%is_asked(w, tips)) cycle
+            associate (window => windows%slot(w)%window)
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(cell_centre(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])
                displacement = xy

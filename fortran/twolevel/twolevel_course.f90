@@ -13,7 +13,7 @@ module twolevel_course
       real(rk) :: value = 0.0_rk
       real(rk) :: rate = 0.0_rk  !< in the last step [1/s]
       real(rk) :: error = 0.0_rk  !< of all steps together, with its sign
-      real(rk), private :: step = 0.0_rk  !< the last one [s]
+      real(rk) :: step = 0.0_rk  !< the last one [s]
    contains
       procedure :: follow
    end type course_t

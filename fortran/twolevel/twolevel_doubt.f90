@@ -12,57 +12,63 @@ module twolevel_doubt
    use report_rows, only: event_window
    use report_watch, only: doubtful, stop_on_doubt, uncertainty
    use twolevel_state, only: two_levels_t
+   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, improvement_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
-   public :: improve_windows
+   public :: find_improvements, improve_windows
 
 contains
 
-   !> Improve the windows of doubtful tips, which are to be evaluated again then. An error if one of
-   !! them cannot be improved any more.
-   subroutine improve_windows(self, time, any_improved, error)
+   !> What would improve the windows of doubtful tips, which are to be evaluated again then. An
+   !! error if one of them cannot be improved any more.
+   subroutine find_improvements(self, time, improvements, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< of the last accepted state [s]
-      logical, intent(out) :: any_improved
+      type(improvement_t), allocatable, intent(out) :: improvements(:)
       type(error_t), allocatable, intent(out) :: error
+      type(improvement_t) :: improvement
       character(len=:), allocatable :: what
       integer(ik) :: i
 
-      any_improved = .false.
+      allocate (improvements(0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), toughness => self%rules%toughness)
             if (.not. doubtful(tip, toughness)) cycle
-            call improve_window(self, i, what)
+            improvement%tip = i
+            call choose(self, i, improvement%kind, what)
             if (.not. allocated(what)) then
                call stop_on_doubt(self%watch, tip, toughness, &
                                   self%scene%fractures(tip%fracture)%name, &
-                                  brief_text(self%state%time, 6)//" s")
+                                  brief_text(self%now%coarse%time, 6)//" s")
                call self%heed_limits(error)
                return
             end if
-            any_improved = .true.
+            improvements = [improvements, improvement]
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
                                           " % of K_IC before", tip%fracture, tip%xy)
          end associate
       end do
-   end subroutine improve_windows
+   end subroutine find_improvements
 
-   !> Smaller elements or a larger window, next time it is meshed; in words, if that is possible.
-   subroutine improve_window(self, tip, what)
-      class(two_levels_t), intent(inout) :: self
+   !> Smaller elements or a larger window; in words, if that is possible.
+   subroutine choose(self, tip, kind, what)
+      class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: tip  !< the doubtful one
+      integer, intent(out) :: kind
       character(len=:), allocatable, intent(out) :: what
       real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
       !> Beyond this [%] it is not the edge alone, and a window that differs from the body by the
       !> edge alone would have nothing that says so.
       real(rk), parameter :: far_off = 25.0_rk
-      logical :: is_finer, takes_body
+      type(window_tip_t) :: seen
+      logical :: is_finer
 
-      takes_body = .false.
-      associate (seen => self%windows%tip(tip), &
-                 window => self%windows%window(self%windows%window_of(tip)))
+      kind = improve_edge
+      seen = self%now%windows%tip(tip)
+      associate (window => self%windows%slot(self%windows%window_of(tip))%window)
          ! What cannot be done leaves the other, if that is worth it. Where the window holds the
          ! body, it differs from that by the elements alone.
          is_finer = seen%of_elements >= seen%of_edge
@@ -72,34 +78,50 @@ contains
             is_finer = .true.
          end if
          if (is_finer) then
+            kind = improve_elements
             if (.not. seen%can_be_finer()) return
             seen%times_finer = seen%times_finer + 1
             what = "smaller elements at the tip"
             if (seen%times_finer > 1) then
                what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
             end if
-            if (.not. self%scene%discretization%window_is_body) then
-               self%reference%tip(tip)%times_finer = seen%times_finer
-               call self%reference%make_anew(tip)
-            end if
-         else
-            if (.not. window%can_be_larger()) return
-            takes_body = costs_as_body(self, 2.0_rk*window%edge_length(self%scene)) .and. &
-                         uncertainty(self%tip(tip), self%rules%toughness) < far_off
-            if (takes_body) then
-               what = "the body as its window"
-            else
-               window%times_larger = window%times_larger + 1
-               what = "a window of "//brief_text(window%edge_length(self%scene), 3)//" m"
-            end if
+         else if (window%can_be_larger()) then
+            what = "a window of "//brief_text(2.0_rk*window%edge_length(self%scene), 3)//" m"
+            if (.not. costs_as_body(self, 2.0_rk*window%edge_length(self%scene))) return
+            if (.not. uncertainty(self%tip(tip), self%rules%toughness) < far_off) return
+            kind = improve_by_body
+            what = "the body as its window"
          end if
       end associate
-      if (takes_body) then
-         call self%windows%take_body(tip)
-      else
-         call self%windows%make_anew(tip)
-      end if
-   end subroutine improve_window
+   end subroutine choose
+
+   !> Better windows, next time they are meshed.
+   subroutine improve_windows(self, improvements)
+      class(two_levels_t), intent(inout) :: self
+      type(improvement_t), intent(in) :: improvements(:)
+      integer :: k
+
+      do k = 1, size(improvements)
+         associate (i => improvements(k)%tip, windows => self%windows, &
+                    seen => self%now%windows%tip(improvements(k)%tip))
+            select case (improvements(k)%kind)
+            case (improve_elements)
+               seen%times_finer = seen%times_finer + 1
+               call windows%make_anew(i, seen)
+               if (self%scene%discretization%window_is_body) cycle
+               self%now%reference%tip(i)%times_finer = seen%times_finer
+               call self%reference%make_anew(i, self%now%reference%tip(i))
+            case (improve_edge)
+               associate (window => windows%slot(windows%window_of(i))%window)
+                  window%times_larger = window%times_larger + 1
+               end associate
+               call windows%make_anew(i, seen)
+            case default
+               call windows%take_body(i, seen)
+            end select
+         end associate
+      end do
+   end subroutine improve_windows
 
    !> A window of this size would cost about as much as the body, where that can be one.
    pure logical function costs_as_body(self, edge)
@@ -110,7 +132,7 @@ contains
       associate (domain => self%scene%domain)
          costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
       end associate
-      costs_as_body = costs_as_body .and. self%mesh%fracture%n_cells <= self%reference_most
+      costs_as_body = costs_as_body .and. self%problem%mesh%fracture%n_cells <= self%reference_most
    end function costs_as_body
 
 end module twolevel_doubt

@@ -11,27 +11,23 @@ module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: guess_t, step_report_t
+   use coarse_state, only: go_back, step_report_t
    use growth_advances, only: advances_t
    use growth_network, only: total_length
-   use growth_rivals, only: company_t, rivals_t
-   use growth_segment, only: segment_t
    use growth_targets, only: target_none
-   use growth_tip, only: tip_t
-   use mesh_types, only: network_t
    use report_watch, only: doubtful
-   use twolevel_certainty, only: certainty_t
-   use twolevel_doubt, only: improve_windows
-   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, tolerance
-   use twolevel_moves, only: judge_tips, keep_together, part_company, tips_in_play
-   use twolevel_pieces, only: begin_pieces, can_join, join_targets
+   use twolevel_doubt, only: find_improvements
+   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, shared_excesses, &
+                              tolerance
+   use twolevel_moves, only: is_in_play, judge_tips, keep_together, part_company
+   use twolevel_pieces, only: begin_pieces, can_join, have_come, join_targets
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: lesson_t, measure_rivals
-   use twolevel_schedule, only: last_switch
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
+   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 
@@ -58,15 +54,6 @@ module twolevel_equilibrium
       real(rk) :: dt = 0.0_rk  !< [s]
       logical :: is_last = .false.  !< its error in time is not judged
       logical :: may_jump = .false.  !< tips may go on from piece to piece in it
-      ! Before it
-      type(tip_t), allocatable :: tip(:)
-      type(segment_t), allocatable :: segment(:)
-      type(network_t) :: network
-      type(guess_t) :: guess
-      type(certainty_t) :: certainty
-      type(company_t) :: company
-      type(rivals_t) :: rivals
-      logical :: was_undrained = .false.
       ! Of its tries
       real(rk), allocatable :: unmoved(:)  !< (tips) K_eq of the first one [Pa m^1/2]
       integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
@@ -74,17 +61,15 @@ module twolevel_equilibrium
       type(lesson_t) :: lesson
       type(advances_t) :: advances  !< search for the places of the tips on segments
       logical :: is_over = .false.  !< there is no more to be tried
-      logical :: is_found = .false.  !< the state is an equilibrium
    end type search_t
 
 contains
 
-   !> Try a step: state and tips at its end. A tip that would go on for more than one new piece
-   !! goes too far, unless it may jump: the step is so short that it does not matter when in it that
-   !! happens, or it is the last try, in which nothing but growth happens until that arrests.
-   !! Nothing is accepted yet; a step that does not show an equilibrium leaves the state before. So
-   !! does one in which a tip would grow, or might, whose intensities are not known well enough: its
-   !! window is a better one then.
+   !> Try a step from the last remembered state: state and tips at its end. A tip that would go on
+   !! for more than one new piece goes too far, unless it may jump: the step is so short that it
+   !! does not matter when in it that happens, or it is the last try, in which nothing but growth
+   !! happens until that arrests. Nothing is accepted yet. A step in which a tip would grow, or
+   !! might, whose intensities are not known well enough asks for better windows.
    subroutine find_equilibrium(self, dt, is_last, may_jump, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -103,25 +88,17 @@ contains
       most = merge(jump_tries_max, tries_max, may_jump)
       do k = 1, most
          call find_state(self, search, k == 1, timers, report, trial, error)
-         if (search%is_over .or. allocated(error)) exit
+         if (search%is_over .or. allocated(error)) return
          call move_tips(self, search, timers, any_moves, wants, error)
-         if (allocated(error)) exit
+         if (allocated(error)) return
          if (.not. any_moves) call go_on(self, search, wants, timers, trial, error)
-         if (search%is_over .or. allocated(error)) exit
-         self%state = self%before
+         if (search%is_over .or. allocated(error)) return
+         call go_back(self%now%coarse, self%before)
       end do
-      if (search%is_found) return
-      trial%goes_too_far = trial%goes_too_far .or. k > most
-      call take_back(self, search)
-      if (allocated(error) .or. .not. trial%needs_windows) return
-      ! Onsets are looked for from what tips had before the step, and errors known from there; on a
-      ! mesh that the step has made that state has no tractions.
-      if (.not. allocated(self%state%tractions)) return
-      call self%evaluate(timers, error)
-      if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+      trial%goes_too_far = .true.
    end subroutine find_equilibrium
 
-   !> Remember what is before the step.
+   !> Tips begin the step where they probably come.
    subroutine begin_search(self, dt, is_last, may_jump, search)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -131,52 +108,23 @@ contains
       search%dt = dt
       search%is_last = is_last
       search%may_jump = may_jump
-      search%tip = self%tip
-      search%segment = self%segment
-      search%network = self%network
-      search%was_undrained = self%undrained
-      search%guess = self%model%guess
-      search%certainty = self%certainty
-      search%company = self%company
-      search%rivals = self%rivals
       allocate (search%kind(size(self%tip)))
       allocate (search%has_begun(size(self%tip)), source=.false.)
-      associate (k => self%tip%intensity, toughness => self%rules%toughness)
-         call self%company%find_kinds(self%tip%drive%intensity/toughness, &
-                                      max(k%k1_error, k%k2_error) &
-                                      /(toughness*self%tip%drive%resistance), self%segment%gain, &
-                                      self%tip%arrested, self%rules%increment, self%rivals, &
-                                      search%kind)
+      associate (k => self%tip%intensity, toughness => self%rules%toughness, &
+                 segment => self%now%segment)
+         call self%now%company%find_kinds(self%tip%drive%intensity/toughness, &
+                                          max(k%k1_error, k%k2_error) &
+                                          /(toughness*self%tip%drive%resistance), segment%gain, &
+                                          self%tip%arrested, self%rules%increment, &
+                                          self%now%rivals, search%kind)
+         call segment%restart()
+         if (.not. may_jump) then
+            call segment%keep_pace(dt)
+            call keep_together(self%now%segment, search%kind)
+         end if
       end associate
-      self%before = self%state
-      call self%segment%restart()
-      if (.not. may_jump) then
-         call self%segment%keep_pace(dt)
-         call keep_together(self, search%kind)
-      end if
-      call self%certainty%begin_step()
+      call self%now%certainty%begin_step()
    end subroutine begin_search
-
-   !> What was before the step is again. The cells that pieces were begun with stay, closed, for the
-   !! next try.
-   subroutine take_back(self, search)
-      class(two_levels_t), intent(inout) :: self
-      type(search_t), intent(in) :: search
-
-      if (allocated(self%asked)) deallocate (self%asked)
-      self%state = self%before
-      self%tip = search%tip
-      self%segment = search%segment
-      self%network = search%network
-      self%model%guess = search%guess
-      self%certainty = search%certainty
-      self%company = search%company
-      self%rivals = search%rivals
-      self%undrained = search%was_undrained
-      self%values_are_current = .false.
-      call self%windows%take_back()
-      call self%reference%take_back()
-   end subroutine take_back
 
    !> The state and the intensities with the tips where they are tried to be.
    subroutine find_state(self, search, is_first, timers, report, trial, error)
@@ -188,7 +136,7 @@ contains
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
 
-      call place_tips(self)
+      call place_tips(self%front_state_t, self%now%segment, self%problem)
       call self%try_step(search%dt, timers, report, error)
       if (allocated(error)) return
       trial%converged = report%converged
@@ -204,13 +152,21 @@ contains
       end if
       call self%evaluate(timers, error)
       if (allocated(error)) return
-      call self%certainty%see_try(total_length(self%network), self%well_pressure())
+      call self%now%certainty%see_try(total_length(self%network), &
+                                      self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%drive%intensity
-      if (.not. search%is_last) trial%onset = first_onset(self, search%tip%drive%intensity)
+      if (.not. search%is_last) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
-      if (.not. search%is_over) self%asked = are_asked(self)
+      if (.not. search%is_over) self%now%asked = are_asked(self)
    end subroutine find_state
+
+   !> Share of the step after which the first tip that has not grown before begins to [-].
+   pure real(rk) function onset_of(self)
+      class(two_levels_t), intent(in) :: self
+
+      onset_of = first_onset(self%last%front%tip, self%tip, self%now%segment, self%rules%toughness)
+   end function onset_of
 
    !> Let the tips go where their excess will probably vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
@@ -220,14 +176,16 @@ contains
       logical, intent(out) :: any_moves  !< or is to be asked anew where it is
       logical, intent(out) :: wants(:)  !< (tips) a new piece
       type(error_t), allocatable, intent(out) :: error
-      logical :: moves(size(self%tip))
+      logical, dimension(size(self%tip)) :: in_play, moves
 
-      call search%lesson%tell(self)
-      call measure_rivals(self, tips_in_play(self), search%dt, timers, any_moves, error)
+      in_play = is_in_play(self%now%segment, excesses(self%tip, self%rules%toughness))
+      call search%lesson%tell(self%now%segment, self%tip, self%rules%toughness, self%now%rivals)
+      call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
-      call search%lesson%begin(self)
+      call search%lesson%begin(self%now%segment, self%tip)
       if (any_moves) search%advances = advances_t()  ! with the influences that have been measured
-      call judge_tips(self, search%kind, search%advances, moves, wants)
+      call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
+                      self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 
@@ -242,11 +200,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_parted, joins(size(self%tip))
 
-      call part_company(self, search%tip, wants, search%kind, any_parted)
+      call part_company(self%now%segment, self%now%company, self%tip, self%last%front%tip, &
+                        self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Not while others are on their way: they may go back.
-      if (.not. search%may_jump) trial%onset = first_onset(self, search%tip%drive%intensity)
+      if (.not. search%may_jump) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
@@ -280,10 +239,11 @@ contains
       wants = wants .and. .not. stops
       if (search%may_jump) return
       trial%goes_too_far = any(stops .and. search%has_begun)
-      stops = stops .and. excesses(self) > tolerance
+      stops = stops .and. excesses(self%tip, self%rules%toughness) > tolerance
       trial%gains_all = any(stops)
       if (trial%gains_all) then
-         trial%arrival = minval(arrivals(self, search%tip%drive%intensity, 0.0_rk), mask=stops)
+         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
+                                         self%rules%toughness, 0.0_rk), mask=stops)
       end if
       trial%is_late = trial%gains_all
       search%is_over = trial%goes_too_far .or. trial%is_late
@@ -299,7 +259,8 @@ contains
 
       if (.not. search%may_jump) then
          trial%goes_too_far = any(joins .and. search%has_begun)
-         trial%arrival = minval(arrivals(self, search%tip%drive%intensity, at_joints), mask=joins)
+         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
+                                         self%rules%toughness, at_joints), mask=joins)
          trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
@@ -322,13 +283,14 @@ contains
       real(rk) :: excess(size(self%tip))
       integer :: i
 
-      associate (toughness => self%rules%toughness, before => search%tip%drive%intensity)
+      associate (toughness => self%rules%toughness, before => self%last%front%tip%drive%intensity)
          search%is_over = any(wants .and. doubtful(self%tip, toughness))
          if (search%is_over) then
-            call improve_windows(self, self%before%time, trial%needs_windows, error)
+            call find_improvements(self, self%before%time, trial%improvements, error)
             return
          end if
-         if (any(wants .and. (search%has_begun .or. excesses(self) > excess_max))) then
+         if (any(wants .and. (search%has_begun .or. &
+                              excesses(self%tip, toughness) > excess_max))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! what jumps has no rates
          end if
@@ -341,18 +303,18 @@ contains
             return
          end if
       end associate
-      excess = [(maxval(excesses(self), mask=wants .and. search%kind == search%kind(i)), &
-                 i=1, size(wants))]
+      excess = excesses(self%tip, self%rules%toughness)
+      excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
       call begin_pieces(self, wants, timers, error)
       if (allocated(error)) return
       if (.not. search%may_jump) then
          do i = 1, size(wants)
-            if (wants(i)) call self%segment(i)%set_out(excess(i))
+            if (wants(i)) call self%now%segment(i)%set_out(excess(i))
          end do
-         call keep_together(self, search%kind)
+         call keep_together(self%now%segment, search%kind)
       end if
       ! Not those that have come to something already: nothing lies between.
-      search%has_begun = search%has_begun .or. (wants .and. .not. self%segment%stays())
+      search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
       search%lesson = lesson_t()  ! of other pieces
       search%advances = advances_t()
    end subroutine begin_wanted
@@ -370,7 +332,8 @@ contains
       call ask_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
-      trial%advance = maxval([0.0_rk, advances(self)])/self%rules%increment
+      trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
+                                               self%rules%increment)])/self%rules%increment
       if (.not. search%is_last) then
          if (self%errs(trial%time_error)) return
          call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
@@ -378,8 +341,7 @@ contains
       end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error)) return
-      call improve_windows(self, self%before%time, trial%needs_windows, error)
-      search%is_found = .not. (allocated(error) .or. trial%needs_windows)
+      call find_improvements(self, self%before%time, trial%improvements, error)
    end subroutine conclude
 
    !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
@@ -389,7 +351,7 @@ contains
       logical :: asked(size(self%tip))
 
       associate (k => self%tip%intensity)
-         asked = self%segment%is_open .or. self%tip%drive%intensity &
+         asked = self%now%segment%is_open .or. self%tip%drive%intensity &
                  + max(k%k1_error, k%k2_error)/self%tip%drive%resistance > far*self%rules%toughness
       end associate
    end function are_asked
@@ -403,12 +365,13 @@ contains
       logical :: others(size(self%tip))
 
       any_exceeds = .false.
-      if (.not. allocated(self%asked)) return
-      others = .not. self%asked .and. self%tip%is_free
-      self%asked = others
+      if (.not. allocated(self%now%asked)) return
+      others = .not. self%now%asked .and. self%tip%is_free
+      self%now%asked = others
       if (any(others)) call self%evaluate(timers, error)
-      deallocate (self%asked)
-      if (.not. allocated(error)) any_exceeds = any(others .and. excesses(self) > tolerance)
+      deallocate (self%now%asked)
+      if (allocated(error)) return
+      any_exceeds = any(others .and. excesses(self%tip, self%rules%toughness) > tolerance)
    end subroutine ask_others
 
    !> The tried state is accepted.
@@ -416,13 +379,15 @@ contains
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
 
-      self%tip%advance = advances(self)
-      call self%segment%pace(self%tip%advance, dt, excesses(self) >= -tolerance)
-      where (self%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
-      self%segment%gain = self%segment%gain + self%tip%advance
-      call self%company%accept(self%tip%drive%intensity/self%rules%toughness, self%tip%advance, &
-                               self%rules%increment)
-      call self%segment%accept()
+      self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
+                                  self%rules%increment)
+      call self%now%segment%pace(self%tip%advance, dt, &
+                                 excesses(self%tip, self%rules%toughness) >= -tolerance)
+      where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
+      self%now%segment%gain = self%now%segment%gain + self%tip%advance
+      call self%now%company%accept(self%tip%drive%intensity/self%rules%toughness, &
+                                   self%tip%advance, self%rules%increment)
+      call self%now%segment%accept()
    end subroutine accept_equilibrium
 
 end module twolevel_equilibrium

@@ -2,6 +2,8 @@
 !! come to it, or to what lies before them.
 module twolevel_excess
    use base_kinds, only: ik, rk
+   use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
    use twolevel_pieces, only: comes_to
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -20,11 +22,11 @@ module twolevel_excess
 contains
 
    !> Of K_eq over K_IC [-].
-   pure function excesses(self) result(excess)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: excess(size(self%tip))
+   elemental real(rk) function excesses(tip, toughness) result(excess)
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
-      excess = self%tip%drive%intensity/self%rules%toughness - 1.0_rk
+      excess = tip%drive%intensity/toughness - 1.0_rk
    end function excesses
 
    !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
@@ -33,7 +35,7 @@ contains
       real(rk) :: excess(size(self%tip))
       integer(ik) :: i, j
 
-      excess = excesses(self)
+      excess = excesses(self%tip, self%rules%toughness)
       do j = 1, size(excess, kind=ik)
          do i = 1, size(excess, kind=ik)
             if (.not. comes_to(self, i, j)) cycle
@@ -45,13 +47,14 @@ contains
    end function shared_excesses
 
    !> Share of the step after which the first tip that has not grown before begins to, as tried [-].
-   pure real(rk) function first_onset(self, before)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: before(:)  !< K_eq of the tips at the start of the step [Pa m^1/2]
+   pure real(rk) function first_onset(before, tips, segments, toughness)
+      type(tip_t), intent(in) :: before(:)  !< at the start of the step
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
-      first_onset = onset(before/self%rules%toughness, &
-                          self%tip%drive%intensity/self%rules%toughness, &
-                          .not. (self%tip%arrested .or. self%segment%gain > 0.0_rk))
+      first_onset = onset(before%drive%intensity/toughness, tips%drive%intensity/toughness, &
+                          .not. (tips%arrested .or. segments%gain > 0.0_rk))
    end function first_onset
 
    !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
@@ -74,20 +77,22 @@ contains
    !! exceed their toughness by more than is allowed: they would have gone on until their excess
    !! vanishes [-]. Tips that have nothing left to go along exceed it when their intensity has risen
    !! so far.
-   pure function arrivals(self, before, allowed) result(share)
-      class(two_levels_t), intent(in) :: self
-      real(rk), intent(in) :: before(:)  !< (tips) K_eq at the start of the step [Pa m^1/2]
+   pure function arrivals(before, tips, segments, toughness, allowed) result(share)
+      type(tip_t), intent(in) :: before(:)  !< at the start of the step
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: allowed  !< excess of K_eq over K_IC [-]
-      real(rk) :: share(size(self%tip))
-      real(rk), dimension(size(self%tip)) :: beyond, room, rise
+      real(rk), dimension(size(tips)) :: beyond, excess, room, rise, share
 
-      room = self%segment%length - self%segment%accepted
-      beyond = max(0.0_rk, excesses(self))/abs(self%segment%falling_slope())
+      excess = excesses(tips, toughness)
+      room = segments%length - segments%accepted
+      beyond = max(0.0_rk, excess)/abs(segments%falling_slope())
       share = room/max(room + beyond, tiny(1.0_rk))
-      share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excesses(self), tolerance))
-      rise = (self%tip%drive%intensity - before)/self%rules%toughness
-      where (self%segment%stays() .and. rise > 0.0_rk)
-         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excesses(self) - allowed)/rise))
+      share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excess, tolerance))
+      rise = (tips%drive%intensity - before%drive%intensity)/toughness
+      where (segments%stays() .and. rise > 0.0_rk)
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excess - allowed)/rise))
       end where
    end function arrivals
 

@@ -3,13 +3,18 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
+   use growth_rivals, only: could_part, rivals_t
+   use growth_front, only: front_state_t
    use growth_network, only: total_length
-   use growth_rivals, only: could_part
-   use report_rows, only: event_bifurcation, event_growth_onset, event_unstable
+   use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
+   use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
+   use scene_types, only: scene_t
+   use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
-   use twolevel_state, only: two_levels_t
+   use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
@@ -36,30 +41,32 @@ contains
    end subroutine begin
 
    !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
-   subroutine note_onsets(self, levels)
+   subroutine note_onsets(self, tips, segments, toughness, time, chronicle)
       class(notes_t), intent(inout) :: self
-      class(two_levels_t), intent(inout) :: levels
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: time  !< [s]
+      type(chronicle_t), intent(inout) :: chronicle
       real(rk) :: error, onset
       character(len=:), allocatable :: how_well
       integer(ik) :: i
 
-      do i = 1, size(levels%tip, kind=ik)
-         associate (tip => levels%tip(i), approach => self%approach(i), &
-                    toughness => levels%rules%toughness)
+      do i = 1, size(tips, kind=ik)
+         associate (tip => tips(i), approach => self%approach(i))
             if (approach%is_over) cycle
-            approach%is_over = levels%segment(i)%gain > 0.0_rk
+            approach%is_over = segments(i)%gain > 0.0_rk
             if (approach%is_over) then
                error = approach%uncertainty(tolerance*toughness)
-               onset = approach%onset_before(levels%state%time, toughness)
+               onset = approach%onset_before(time, toughness)
                how_well = "known to "//brief_text(error, 3)//" s"
                if (.not. error < huge(1.0_rk)) how_well = "K_eq was not rising: not known when"
-               call levels%chronicle%add_event(onset, event_growth_onset, how_well, &
-                                               tip%fracture, tip%origin)
+               call chronicle%add_event(onset, event_growth_onset, how_well, tip%fracture, &
+                                        tip%origin)
             else
-               call approach%follow(levels%state%time, tip%drive%intensity, &
+               call approach%follow(time, tip%drive%intensity, &
                                     norm2([tip%intensity%k1_error, tip%intensity%k2_error]) &
-                                    /tip%drive%resistance, &
-                                    toughness)
+                                    /tip%drive%resistance, toughness)
             end if
          end associate
       end do
@@ -67,61 +74,69 @@ contains
 
    !> The tips that the initial state leaves above their toughness. It is what the scene says, so
    !! nothing grows in it; what it bears too much is in no equilibrium and grows at once.
-   subroutine note_excess(levels)
-      class(two_levels_t), intent(inout) :: levels
+   subroutine note_excess(tips, toughness, time, chronicle)
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: time  !< [s]
+      type(chronicle_t), intent(inout) :: chronicle
       real(rk) :: share
       integer(ik) :: i
 
-      do i = 1, size(levels%tip, kind=ik)
-         associate (tip => levels%tip(i))
-            share = tip%drive%intensity/levels%rules%toughness
-            if (tip%arrested .or. .not. share > 1.0_rk + tolerance) cycle
-            call levels%chronicle%add_event(levels%state%time, event_unstable, "K_eq is "// &
-                                            brief_text(share, 4)//" K_IC in the initial "// &
-                                            "state: growth is unstable from the start", &
-                                            tip%fracture, tip%origin)
-         end associate
+      do i = 1, size(tips, kind=ik)
+         share = tips(i)%drive%intensity/toughness
+         if (tips(i)%arrested .or. .not. share > 1.0_rk + tolerance) cycle
+         call chronicle%add_event(time, event_unstable, "K_eq is "//brief_text(share, 4)// &
+                                  " K_IC in the initial state: growth is unstable from the "// &
+                                  "start", tips(i)%fracture, tips(i)%origin)
       end do
    end subroutine note_excess
 
    !> Tips of which one could run ahead of the others.
-   subroutine note_competition(self, levels)
+   subroutine note_competition(self, tips, rivals, increment, time, chronicle)
       class(notes_t), intent(inout) :: self
-      class(two_levels_t), intent(inout) :: levels
+      type(tip_t), intent(in) :: tips(:)
+      type(rivals_t), intent(in) :: rivals
+      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: time  !< [s]
+      type(chronicle_t), intent(inout) :: chronicle
       real(rk) :: lead
       logical :: is_bifurcation
       integer(ik), allocatable :: group(:)
       integer(ik) :: i
 
-      group = pack([(i, i=1, size(levels%tip, kind=ik))], levels%tip%advance > 0.0_rk)
+      group = pack([(i, i=1, size(tips, kind=ik))], tips%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = levels%rivals%preference_of(group)*levels%rules%increment
+      lead = rivals%preference_of(group)*increment
       is_bifurcation = lead > could_part
       if (is_bifurcation .and. .not. self%was_bifurcation) then
-         call levels%chronicle%add_event(levels%state%time, event_bifurcation, &
-                                         integer_text(size(group, kind=ik))// &
-                                         " tips grow; a lead of one increment is worth "// &
-                                         brief_text(100.0_rk*lead, 3)//" % of K")
+         call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &
+                                  " tips grow; a lead of one increment is worth "// &
+                                  brief_text(100.0_rk*lead, 3)//" % of K")
       end if
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
    !> How well length and pressure are known in the state that a step of length dt has led to.
-   subroutine note_certainty(levels, dt)
-      class(two_levels_t), intent(inout) :: levels
+   subroutine note_certainty(scene, front, problem, dt, now)
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(in) :: front
+      type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: dt  !< [s]
+      type(levels_state_t), intent(inout) :: now
       real(rk) :: leaked
 
       leaked = 0.0_rk
-      if (levels%injected > 0.0_rk) leaked = max(0.0_rk, min(1.0_rk, levels%leaked/levels%injected))
-      associate (tip => levels%tip, toughness => levels%rules%toughness)
-         call levels%certainty%accept(dt, levels%well_pressure(), &
-                                      tip%advance > 0.0_rk, tolerance + hypot( &
-                                      tip%intensity%k1_error, tip%intensity%k2_error) &
-                                      /(toughness*tip%drive%resistance), &
-                                      levels%segment%falling_slope(), &
-                                      tip_cell_lengths(levels), total_length(levels%network), &
-                                      levels%trend%pressure_rise(), leaked)
+      associate (fluid => now%fluid)
+         if (fluid%injected > 0.0_rk) leaked = max(0.0_rk, min(1.0_rk, fluid%leaked/fluid%injected))
+      end associate
+      associate (tip => front%tip, toughness => scene%material%toughness)
+         call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), &
+                                   tip%advance > 0.0_rk, tolerance + hypot( &
+                                   tip%intensity%k1_error, tip%intensity%k2_error) &
+                                   /(toughness*tip%drive%resistance), &
+                                   now%segment%falling_slope(), &
+                                   tip_cell_lengths(tip, problem), total_length(front%network), &
+                                   now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_certainty
 

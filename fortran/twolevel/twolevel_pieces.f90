@@ -16,6 +16,7 @@ module twolevel_pieces
    use base_plane, only: point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
+   use coarse_state, only: go_back
    use growth_network, only: end_gain, end_place, extend, move_end, straighten_end
    use growth_targets, only: find_beside, target_boundary, target_none
    use growth_tip, only: tip_t
@@ -38,40 +39,20 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: centres(:, :)
-      real(rk) :: ahead(2, size(self%tip)), to(2)
+      real(rk) :: ahead(2, size(self%tip))
       type(tip_t) :: tip(size(self%tip))
       logical, dimension(size(self%tip)) :: is_new, is_near
       logical :: any_grew
-      integer(ik) :: i, number
+      integer(ik) :: i
 
-      self%segment%is_open = self%segment%is_open .and. .not. wants
+      self%now%segment%is_open = self%now%segment%is_open .and. .not. wants
       is_new = wants
       is_near = .false.
       do i = 1, size(self%tip, kind=ik)
          if (.not. wants(i)) cycle
-         number = self%prepared(i)%find(self%tip(i)%xy, same_place*self%rules%increment)
-         is_new(i) = number == 0
-         if (is_new(i)) then
-            ahead(:, i) = way_ahead(self, self%tip(i))
-            is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
-            cycle
-         end if
-         ! An earlier try of this step has begun it, and its path has learned from that.
-         self%tip(i) = self%prepared(i)%tip_of(number)
-         to = self%prepared(i)%end_of(number)
-         associate (begun => self%tip(i))
-            if (norm2(to - begun%origin) > rest*self%rules%increment) then
-               call extend(self%network, begun%fracture, begun%end, begun%xy)
-               call open_piece(self, i, to)
-            else
-               call stay_before(self, i, to)
-            end if
-         end associate
+         ahead(:, i) = way_ahead(self%tip(i), self%rules%increment)
+         is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
       end do
-      if (.not. any(is_new)) then
-         self%state = self%before
-         return
-      end if
       tip = self%tip
       call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new .and. .not. is_near), any_grew, &
                         timers, error)
@@ -87,25 +68,23 @@ contains
          end if
       end do
       call end_pieces(self, tip, ahead, is_new, centres)
-      self%state = self%before
+      call go_back(self%now%coarse, self%before)
       if (size(centres, 2) == 0) return
       call self%remesh_coarse(centres, timers, error)
-      self%before = self%state
-      self%has_new_mesh = .true.
+      self%before = self%now%coarse
    end subroutine begin_pieces
 
    !> Where a tip goes, by the criterion in the present state, before the direction of a new piece
    !! is corrected.
-   pure function way_ahead(self, tip) result(direction)
-      class(two_levels_t), intent(in) :: self
+   pure function way_ahead(tip, increment) result(direction)
       type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: increment  !< [m]
       real(rk) :: direction(2)  !< unit vector
       type(tip_t) :: ahead
       real(rk) :: kink
 
       ahead = tip
-      call ahead%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, &
-                         self%rules%increment, kink)
+      call ahead%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, increment, kink)
       direction = turned(tip%direction, kink)
    end function way_ahead
 
@@ -116,12 +95,12 @@ contains
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), segment => self%segment(i))
+         associate (tip => self%tip(i), segment => self%now%segment(i))
             have_come(i) = segment%stays()
             if (have_come(i) .or. .not. tip%is_free .or. segment%is_open .or. &
                 tip%heads_for /= target_none) cycle
             if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
-            have_come(i) = has_come(self, i, tip%xy, way_ahead(self, tip))
+            have_come(i) = has_come(self, i, tip%xy, way_ahead(tip, self%rules%increment))
          end associate
       end do
    end function have_come
@@ -135,7 +114,8 @@ contains
       real(rk) :: at(2)
       integer(ik) :: target
 
-      call self%look_ahead(self%coarse_network, self%tip(i)%fracture, from, direction, target, at)
+      call self%look_ahead(self%now%coarse_network, self%tip(i)%fracture, from, direction, &
+                           target, at)
       has_come = target /= target_none .and. norm2(at - from) <= rest*self%rules%increment
    end function has_come
 
@@ -190,8 +170,7 @@ contains
             call open_piece(self, i, to(:, i))
          end if
          associate (tip => self%tip(i))
-            call self%prepared(i)%add(tip, to(:, i))
-            call extend(self%coarse_network, tip%fracture, tip%end, to(:, i))
+            call extend(self%now%coarse_network, tip%fracture, tip%end, to(:, i))
          end associate
          centres = reshape([centres, to(:, i)], [2, size(centres, 2) + 1])
       end do
@@ -220,11 +199,11 @@ contains
       integer(ik), intent(out) :: target
       real(rk), intent(out) :: to(2)  !< [m]
 
-      associate (tip => self%tip(i))
-         call self%look_ahead(self%coarse_network, tip%fracture, tip%origin, direction, target, to)
+      associate (tip => self%tip(i), network => self%now%coarse_network, rules => self%rules)
+         call self%look_ahead(network, tip%fracture, tip%origin, direction, target, to)
          if (target /= target_none) return
-       call find_beside(self%coarse_network, self%rules%outline, tip%fracture, tip%origin, tip%xy, &
-                          self%rules%near, target, to)
+         call find_beside(network, rules%outline, tip%fracture, tip%origin, tip%xy, rules%near, &
+                          target, to)
       end associate
    end subroutine find_end
 
@@ -235,9 +214,9 @@ contains
       real(rk), intent(in) :: to(2)  !< the place that it heads for [m]
 
       associate (tip => self%tip(i))
-         call self%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
-                                           norm2(to - tip%xy))
-         call self%segment(i)%stay_at_start()
+         call self%now%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
+                                               norm2(to - tip%xy))
+         call self%now%segment(i)%stay_at_start()
       end associate
    end subroutine stay_before
 
@@ -248,7 +227,7 @@ contains
       real(rk), intent(in) :: to(2)  !< where it ends [m]
       real(rk) :: gain  ! up to its start [m]
 
-      associate (tip => self%tip(i), segment => self%segment(i))
+      associate (tip => self%tip(i), segment => self%now%segment(i))
          if (tip%heads_for /= target_none) tip%direction = (to - tip%origin)/norm2(to - tip%origin)
          call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
          if (tip%heads_for /= target_none) call segment%leave_rest(rest)
@@ -268,7 +247,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
             can_join(i) = tip%is_free .and. tip%heads_for /= target_none .and. &
-                          (self%segment(i)%is_complete() .or. .not. self%segment(i)%is_open)
+                          (self%now%segment(i)%is_complete() .or. .not. self%now%segment(i)%is_open)
             if (.not. can_join(i) .or. tip%heads_for == target_boundary) cycle
             can_join(i) = is_broken(self, tip%heads_for, joint_of(self, i))
             do j = 1, size(self%tip, kind=ik)
@@ -284,9 +263,8 @@ contains
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
 
-      comes_to = i /= j .and. all(self%tip([i, j])%is_free) .and. .not. self%segment(j)%is_open
+      comes_to = i /= j .and. all(self%tip([i, j])%is_free) .and. .not. self%now%segment(j)%is_open
       if (.not. comes_to) return
-      ! Cells that an earlier try of the step has made count: they stay.
       associate (same => same_place*self%rules%increment, at => joint_of(self, i))
          comes_to = norm2(at - self%tip(j)%xy) <= same .and. norm2(at - self%tip(i)%xy) > same
       end associate
@@ -298,7 +276,7 @@ contains
       integer(ik), intent(in) :: i  !< tip
       real(rk) :: xy(2)
 
-      xy = end_place(self%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
+      xy = end_place(self%now%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
    end function joint_of
 
    !> A place on the path of a fracture lies behind its tips.
@@ -322,8 +300,10 @@ contains
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
 
-      meet = all(self%tip([i, j])%is_free .and. self%tip([i, j])%heads_for /= target_none .and. &
-                 (self%segment([i, j])%is_complete() .or. .not. self%segment([i, j])%is_open))
+      associate (tip => self%tip([i, j]), segment => self%now%segment([i, j]))
+         meet = all(tip%is_free .and. tip%heads_for /= target_none .and. &
+                    (segment%is_complete() .or. .not. segment%is_open))
+      end associate
       if (meet) meet = norm2(joint_of(self, i) - joint_of(self, j)) &
                        <= same_place*self%rules%increment
    end function meet
@@ -341,12 +321,12 @@ contains
          do j = 1, size(joins, kind=ik)
             associate (tip => self%tip(j))
                if (j == i .or. meet(self, i, j)) then
-                  if (norm2(tip%xy - self%segment(j)%start) > 0.0_rk) then
+                  if (norm2(tip%xy - self%now%segment(j)%start) > 0.0_rk) then
                      call move_end(self%network, tip%fracture, tip%end, xy)
                   else
                      call extend(self%network, tip%fracture, tip%end, xy)
                   end if
-                  call self%segment(j)%finish(xy)
+                  call self%now%segment(j)%finish(xy)
                   tip%xy = xy
                   tip%target = tip%heads_for
                   tip%joined = .true.
@@ -354,7 +334,7 @@ contains
                   cycle
                end if
                call tip%cease()
-               self%segment(j)%is_open = .false.
+               self%now%segment(j)%is_open = .false.
             end associate
          end do
       end do

@@ -1,15 +1,16 @@
 !> Where tips are along the last pieces of their paths, on both levels.
 !!
 !! The last cell of a fracture ends with its last piece, at a joint if that ends on something. As
-!! long as its tip has not come to it, nothing flows there. Tries that were not taken may have left
-!! several pieces before the tip.
+!! long as its tip has not come to it, nothing flows there.
 module twolevel_places
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
+   use growth_front, only: front_state_t
    use growth_network, only: end_gain, move_end
+   use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t
-   use twolevel_state, only: two_levels_t
+   use mesh_types, only: fracture_mesh_t, network_t
+   use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
@@ -18,70 +19,49 @@ module twolevel_places
 contains
 
    !> How far the tips are beyond the last accepted state [m].
-   function advances(self)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: advances(size(self%tip))
+   function advances(front, start, segments, increment)
+      type(front_state_t), intent(in) :: front
+      type(network_t), intent(in) :: start  !< of the scene
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: increment  !< [m]
+      real(rk) :: advances(size(segments))
       integer(ik) :: i
 
-      do i = 1, size(self%tip, kind=ik)
-         advances(i) = end_gain(self%network, self%start, self%tip(i)%fracture, self%tip(i)%end) &
-                       - self%segment(i)%gain
+      do i = 1, size(segments, kind=ik)
+         advances(i) = end_gain(front%network, start, front%tip(i)%fracture, front%tip(i)%end) &
+                       - segments(i)%gain
       end do
       ! Rounding is left of tips that have not moved, where the other end of their fracture has.
-      where (abs(advances) <= same_place*self%rules%increment) advances = 0.0_rk
+      where (abs(advances) <= same_place*increment) advances = 0.0_rk
    end function advances
 
    !> Put the tips of both levels where their segments say.
-   subroutine place_tips(self)
-      class(two_levels_t), intent(inout) :: self
+   subroutine place_tips(front, segments, problem)
+      type(front_state_t), intent(inout) :: front
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(coarse_problem_t), intent(inout) :: problem
       integer(ik), allocatable :: free(:)
       integer(ik) :: i, k
 
-      associate (fracture => self%mesh%fracture)
-         do i = 1, size(self%tip, kind=ik)
-            associate (tip => self%tip(i), segment => self%segment(i))
-               if (.not. segment%is_open) cycle
-               tip%xy = segment%place()
-               tip%direction = segment%direction
-               call move_end(self%network, tip%fracture, tip%end, tip%xy)
-            end associate
-         end do
-         free = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%is_free)
-         associate (ends => self%model%ends)
-            ends%cell = [(end_cell(fracture, self%tip(free(k))), k=1, size(free))]
-            ends%inwards = merge(1_ik, -1_ik, self%tip(free)%end == 1)
-            ends%ahead = [(length_ahead(self, free(k), fracture%point_xy(:, fracture%cell_points( &
-                                                           self%tip(free(k))%end, ends%cell(k)))), &
-                           k=1, size(free))]
-            call self%model%joints%shut_only(ends%cell, self%tip(free)%end)
+      do i = 1, size(segments, kind=ik)
+         associate (tip => front%tip(i), segment => segments(i))
+            if (.not. segment%is_open) cycle
+            tip%xy = segment%place()
+            tip%direction = segment%direction
+            call move_end(front%network, tip%fracture, tip%end, tip%xy)
          end associate
+      end do
+      free = pack([(i, i=1, size(segments, kind=ik))], front%tip%is_free)
+      associate (fracture => problem%mesh%fracture, ends => problem%model%ends, &
+                 tips => front%tip(free))
+         ends%cell = [(end_cell(fracture, tips(k)), k=1, size(free))]
+         ends%inwards = merge(1_ik, -1_ik, tips%end == 1)
+         ends%ahead = [(norm2(fracture%point_xy(:, fracture%cell_points(tips(k)%end, &
+                                                                        ends%cell(k))) &
+                              - tips(k)%xy), k=1, size(free))]
+         call problem%model%joints%shut_only(ends%cell, tips%end)
       end associate
    end subroutine place_tips
-
-   !> Length of the coarse cells that lie before a tip [m].
-   pure real(rk) function length_ahead(self, i, end)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: end(2)  !< of its fracture in the coarse mesh [m]
-      integer(ik) :: number
-
-      associate (tip => self%tip(i), segment => self%segment(i), prepared => self%prepared(i), &
-                 within => same_place*self%rules%increment)
-         if (segment%is_open) then
-            number = prepared%find(segment%start, within)
-         else
-            number = prepared%find(tip%xy, within)
-         end if
-         if (number == 0) then
-            length_ahead = norm2(end - tip%xy)
-         else if (segment%is_open) then
-            length_ahead = norm2(prepared%end_of(number) - tip%xy) &
-                           + prepared%length_from(number + 1)
-         else
-            length_ahead = prepared%length_from(number)
-         end if
-      end associate
-   end function length_ahead
 
    !> The fracture cell that a fracture ends with at a tip; cells are stored along each fracture.
    pure integer(ik) function end_cell(fracture, tip)
@@ -92,15 +72,16 @@ contains
    end function end_cell
 
    !> Length of the coarse cell at each tip [m]; 0 where there is none any more.
-   pure function tip_cell_lengths(self) result(length)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: length(size(self%tip))
+   pure function tip_cell_lengths(tips, problem) result(length)
+      type(tip_t), intent(in) :: tips(:)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk) :: length(size(tips))
       integer(ik) :: i
 
       length = 0.0_rk
-      do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
-         length(i) = self%model%condensed%length(end_cell(self%mesh%fracture, self%tip(i)))
+      do i = 1, size(tips, kind=ik)
+         if (.not. tips(i)%is_free) cycle
+         length(i) = problem%model%condensed%length(end_cell(problem%mesh%fracture, tips(i)))
       end do
    end function tip_cell_lengths
 

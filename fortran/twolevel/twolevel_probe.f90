@@ -9,7 +9,9 @@ module twolevel_probe
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_state, only: state_t, step_report_t
+   use coarse_state, only: go_back, state_t, step_report_t
+   use growth_rivals, only: rivals_t
+   use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use twolevel_places, only: place_tips
    use twolevel_state, only: two_levels_t
@@ -51,52 +53,56 @@ contains
 
       has_measured = .false.
       if (count(in_play) < 2) return
-      asked = self%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
-                                     self%segment)
+      asked = self%now%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
+                                         self%now%segment)
       has_measured = size(asked) > 0
       if (.not. has_measured) return
-      state = self%state
+      state = self%now%coarse
       tip = self%tip
       do k = 1, size(asked, kind=ik)
-         associate (segment => self%segment(asked(k)))
+         associate (segment => self%now%segment(asked(k)))
             shift = -probe*segment%length
             segment%reached = segment%reached + shift
-            call place_tips(self)
-            self%state = self%before
+            call place_tips(self%front_state_t, self%now%segment, self%problem)
+            call go_back(self%now%coarse, self%before)
             call self%try_step(dt, timers, report, error)
             if (allocated(error)) return
             if (report%converged) then
                call self%evaluate(timers, error)
                if (allocated(error)) return
-               call self%rivals%note(asked(k), shift, tip%drive%intensity/self%rules%toughness, &
-                                     self%tip%drive%intensity/self%rules%toughness, segment)
+               call self%now%rivals%note(asked(k), shift, &
+                                         tip%drive%intensity/self%rules%toughness, &
+                                         self%tip%drive%intensity/self%rules%toughness, segment)
             end if
             segment%reached = segment%reached - shift
          end associate
       end do
-      call place_tips(self)
+      call place_tips(self%front_state_t, self%now%segment, self%problem)
       self%tip = tip
-      self%state = state
-      self%values_are_current = .false.
+      call go_back(self%now%coarse, state)
    end subroutine measure_rivals
 
    !> Remember a try.
-   subroutine begin(self, levels)
+   subroutine begin(self, segments, tips)
       class(lesson_t), intent(out) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(tip_t), intent(in) :: tips(:)
 
-      self%reached = levels%segment%reached
-      self%drive = levels%tip%drive%intensity
+      self%reached = segments%reached
+      self%drive = tips%drive%intensity
    end subroutine begin
 
    !> What the last try has shown beside the one before.
-   subroutine tell(self, levels)
+   subroutine tell(self, segments, tips, toughness, rivals)
       class(lesson_t), intent(in) :: self
-      class(two_levels_t), intent(inout) :: levels
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      type(rivals_t), intent(inout) :: rivals
 
       if (.not. allocated(self%reached)) return
-      call levels%rivals%learn(levels%segment%reached - self%reached, &
-                               (levels%tip%drive%intensity - self%drive)/levels%rules%toughness)
+      call rivals%learn(segments%reached - self%reached, &
+                        (tips%drive%intensity - self%drive)/toughness)
    end subroutine tell
 
 end module twolevel_probe

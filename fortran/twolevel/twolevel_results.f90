@@ -5,23 +5,25 @@ module twolevel_results
    use base_lists, only: lists_t
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stress, cell_stresses
+   use coarse_state, only: state_t
    use coarse_nodes, only: nodal_values, node_values
    use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
+   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
-   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
+   use scene_types, only: probe_t, scene_t
    use report_simulation, only: snapshot_t
-   use twolevel_fed, only: cell_heights
    use twolevel_places, only: end_cell
+   use twolevel_problem, only: cell_heights, coarse_problem_t
    use twolevel_state, only: two_levels_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
    public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
-   public :: fracture_flow, fracture_volume, probes_of_levels
+   public :: fracture_volume, probes_of_levels
    public :: slip_potency, snapshot_of_levels
 
 contains
@@ -35,87 +37,88 @@ contains
    end function cell_state
 
    !> The contact states of all fracture cells.
-   pure function cell_states(simulation) result(states)
-      class(two_levels_t), intent(in) :: simulation
-      integer(ik) :: states(simulation%mesh%fracture%n_cells)
+   pure function cell_states(state) result(states)
+      type(state_t), intent(in) :: state
+      integer(ik) :: states(size(state%contact, 2))
       integer(ik) :: i
 
-      states = [(cell_state(simulation%state%contact(:, i)), i=1, size(states))]
+      states = [(cell_state(state%contact(:, i)), i=1, size(states))]
    end function cell_states
 
    !> The row of history.csv; the caller adds what concerns the step.
-   function history_of_levels(simulation, mass_error) result(row)
-      class(two_levels_t), intent(in) :: simulation
-      real(rk), intent(in) :: mass_error  !< of all steps so far [m2]
+   function history_of_levels(levels) result(row)
+      class(two_levels_t), intent(in) :: levels
       type(history_row_t) :: row
       type(fracture_mesh_t) :: fracture
       real(rk) :: fluid  ! that the mass error is compared with [m2]
       integer(ik), allocatable :: states(:)
 
-      associate (state => simulation%state)
+      associate (state => levels%now%coarse, totals => levels%now%fluid, problem => levels%problem)
          row%time = state%time
-         row%injected = simulation%injected
-         row%produced = simulation%produced
-         row%well_pressure = well_pressures(simulation)
-         row%leakoff = simulation%leaked
-         row%prefilled = simulation%prefilled
-         row%outflow = simulation%outflow
-         row%fracture_length = total_length(simulation%network)
-         row%n_tips = count(simulation%tip%is_free)
-         if (simulation%mesh%fracture%n_cells > 0) then
-            fracture = simulation%mesh%fracture
-            call end_at_tips(simulation, fracture)
+         row%injected = totals%injected
+         row%produced = totals%produced
+         row%well_pressure = well_pressures(levels%scene, problem, levels%before%time, state)
+         row%leakoff = totals%leaked
+         row%prefilled = totals%prefilled
+         row%outflow = totals%outflow
+         row%fracture_length = total_length(levels%network)
+         row%n_tips = count(levels%tip%is_free)
+         if (problem%mesh%fracture%n_cells > 0) then
+            fracture = problem%mesh%fracture
+            call end_at_tips(levels%scene, levels%network, levels%tip, fracture)
             row%n_intersections = count(is_intersection(fracture))
-            row%fracture_volume = fracture_volume(simulation)
+            row%fracture_volume = fracture_volume(problem, state)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
-            states = cell_states(simulation)
+            states = cell_states(state)
             row%n_stick = count(states == state_stick)
             row%n_slip = count(states == state_slip)
             row%n_open = count(states == state_open)
          end if
-         fluid = max(abs(simulation%injected), row%fracture_volume)
-         if (.not. fluid > 0.0_rk) fluid = max(content_in_situ(simulation), tiny(1.0_rk))
-         row%mass_error_relative = abs(mass_error)/fluid
+         fluid = max(abs(totals%injected), row%fracture_volume)
+         if (.not. fluid > 0.0_rk) fluid = max(content_in_situ(problem, state), tiny(1.0_rk))
+         row%mass_error_relative = abs(totals%mass_error)/fluid
       end associate
    end function history_of_levels
 
    !> What the pressures would store in rock that is not strained, with that in situ [m2].
-   pure real(rk) function content_in_situ(simulation) result(content)
-      class(two_levels_t), intent(in) :: simulation
+   pure real(rk) function content_in_situ(problem, state) result(content)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
 
-      content = sum(abs(simulation%state%content))
-      if (.not. allocated(simulation%model%in_situ)) return
-      associate (model => simulation%model)
+      content = sum(abs(state%content))
+      if (.not. allocated(problem%model%in_situ)) return
+      associate (model => problem%model)
          content = content + sum(model%matrix%storage &
-                                 *abs(model%in_situ%pressure_at(cell_heights(simulation%mesh))))
+                                 *abs(model%in_situ%pressure_at(cell_heights(problem%mesh))))
       end associate
    end function content_in_situ
 
    !> Fluid in the fractures but for its compression; roughness holds none [m2].
-   pure real(rk) function fracture_volume(simulation) result(volume)
-      class(two_levels_t), intent(in) :: simulation
+   pure real(rk) function fracture_volume(problem, state) result(volume)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
 
-      associate (state => simulation%state, s => simulation%mesh%fracture%cell_s)
-         volume = sum((state%aperture - state%void - simulation%model%cells%roughness) &
+      associate (s => problem%mesh%fracture%cell_s)
+         volume = sum((state%aperture - state%void - problem%model%cells%roughness) &
                       *(s(2, :) - s(1, :)))
       end associate
    end function fracture_volume
 
    !> Slip of each fracture cell in the last step, without its sign, times its length [m2].
-   pure function slip_potency(simulation) result(potency)
-      class(two_levels_t), intent(in) :: simulation
-      real(rk) :: potency(simulation%mesh%fracture%n_cells)
+   pure function slip_potency(length, state) result(potency)
+      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
+      type(state_t), intent(in) :: state
+      real(rk) :: potency(size(length))
 
-      associate (state => simulation%state)
-         potency = 0.5_rk*simulation%model%condensed%length &
-                   *sum(abs(state%jump(2, :, :) - state%slip_before), dim=1)
-      end associate
+      potency = 0.5_rk*length*sum(abs(state%jump(2, :, :) - state%slip_before), dim=1)
    end function slip_potency
 
-   !> Displacement, stress and pressure at the probes, each from the cells around its own.
-   subroutine probes_of_levels(simulation, row, error)
-      class(two_levels_t), intent(in) :: simulation
+   !> Displacement, stress and pressure at points, each from the cells around its own.
+   subroutine probes_of_levels(points, problem, state, row, error)
+      type(probe_t), intent(in) :: points(:)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(probe_row_t), intent(out) :: row
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: xy(:, :)
@@ -123,14 +126,14 @@ contains
       integer(ik), allocatable :: cells(:)
       integer(ik) :: i, k, n
 
-      n = size(simulation%scene%probes)
+      n = size(points)
       allocate (xy(2, n), cells(n))
       allocate (row%displacement(2, n), row%pressure(n), row%stress(3, n))
-      xy(1, :) = simulation%scene%probes%x
-      xy(2, :) = simulation%scene%probes%y
-      call locate(simulation%mesher, xy, cells, error)
+      xy(1, :) = points%x
+      xy(2, :) = points%y
+      call locate(problem%mesher, xy, cells, error)
       if (allocated(error)) return
-      associate (mesh => simulation%mesh, model => simulation%model, state => simulation%state)
+      associate (mesh => problem%mesh, model => problem%model)
          do i = 1, n
             associate (nodes => mesh%cell_nodes(:, cells(i)))
                do k = 1, 3
@@ -151,89 +154,88 @@ contains
    end subroutine probes_of_levels
 
    !> Total stress of each cell: xx, yy, xy [Pa].
-   function stresses_of(simulation) result(stresses)
-      class(two_levels_t), intent(in) :: simulation
-      real(rk) :: stresses(3, simulation%mesh%n_cells)
-      real(rk) :: y(simulation%mesh%n_cells)
+   function stresses_of(problem, state) result(stresses)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: stresses(3, problem%mesh%n_cells)
+      real(rk) :: y(problem%mesh%n_cells)
       integer(ik) :: c
 
-      call cell_stresses(simulation%mesh, simulation%model%regions, simulation%state%tractions, &
-                         stresses)
-      if (.not. allocated(simulation%model%in_situ)) return
-      y = cell_heights(simulation%mesh)
-      do c = 1, simulation%mesh%n_cells
-         stresses(:, c) = stresses(:, c) + simulation%model%in_situ%stress_at(y(c))
+      call cell_stresses(problem%mesh, problem%model%regions, state%tractions, stresses)
+      if (.not. allocated(problem%model%in_situ)) return
+      y = cell_heights(problem%mesh)
+      do c = 1, problem%mesh%n_cells
+         stresses(:, c) = stresses(:, c) + problem%model%in_situ%stress_at(y(c))
       end do
    end function stresses_of
 
    !> Displacement, pressure, stress, where the scene wants them, and what the fracture faces do.
-   function snapshot_of_levels(simulation) result(snapshot)
-      class(two_levels_t), intent(in) :: simulation
+   function snapshot_of_levels(scene, problem, state) result(snapshot)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(snapshot_t) :: snapshot
       real(rk), allocatable :: pressure(:)
       integer(ik), allocatable :: shown(:)
       integer(ik) :: k
 
-      snapshot%time = simulation%state%time
-      snapshot%mesh%fracture = simulation%mesh%fracture
-      if (simulation%scene%output%vtu) then
-         snapshot%mesh = simulation%mesh
-         snapshot%matrix = rock_fields(simulation)
+      snapshot%time = state%time
+      snapshot%mesh%fracture = problem%mesh%fracture
+      if (scene%output%vtu) then
+         snapshot%mesh = problem%mesh
+         snapshot%matrix = rock_fields(problem, state, allocated(scene%regions))
       end if
-      associate (state => simulation%state, fracture => snapshot%fracture)
+      associate (fracture => snapshot%fracture, joints => problem%model%joints)
          fracture%aperture = state%aperture
          fracture%jump_n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
          fracture%jump_t = 0.5_rk*sum(state%jump(2, :, :), dim=1)
          fracture%traction_n = 0.5_rk*sum(state%traction(1, :, :), dim=1)
          fracture%traction_t = 0.5_rk*sum(state%traction(2, :, :), dim=1)
-         fracture%pressure = simulation%fracture_pressure()
+         fracture%pressure = problem%fracture_pressure(state)
          fracture%void = state%void
-         fracture%state = cell_states(simulation)
-         fracture%flow = fracture_flow(simulation)
-         associate (joints => simulation%model%joints)
-            ! Those to come are not shown.
-            shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
-                                                 k=1, joints%n)])
-            snapshot%intersection%point = joints%point(shown)
-            pressure = simulation%joint_pressure()
-            snapshot%intersection%pressure = pressure(shown)
-         end associate
+         fracture%state = cell_states(state)
+         fracture%flow = fracture_flow(problem, state)
+         ! Those to come are not shown.
+         shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
+                                              k=1, joints%n)])
+         snapshot%intersection%point = joints%point(shown)
+         pressure = problem%joint_pressure(state)
+         snapshot%intersection%pressure = pressure(shown)
       end associate
    end function snapshot_of_levels
 
    !> Displacement, pressure and stress in the rock.
-   function rock_fields(simulation) result(fields)
-      class(two_levels_t), intent(in) :: simulation
+   function rock_fields(problem, state, has_regions) result(fields)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      logical, intent(in) :: has_regions  !< of other rock
       type(matrix_fields_t) :: fields
       real(rk), allocatable :: nodal(:, :)
 
-      associate (mesh => simulation%mesh, model => simulation%model, state => simulation%state)
+      associate (mesh => problem%mesh, model => problem%model, rock => problem%model%rock)
          fields%displacement = state%unknowns(:2, :mesh%n_cells)
          allocate (nodal(3, mesh%n_nodes))
-         call nodal_values(mesh, model%rock, model%regions, state%unknowns, state%tractions, nodal)
+         call nodal_values(mesh, rock, model%regions, state%unknowns, state%tractions, nodal)
          fields%node_displacement = nodal(:2, :)
-         fields%pressure = simulation%rock_pressure()
-         fields%stress = stresses_of(simulation)
-         if (.not. allocated(simulation%scene%regions)) return
-         associate (rock => model%rock)
-            fields%permeability = rock%permeability
-            if (size(rock%shear) > 1) then
-               fields%poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
-               fields%biot = rock%biot
-            end if
-         end associate
+         fields%pressure = problem%rock_pressure(state)
+         fields%stress = stresses_of(problem, state)
+         if (.not. has_regions) return
+         fields%permeability = rock%permeability
+         if (size(rock%shear) == 1) return
+         fields%poisson = rock%lame/(2.0_rk*(rock%lame + rock%shear))
+         fields%biot = rock%biot
       end associate
    end function rock_fields
 
    !> Flow along each fracture cell in its direction, the mean of its two ends [m2/s].
-   pure function fracture_flow(simulation) result(flow)
-      class(two_levels_t), intent(in) :: simulation
-      real(rk) :: flow(simulation%mesh%fracture%n_cells)
+   pure function fracture_flow(problem, state) result(flow)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: flow(problem%mesh%fracture%n_cells)
       integer(ik) :: b, k
 
       flow = 0.0_rk
-      associate (state => simulation%state, pairs => simulation%model%connections, &
-                 joints => simulation%model%joints)
+      associate (pairs => problem%model%connections, joints => problem%model%joints)
          do k = 1, size(pairs, 2, kind=ik)
             flow(pairs(:, k)) = flow(pairs(:, k)) + 0.5_rk*state%flow(k)
          end do
@@ -256,19 +258,20 @@ contains
 
    !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
    !! those of the coarse mesh go on beyond them, closed, and may end at a joint to come.
-   pure subroutine end_at_tips(simulation, fracture)
-      class(two_levels_t), intent(in) :: simulation
+   pure subroutine end_at_tips(scene, network, tips, fracture)
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(tip_t), intent(in) :: tips(:)
       type(fracture_mesh_t), intent(inout) :: fracture
       real(rk) :: first, last
       integer(ik) :: cell, end, i
 
-      if (.not. (simulation%scene%growth%enabled .and. &
-                 simulation%scene%growth%law == "equilibrium")) return
-      do i = 1, size(simulation%tip, kind=ik)
-         if (simulation%tip(i)%is_free) call detach_tip(simulation%tip(i), fracture)
+      if (.not. (scene%growth%enabled .and. scene%growth%law == "equilibrium")) return
+      do i = 1, size(tips, kind=ik)
+         if (tips(i)%is_free) call detach_tip(tips(i), fracture)
       end do
       do cell = 1, fracture%n_cells
-         associate (f => fracture%cell_fracture(cell), network => simulation%network)
+         associate (f => fracture%cell_fracture(cell))
             first = network%s_start(f)
             last = first + fracture_length(network, f)
             do end = 1, 2
@@ -330,28 +333,24 @@ contains
    end subroutine detach_tip
 
    !> Unknowns by block, for run.json.
-   subroutine count_unknowns(simulation, summary)
-      class(two_levels_t), intent(in) :: simulation
+   subroutine count_unknowns(levels, summary)
+      class(two_levels_t), intent(in) :: levels
       type(summary_t), intent(inout) :: summary
 
-      associate (mesh => simulation%mesh)
+      associate (mesh => levels%problem%mesh, model => levels%problem%model)
          call summary%count_dofs("displacement", 2*mesh%n_cells)
          call summary%count_dofs("matrix_pressure", mesh%n_cells)
          call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
          call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(simulation%model%connections, 2) &
-                                 + simulation%model%joints%branch_count())
-         if (simulation%model%joints%n > 0) then
-            call summary%count_dofs("intersection_pressure", simulation%model%joints%n)
-         end if
+         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
+                                 + model%joints%branch_count())
+         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
       end associate
-      if (simulation%scene%growth%intensities) then
-         call summary%count_dofs("windows", simulation%windows%n_unknowns())
-         if (.not. simulation%scene%discretization%window_is_body) then
-            call summary%count_dofs("windows_reference", simulation%reference%n_unknowns())
-         end if
-      end if
+      if (.not. levels%scene%growth%intensities) return
+      call summary%count_dofs("windows", levels%windows%n_unknowns(levels%tip))
+      if (levels%scene%discretization%window_is_body) return
+      call summary%count_dofs("windows_reference", levels%reference%n_unknowns(levels%tip))
    end subroutine count_unknowns
 
 end module twolevel_results

@@ -1,22 +1,21 @@
 !> A scene with a fluid in progress: time steps, and growth of the tips in each of them.
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_solid, only: shear_beside
-   use coarse_state, only: state_t
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use report_rows, only: history_row_t, probe_row_t, well_row_t
-   use report_simulation, only: snapshot_t
    use scene_types, only: scene_t
-   use twolevel_doubt, only: improve_windows
+   use report_simulation, only: snapshot_t
+   use twolevel_doubt, only: find_improvements, improve_windows
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
-   use twolevel_state, only: remesh_coarse
    use twolevel_steps, only: stepping_levels_t
+   use twolevel_stepping, only: improvement_t
    use twolevel_stimulation, only: stimulation_t
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_rows, only: well_books_t
@@ -37,11 +36,7 @@ module twolevel_simulation
       type(stimulation_t) :: stimulation
       type(well_books_t) :: well_books
       real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
-      real(rk) :: mass_error = 0.0_rk  !< of all steps [m2]
-      logical :: is_stepping = .false.  !< the next state is being looked for
-      type(snapshot_t), allocatable :: good  !< the last one, if the mesh has changed since
    contains
-      procedure :: remesh_coarse => remesh_and_keep
       procedure :: begin
       procedure :: next_state
       procedure :: grow
@@ -68,7 +63,7 @@ contains
       call self%catalogue%begin(scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump, scene%output%seismic_slip_rate)
       call self%notes%begin(size(self%tip))
-      call watch_mesh(self, error)
+      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
@@ -80,8 +75,8 @@ contains
          call summary%use_feature("poroelastic rock")
          call summary%note(allocated(scene%regions), "regions of other rock", &
                            "regions: uniform rock")
-         call summary%note(self%mesh%fracture%n_cells > 0, "fractures: contact, friction, flow", &
-                           "no fractures")
+         call summary%note(self%problem%mesh%fracture%n_cells > 0, &
+                           "fractures: contact, friction, flow", "no fractures")
          call summary%note(any(scene%fractures%dilation > 0.0_rk), "shear dilation", &
                            "dilation: psi = 0 everywhere")
          call summary%note(size(scene%injections) > 0, "injection", "no injection")
@@ -89,20 +84,22 @@ contains
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
-         call summary%note(self%model%drained, "flow across the outer boundary", &
+         call summary%note(self%problem%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
-         call summary%note(self%model%joints%n > 0, meeting, not_meeting)
-         if (allocated(self%model%in_situ)) call summary%use_feature("stress in situ, hydrostatic")
+         call summary%note(self%problem%model%joints%n > 0, meeting, not_meeting)
+         if (allocated(self%problem%model%in_situ)) then
+            call summary%use_feature("stress in situ, hydrostatic")
+         end if
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
       end associate
    end subroutine note_features
 
-   !> The initial state first, if the scene wants fractures in equilibrium; then a time step.
+   !> The initial state first, if the scene wants fractures in equilibrium; then a time step. What
+   !! fails leaves the last good state.
    subroutine next_state(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(state_t) :: before
       type(history_row_t) :: row
       real(rk), allocatable :: pressure(:)
       logical :: is_first
@@ -110,36 +107,35 @@ contains
       is_first = .not. self%has_begun
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       self%has_begun = .true.
-      before = self%state
+      call self%begin_step()
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
       else
          if (is_first) then
-            call self%stimulation%begin(self)
-            call self%well_books%begin(self)
+            call self%stimulation%begin(self%problem, self%now%coarse)
+            call self%well_books%begin(self%scene, self%problem, self%now%coarse)
          end if
-         self%is_stepping = .true.
          call self%take_step(timers, error)
-         self%is_stepping = .false.
       end if
-      if (allocated(error)) return
-      if (allocated(self%good)) deallocate (self%good)
-      call book_change(self)
-      self%mass_error = self%mass_error + self%report%mass_error
-      row = self%history()
-      call watch_levels(self, self%report, self%mass_error, row%mass_error_relative)
-      call self%heed_limits(error)
+      if (.not. allocated(error)) then
+         call book_change(self)
+         self%now%fluid%mass_error = self%now%fluid%mass_error + self%report%mass_error
+         row = self%history()
+         call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%report, &
+                           self%now%fluid%mass_error, row%mass_error_relative)
+         call self%heed_limits(error)
+      end if
       if (allocated(error)) then
-         self%state = before  ! the last good one
+         call self%put_back()
          return
       end if
-      self%shows_growth = self%has_new_mesh
-      self%has_new_mesh = .false.
+      self%shows_growth = self%now%has_new_mesh
+      self%now%has_new_mesh = .false.
       if (.not. self%is_initial) then
          self%summary%steps = self%summary%steps + 1
          if (.not. (self%owes_state .or. self%is_equilibrium())) then
-            pressure = self%fracture_pressure()
-            call self%stepper%settle(pressure(self%grown))
+            pressure = self%problem%fracture_pressure(self%now%coarse)
+            call self%stepper%settle(pressure(self%now%grown))
          end if
       end if
       call note_well_rows(self)
@@ -155,26 +151,26 @@ contains
       real(rk), allocatable :: potency(:), shear(:)
 
       if (self%is_initial) then
-         call self%stimulation%begin(self)
+         call self%stimulation%begin(self%problem, self%now%coarse)
       else
          call self%stimulation%follow(self, self%report%compressed, self%report%rock_outflow)
       end if
-      fracture = self%mesh%fracture
+      fracture = self%problem%mesh%fracture
       if (fracture%n_cells == 0) return
-      call end_at_tips(self, fracture)
-      potency = slip_potency(self)
+      call end_at_tips(self%scene, self%network, self%tip, fracture)
+      potency = slip_potency(self%problem%model%condensed%length, self%now%coarse)
       ! Cells wholly ahead of a tip are rock still.
       where (.not. fracture%cell_s(2, :) > fracture%cell_s(1, :)) potency = 0.0_rk
-      shear = shear_beside(self%model%rock, self%mesh)
+      shear = shear_beside(self%problem%model%rock, self%problem%mesh)
       self%seismic_moment = self%seismic_moment + sum(shear*potency)
-      associate (traction => 0.5_rk*sum(self%state%traction(2, :, :), dim=1), &
-                 largest => maxval(abs(self%state%jump(2, :, :))))
+      associate (traction => 0.5_rk*sum(self%now%coarse%traction(2, :, :), dim=1), &
+                 largest => maxval(abs(self%now%coarse%jump(2, :, :))))
          ! Faces at the bound of friction that do not move are moved by rounding.
-         where (potency <= rounding*largest*self%model%condensed%length) potency = 0.0_rk
+         where (potency <= rounding*largest*self%problem%model%condensed%length) potency = 0.0_rk
          if (self%is_initial) then
             call self%catalogue%remember(fracture, traction)
          else
-            call self%note_slip(self%dt, fracture, potency, shear, cell_states(self), &
+            call self%note_slip(self%dt, fracture, potency, shear, cell_states(self%now%coarse), &
                                 self%is_unstable, traction)
          end if
       end associate
@@ -203,8 +199,9 @@ contains
       type(well_row_t), allocatable :: rows(:)
 
       if (size(self%scene%injections) == 0) return
-      if (self%is_initial) call self%well_books%begin(self)
-      call self%well_books%book(self, merge(0.0_rk, self%dt, self%is_initial), rows)
+      if (self%is_initial) call self%well_books%begin(self%scene, self%problem, self%now%coarse)
+      call self%well_books%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
+                                merge(0.0_rk, self%dt, self%is_initial), rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
    end subroutine note_well_rows
 
@@ -221,14 +218,15 @@ contains
          summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
          summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
          summary%lowest_pressure = min(summary%lowest_pressure, &
-                                       minval(self%rock_pressure()), &
-                                       minval(self%fracture_pressure()))
-         summary%cells = self%mesh%n_cells
-         summary%fracture_cells = self%mesh%fracture%n_cells
+                                       minval(self%problem%rock_pressure(self%now%coarse)), &
+                                       minval(self%problem%fracture_pressure(self%now%coarse)))
+         summary%cells = self%problem%mesh%n_cells
+         summary%fracture_cells = self%problem%mesh%fracture%n_cells
          if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)
          call summary%add_newton(report%iterations)
          call count_unknowns(self, summary)
-         call self%note_contact(self%mesh%fracture, cell_states(self), always, always)
+         call self%note_contact(self%problem%mesh%fracture, cell_states(self%now%coarse), always, &
+                                always)
       end associate
    end subroutine note_state
 
@@ -255,15 +253,21 @@ contains
             end if
          end if
          if (allocated(error)) return
-         if (self%is_equilibrium()) call self%notes%note_onsets(self)
-         if (self%is_equilibrium() .and. self%is_initial) call note_excess(self)
+         associate (toughness => self%rules%toughness, time => self%now%coarse%time)
+            if (self%is_equilibrium()) then
+               call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
+                                           self%chronicle)
+               if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
+            end if
+            call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+         end associate
          call count_unknowns(self, self%summary)
-         call watch_windows(self, may_grow)
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      if (states_errors(self)) call note_certainty(self, self%dt)
-      if (self%state%time >= self%scene%time%end*(1.0_rk - same_time)) then
+      if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
+                                                   self%dt, self%now)
+      if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.
       end if
@@ -274,15 +278,17 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: any_improved
+      type(improvement_t), allocatable :: improvements(:)
 
       do
          call self%evaluate(timers, error)
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. self%is_equilibrium()) return
-         call improve_windows(self, self%state%time, any_improved, error)
-         if (allocated(error) .or. .not. any_improved) return
+         call find_improvements(self, self%now%coarse%time, improvements, error)
+         if (allocated(error)) return
+         if (size(improvements) == 0) return
+         call improve_windows(self, improvements)
       end do
    end subroutine evaluate_tips
 
@@ -296,8 +302,8 @@ contains
       call self%end_at_gain()
       if (any(self%tip%advance > 0.0_rk)) self%chronicle%has_new_network = .true.
       if (.not. self%shows_growth) return
-      call self%note_mesh(self%mesh)
-      call watch_mesh(self, error)
+      call self%note_mesh(self%problem%mesh)
+      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
    end subroutine note_equilibrium
 
    !> Errors of length and pressure are estimated: not with increments of a given law.
@@ -325,9 +331,8 @@ contains
          if (allocated(error)) return
          call self%end_at_gain()
          if (coarse_grew) then
-            self%has_new_mesh = .true.
-            call self%note_mesh(self%mesh)
-            call watch_mesh(self, error)
+            call self%note_mesh(self%problem%mesh)
+            call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
             if (allocated(error)) return
             call self%stepper%network_grew()
          end if
@@ -342,11 +347,11 @@ contains
       type(network_t), intent(out) :: network
       type(mesh_t), intent(out) :: mesh
 
-      network = self%coarse_network
-      mesh = self%mesh
+      network = self%now%coarse_network
+      mesh = self%problem%mesh
       if (.not. self%is_equilibrium()) return
       network = self%network
-      call end_at_tips(self, mesh%fracture)
+      call end_at_tips(self%scene, self%network, self%tip, mesh%fracture)
    end subroutine present_network
 
    !> The accepted state in a row of history.csv.
@@ -354,19 +359,21 @@ contains
       class(twolevel_simulation_t), intent(in) :: self
       type(history_row_t) :: row
 
-      row = history_of_levels(self, self%mass_error)
+      row = history_of_levels(self)
       row%dt = merge(0.0_rk, self%dt, self%is_initial)
       row%newton_iterations = self%report%iterations
       row%seismic_moment = self%seismic_moment
-      if (row%dt > 0.0_rk .and. self%mesh%fracture%n_cells > 0) then
-         row%max_slip_rate = maxval(abs(self%state%jump(2, :, :) - self%state%slip_before))/row%dt
+      if (row%dt > 0.0_rk .and. self%problem%mesh%fracture%n_cells > 0) then
+         associate (state => self%now%coarse)
+            row%max_slip_rate = maxval(abs(state%jump(2, :, :) - state%slip_before))/row%dt
+         end associate
       end if
       call self%stimulation%describe(self, row)
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self)) return
-      row%length_error = self%certainty%length
-      row%well_pressure_error = self%certainty%pressure
+      row%length_error = self%now%certainty%length
+      row%well_pressure_error = self%now%certainty%pressure
    end function history
 
    !> Displacement, stress and pressure at the probes.
@@ -375,37 +382,24 @@ contains
       type(probe_row_t), intent(out) :: row
       type(error_t), allocatable, intent(out) :: error
 
-      call probes_of_levels(self, row, error)
+      call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
    end subroutine probes
-
-   !> A mesh on which the last good state has no tractions: if no other is found, its fields are
-   !! those on the mesh before.
-   subroutine remesh_and_keep(self, centres, timers, error)
-      class(twolevel_simulation_t), intent(inout) :: self
-      real(rk), intent(in) :: centres(:, :)  !< (2, n) where the network changes [m]
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-
-      if (self%is_stepping .and. .not. allocated(self%good)) call self%snapshot(self%good)
-      call remesh_coarse(self, centres, timers, error)
-   end subroutine remesh_and_keep
 
    !> Fields of the last good state, unless there is none or the coarse mesh is ahead of it.
    subroutine snapshot(self, fields)
       class(twolevel_simulation_t), intent(in) :: self
       type(snapshot_t), allocatable, intent(out) :: fields
 
-      if (allocated(self%good)) fields = self%good
-      if (.not. allocated(self%state%tractions) .or. allocated(fields)) return
-      if (size(self%state%unknowns, 2) /= self%model%regions%n_blocks) return
-      fields = snapshot_of_levels(self)
+      if (allocated(self%now%coarse%tractions)) then
+         fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
+      end if
    end subroutine snapshot
 
    !> The time of the present state [s].
    pure real(rk) function time(self)
       class(twolevel_simulation_t), intent(in) :: self
 
-      time = self%state%time
+      time = self%now%coarse%time
    end function time
 
 end module twolevel_simulation

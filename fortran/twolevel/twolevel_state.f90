@@ -1,40 +1,36 @@
-!> Both levels of a scene with a fluid at one time: network, coarse mesh, model and state, windows
-!! around the tips, and the bookkeeping of fluid.
+!> Both levels of a scene with a fluid at one time: their state, and beside it coarse mesh, model
+!! and windows; where a step begins, and where its tries are taken back.
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use base_tolerances, only: same_place
-   use coarse_model, only: new_state, rest_fluid
-   use coarse_nodes, only: nodal_fields
-   use coarse_own_pressure, only: own_pressure
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use growth_front, only: growth_rules_t, prepared_t
-   use growth_network, only: network_of_scene
-   use growth_rivals, only: company_t, rivals_t
-   use growth_segment, only: segment_t
-   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t, remesh, transfer_mesher
+   use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use mesh_geometry, only: cell_area
-   use mesh_types, only: mesh_map_t, mesh_t, network_t
-   use report_scene, only: follow_outlines, law_of_fracture, shape_body
+   use coarse_in_situ, only: in_situ_state_t
+   use coarse_model, only: new_state, rest_fluid
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use growth_front, only: growth_rules_t
+   use growth_network, only: network_of_scene
+   use mesh_builder, only: build_mesh, mesh_spec_t, remesh
+   use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
-   use twolevel_certainty, only: certainty_t
-   use twolevel_fed, only: fed_level_t
+   use report_scene, only: follow_outlines, law_of_fracture, shape_body
+   use report_simulation, only: simulation_t
    use twolevel_handover, only: hand_over
+   use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
+   use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
-   use twolevel_trend, only: trend_t
-   use twolevel_unsolved, only: why_unsolved
    use twolevel_wells, only: rate, share_wells, transfer_shares
-   use twolevel_window, only: coarse_values_t
+   use twolevel_unsolved, only: why_unsolved
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
-   public :: coarse_spec, remesh_coarse, two_levels_t
+   public :: coarse_spec, two_levels_t
 
    real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
 
@@ -46,40 +42,30 @@ module twolevel_state
    !! cells: no mesh of good shape fits between.
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
-   !> Both levels; `network` is that of the fine one, which is ahead of the coarse one.
-   type, abstract, extends(fed_level_t) :: two_levels_t
-      type(network_t) :: coarse_network
-      type(state_t) :: before  !< the step that led there, on the same mesh
-      type(trend_t) :: trend  !< rates of the last accepted step
+   !> Both levels; `network` is that of the fine one, which is ahead of the coarse one. A step
+   !! changes tips, network and `now`; a try of it is taken back by `put_back` and nowhere else.
+   type, abstract, extends(simulation_t) :: two_levels_t
+      type(levels_state_t) :: now
+      type(checkpoint_t) :: last  !< what a step begins from
+      type(state_t) :: before  !< the coarse part of that, on the present mesh
+      ! Beside the state
+      type(coarse_problem_t), allocatable :: problem
+      type(coarse_problem_t), allocatable :: kept_problem  !< of `last`, where a try has a new mesh
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, against which these are held
       integer(ik) :: reference_most = 800  !< coarse fracture cells up to which they are
-      !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
-      logical, allocatable :: asked(:)
-      type(coarse_values_t) :: coarse_values
-      logical :: values_are_current = .false.
-      logical :: undrained = .false.  !< the state is the undrained response to the load
-      integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
-      type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
-      type(prepared_t), allocatable :: prepared(:)  !< (tips) pieces that the coarse mesh has
-      type(rivals_t) :: rivals  !< how the tips act on each other
-      type(company_t) :: company  !< which of them grow as one
-      type(certainty_t) :: certainty  !< how well lengths and pressures are known
-      logical :: has_new_mesh = .false.  !< since the last accepted state
-      real(rk) :: injected = 0.0_rk  !< so far, less what was produced [m2]
-      real(rk) :: produced = 0.0_rk  !< that wells have drawn so far [m2]
-      real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock so far [m2]
-      real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary so far [m2]
-      real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells so far [m2]
    contains
       procedure :: mesh_levels
+      procedure :: begin_step
+      procedure :: remember
+      procedure :: put_back
+      procedure :: present_state
       procedure :: follow_trend
       procedure :: equilibrate
       procedure :: try_step
       procedure :: step_error
       procedure :: errs
       procedure :: book_step
-      procedure :: update_values
       procedure :: evaluate
       procedure :: has_reference
       procedure :: grow_coarse
@@ -99,35 +85,98 @@ contains
       call follow_sides(self%scene, 0.0_rk, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
-      self%coarse_network = self%start
+      self%now%coarse_network = self%start
       self%rules = rules_of_scene(scene)
-      call timers%start(phase_mesh)
-      call build_mesh(coarse_spec(scene), self%coarse_network, self%mesher, self%mesh, error)
-      call timers%stop(phase_mesh)
-      if (allocated(error)) return
-      call first_cells(self)
-      call share_wells(self%scene%injections, self%mesh%fracture, self%share)
-      call self%model%set_mesh(self%mesh, self%scene, timers, error)
-      if (allocated(error)) return
-      call self%feed_wells(error)
-      if (allocated(error)) return
-      call rest_joints(self)
-      call new_state(self%mesh, self%model%cells, scene%initial, self%model, self%state)
-      call self%rest_wells()
-      call self%find_tips(self%mesh%fracture)
+      allocate (self%problem)
+      associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
+         call timers%start(phase_mesh)
+         call build_mesh(coarse_spec(scene), now%coarse_network, problem%mesher, mesh, error)
+         call timers%stop(phase_mesh)
+         if (allocated(error)) return
+         call first_cells(self%scene, mesh%fracture, problem%model%cells)
+         call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call problem%model%set_mesh(mesh, self%scene, timers, error)
+         if (allocated(error)) return
+         call problem%feed_wells(self%scene, error)
+         if (allocated(error)) return
+         if (allocated(problem%model%in_situ)) then
+            call rest_joints(problem%model%in_situ, mesh%fracture, problem%model%cells)
+         end if
+         call new_state(mesh, problem%model%cells, scene%initial, problem%model, now%coarse)
+         call rest_wells(self)
+         call self%find_tips(mesh%fracture)
+      end associate
       if (scene%growth%intensities) then
          ! The body beside windows has elements as large as the coarse cells: at the tips, where it
          ! matters, they are those of the windows.
-         associate (fine => scene%discretization, is_body => scene%discretization%window_is_body)
-            call self%windows%begin(self%tip, is_body, merge(1.0_rk, 1.0_rk/fine%fine_ratio, &
-                                                             is_body))
-            if (.not. is_body) call self%reference%begin(self%tip, .true., 1.0_rk/fine%fine_ratio)
+         associate (coarser => 1.0_rk/scene%discretization%fine_ratio, &
+                    is_body => scene%discretization%window_is_body)
+            call self%windows%begin(self%tip, is_body, merge(1.0_rk, coarser, is_body), &
+                                    self%now%windows)
+            if (.not. is_body) call self%reference%begin(self%tip, .true., coarser, &
+                                                         self%now%reference)
          end associate
       end if
-      allocate (self%grown(0), self%segment(size(self%tip)), self%prepared(size(self%tip)))
-      call self%rivals%begin(size(self%tip))
+      allocate (self%now%grown(0), self%now%segment(size(self%tip)))
+      call self%now%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
+
+   !> A step is tried from now on: contact in the windows is accepted as it was evaluated last.
+   subroutine begin_step(self)
+      class(two_levels_t), intent(inout) :: self
+
+      call self%now%windows%accept()
+      call self%now%reference%accept()
+      call self%remember()
+   end subroutine begin_step
+
+   !> The present state is the one that tries begin from, and go back to.
+   subroutine remember(self)
+      class(two_levels_t), intent(inout) :: self
+
+      self%last = self%present_state()
+      self%before = self%now%coarse
+      call discard(self%kept_problem)
+      call self%windows%begin_step()
+      call self%reference%begin_step()
+   end subroutine remember
+
+   !> A try is rejected: the state that it began from is the present one again, to the last bit.
+   subroutine put_back(self)
+      class(two_levels_t), intent(inout) :: self
+
+      self%front_state_t = self%last%front
+      self%now = self%last%levels
+      self%before = self%now%coarse
+      call self%windows%put_back()
+      call self%reference%put_back()
+      if (.not. allocated(self%kept_problem)) return
+      call discard(self%problem)
+      call move_alloc(self%kept_problem, self%problem)
+      call self%windows%coarse_changed()
+      call self%reference%coarse_changed()
+   end subroutine put_back
+
+   !> All that a step changes.
+   function present_state(self) result(state)
+      class(two_levels_t), intent(in) :: self
+      type(checkpoint_t) :: state
+
+      state%front = self%front_state_t
+      state%levels = self%now
+   end function present_state
+
+   !> Nothing flows in wells.
+   subroutine rest_wells(self)
+      class(two_levels_t), intent(inout) :: self
+
+      associate (n => int(self%problem%model%wells%n_all))
+         self%now%at_limit = spread(.false., 1, n)
+         self%now%given = spread(0.0_rk, 1, n)
+      end associate
+      call self%problem%rest_wells(self%now%coarse)
+   end subroutine rest_wells
 
    !> Rates are known from now on: none at rest, else those of the next step.
    subroutine follow_trend(self, at_rest)
@@ -140,8 +189,8 @@ contains
       do i = 1, size(self%scene%fractures)
          length = length + self%scene%fractures(i)%length()
       end do
-      call self%trend%begin(self%state, at_rest, pressure_scale(self%scene), &
-                            self%scene%material%young, length)
+      call self%now%trend%begin(self%now%coarse, at_rest, pressure_scale(self%scene), &
+                                self%scene%material%young, length)
    end subroutine follow_trend
 
    !> How tips grow: they join what lies ahead of them, by the law of advances at once, as they come
@@ -177,43 +226,42 @@ contains
    end function coarse_spec
 
    !> Law and residual aperture of the scene's fracture cells.
-   pure subroutine first_cells(self)
-      class(two_levels_t), intent(inout) :: self
+   pure subroutine first_cells(scene, fracture, cells)
+      type(scene_t), intent(in) :: scene
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(fracture_cells_t), intent(inout) :: cells
       integer(ik) :: i
 
-      associate (fracture => self%mesh%fracture, cells => self%model%cells)
-         allocate (cells%law(fracture%n_cells), cells%residual_aperture(fracture%n_cells))
-         allocate (cells%injection(fracture%n_cells), cells%roughness(fracture%n_cells), &
-                   source=0.0_rk)
-         do i = 1, fracture%n_cells
-            associate (given => self%scene%fractures(fracture%cell_fracture(i)))
-               cells%law(i) = law_of_fracture(given)
-               cells%residual_aperture(i) = given%aperture
-            end associate
-         end do
-         if (any(self%scene%fractures%skin > 0.0_rk)) then
-            cells%skin = self%scene%fractures(fracture%cell_fracture)%skin
-         end if
+      associate (n => fracture%n_cells)
+         allocate (cells%law(n), cells%residual_aperture(n))
+         allocate (cells%injection(n), cells%roughness(n), source=0.0_rk)
       end associate
+      do i = 1, fracture%n_cells
+         associate (given => scene%fractures(fracture%cell_fracture(i)))
+            cells%law(i) = law_of_fracture(given)
+            cells%residual_aperture(i) = given%aperture
+         end associate
+      end do
+      if (any(scene%fractures%skin > 0.0_rk)) then
+         cells%skin = scene%fractures(fracture%cell_fracture)%skin
+      end if
    end subroutine first_cells
 
    !> Joints fit each other under the stress in situ: what it closes them by is no jump.
-   pure subroutine rest_joints(self)
-      class(two_levels_t), intent(inout) :: self
-      real(rk) :: closed, pressure, slope
+   pure subroutine rest_joints(in_situ, fracture, cells)
+      type(in_situ_state_t), intent(in) :: in_situ
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(fracture_cells_t), intent(inout) :: cells
+      real(rk) :: closed, slope
       integer(ik) :: i
 
-      if (.not. allocated(self%model%in_situ)) return
-      if (.not. self%model%in_situ%is_held) return
-      associate (cells => self%model%cells)
-         do i = 1, self%mesh%fracture%n_cells
-            if (.not. cells%law(i)%compliance > 0.0_rk) cycle
-            pressure = self%model%in_situ%contact_pressure(self%mesh%fracture, i)
-            call cells%law(i)%closure(pressure, closed, slope)
-            cells%law(i)%closure_at_rest = closed
-            cells%residual_aperture(i) = cells%residual_aperture(i) - closed
-         end do
-      end associate
+      if (.not. in_situ%is_held) return
+      do i = 1, fracture%n_cells
+         if (.not. cells%law(i)%compliance > 0.0_rk) cycle
+         call cells%law(i)%closure(in_situ%contact_pressure(fracture, i), closed, slope)
+         cells%law(i)%closure_at_rest = closed
+         cells%residual_aperture(i) = cells%residual_aperture(i) - closed
+      end do
    end subroutine rest_joints
 
    !> Undrained response to the load with fractures in equilibrium with the rock (model.md section
@@ -224,12 +272,12 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      self%values_are_current = .false.
-      self%undrained = .true.
-     call self%model%equilibrate(self%mesh, undrained_share*self%scene%time%longest(), self%state, &
-                                  timers, report, error)
+      self%now%undrained = .true.
+      call self%problem%model%equilibrate(self%problem%mesh, &
+                                          undrained_share*self%scene%time%longest(), &
+                                          self%now%coarse, timers, report, error)
       if (.not. allocated(error)) call explain(self, 0.0_rk, report)
-      call self%rest_wells()
+      call rest_wells(self)
    end subroutine equilibrate
 
    !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
@@ -240,17 +288,10 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      if (any(self%model%sides%changes())) then
-         call follow_sides(self%scene, self%state%time + dt, self%state%time)
-         call self%model%change_sides(self%mesh, self%scene, timers, error)
-         if (allocated(error)) return
-      end if
-      call self%ask(dt)
-      call self%model%advance(self%mesh, dt, self%state, timers, report, error)
-      if (.not. allocated(error)) call explain(self, dt, report)
-      if (allocated(error) .or. .not. report%converged) return
-      self%values_are_current = .false.
-      self%undrained = .false.
+      call self%problem%advance(self%scene, dt, self%now%coarse, timers, report, error)
+      if (allocated(error)) return
+      call explain(self, dt, report)
+      if (report%converged) self%now%undrained = .false.
    end subroutine try_step
 
    !> Put the reason why a step is not solved in the words of the scene.
@@ -261,8 +302,9 @@ contains
 
       if (report%converged) return
       associate (wells => self%scene%injections)
-         report%reason = why_unsolved(report, self%coarse_network, self%mesh%fracture, wells, &
-                                      self%share, rate(wells, self%state%time, dt))
+         report%reason = why_unsolved(report, self%now%coarse_network, &
+                                      self%problem%mesh%fracture, wells, self%problem%share, &
+                                      rate(wells, self%now%coarse%time, dt))
       end associate
    end subroutine explain
 
@@ -271,17 +313,20 @@ contains
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
       real(rk) :: error
-      real(rk) :: area(self%mesh%n_cells)
+      real(rk) :: area(self%problem%mesh%n_cells)
       integer(ik) :: c
 
-      do c = 1, self%mesh%n_cells
-         area(c) = cell_area(self%mesh, c)
-      end do
-      error = self%trend%step_error(self%before, self%state, dt, area, self%model%condensed%length)
-      if (self%model%wells%n_all > 0 .and. self%trend%is_known()) then
-         error = max(error, self%trend%volume_error(self%before%well_flow, self%state%well_flow, &
-                                                    self%given, dt, least_volume(self, dt)))
-      end if
+      associate (trend => self%now%trend, model => self%problem%model)
+         do c = 1, self%problem%mesh%n_cells
+            area(c) = cell_area(self%problem%mesh, c)
+         end do
+         error = trend%step_error(self%before, self%now%coarse, dt, area, model%condensed%length)
+         if (model%wells%n_all > 0 .and. trend%is_known()) then
+            error = max(error, trend%volume_error(self%before%well_flow, &
+                                                  self%now%coarse%well_flow, self%now%given, dt, &
+                                                  least_volume(self, dt)))
+         end if
+      end associate
    end function step_error
 
    !> What a well has given is taken for at least this, when its error in a step of length dt is
@@ -293,12 +338,12 @@ contains
       real(rk), parameter :: share = 0.01_rk, trace = 1.0e-10_rk
       real(rk) :: fluid, most
 
-      associate (state => self%state, wells => self%scene%injections, since => &
+      associate (state => self%now%coarse, model => self%problem%model, since => &
                  self%before%time + dt - last_switch(self%scene, self%before%time))
-         most = maxval([self%given + dt*abs(state%well_flow), &
-                        since*abs(rate(wells, self%before%time, dt))])
-         fluid = sum(self%model%condensed%length*state%aperture) &
-                 + self%trend%least_pressure*sum(self%model%matrix%storage)
+         most = maxval([self%now%given + dt*abs(state%well_flow), &
+                        since*abs(rate(self%scene%injections, self%before%time, dt))])
+         fluid = sum(model%condensed%length*state%aperture) &
+                 + self%now%trend%least_pressure*sum(model%matrix%storage)
       end associate
       least = max(share*most, trace*fluid)
    end function least_volume
@@ -319,41 +364,21 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       real(rk) :: flow(size(self%scene%injections))
 
-      ! Not what the model has as its sources: that is from its last try.
-      flow = rate(self%scene%injections, self%before%time, dt)
-      if (self%model%wells%n_all > 0) then
-         flow(self%model%wells%number) = self%state%well_flow
-         self%given = self%given + dt*abs(self%state%well_flow)
-      end if
-      self%injected = self%injected + dt*sum(flow)
-      self%produced = self%produced - dt*sum(min(flow, 0.0_rk))
-      if (self%mesh%fracture%n_cells > 0) then
-         self%leaked = self%leaked + dt*sum(self%state%leakoff*self%model%condensed%length)
-         if (self%model%joints%n > 0) then
-            self%outflow = self%outflow + dt*self%model%joints%outflow(self%state%branch_flow)
+      associate (fluid => self%now%fluid, state => self%now%coarse, model => self%problem%model)
+         ! Not what the model has as its sources: that is from its last try.
+         flow = rate(self%scene%injections, self%before%time, dt)
+         if (model%wells%n_all > 0) then
+            flow(model%wells%number) = state%well_flow
+            self%now%given = self%now%given + dt*abs(state%well_flow)
          end if
-      end if
-   end subroutine book_step
-
-   !> Coarse values at the mesh's nodes, for windows and probes.
-   subroutine update_values(self)
-      class(two_levels_t), intent(inout) :: self
-
-      if (self%values_are_current) return
-      associate (values => self%coarse_values, model => self%model, state => self%state, &
-                 n => self%mesh%n_nodes)
-         if (allocated(values%nodal)) deallocate (values%nodal, values%displacement, &
-                                                  values%gradient)
-         allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
-         call nodal_fields(self%mesh, model%rock, model%regions, state%unknowns, state%tractions, &
-                           values%nodal, values%displacement, values%gradient)
-         values%nodal(3, :) = own_pressure(self%mesh, state%unknowns(3, :self%mesh%n_cells), &
-                                           values%nodal(3, :), state%pressure)
-         values%law = model%cells%law
-         values%is_grown = model%cells%roughness > 0.0_rk
+         fluid%injected = fluid%injected + dt*sum(flow)
+         fluid%produced = fluid%produced - dt*sum(min(flow, 0.0_rk))
+         if (self%problem%mesh%fracture%n_cells == 0) return
+         fluid%leaked = fluid%leaked + dt*sum(state%leakoff*model%condensed%length)
+         if (model%joints%n == 0) return
+         fluid%outflow = fluid%outflow + dt*model%joints%outflow(state%branch_flow)
       end associate
-      self%values_are_current = .true.
-   end subroutine update_values
+   end subroutine book_step
 
    !> Stress intensity factors of the tips asked for, in windows on the present network.
    subroutine evaluate(self, timers, error)
@@ -365,14 +390,16 @@ contains
       call timers%heed(error)
       if (allocated(error)) return
       asked = .true.
-      if (allocated(self%asked)) asked = self%asked
-      call follow_sides(self%scene, self%state%time, self%state%time)
-      call timers%start(phase_tips)
-      call self%update_values()
-      self%windows%window%is_beside_body = self%has_reference()
-      call self%windows%evaluate(self%scene, self%network, self%tip, asked, self%mesher, &
-                                 self%mesh, self%coarse_values, self%state, self%undrained, error)
-      call timers%stop(phase_tips)
+      if (allocated(self%now%asked)) asked = self%now%asked
+      associate (now => self%now)
+         call follow_sides(self%scene, now%coarse%time, now%coarse%time)
+         call timers%start(phase_tips)
+         call self%problem%find_values(now%coarse)
+         call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
+                                    self%has_reference(), self%problem, now%coarse, &
+                                    now%undrained, now%windows, error)
+         call timers%stop(phase_tips)
+      end associate
    end subroutine evaluate
 
    !> The windows are held against the whole body as one window.
@@ -380,7 +407,7 @@ contains
       class(two_levels_t), intent(in) :: self
 
       has_reference = .not. self%scene%discretization%window_is_body .and. &
-                      self%mesh%fracture%n_cells <= self%reference_most
+                      self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 
    !> Let the coarse level follow what the tips have grown, if that has reached its threshold, or if
@@ -396,7 +423,7 @@ contains
 
       threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
       if (any(self%has_gained())) threshold = same_place*self%rules%increment
-      call hand_over(threshold, self%network, self%tip, self%coarse_network, centres, &
+      call hand_over(threshold, self%network, self%tip, self%now%coarse_network, centres, &
                      is_straightened)
       grew = size(centres, 2) > 0
       if (.not. grew) return
@@ -405,6 +432,7 @@ contains
          call self%reference%network_changed()
       end if
       call self%remesh_coarse(centres, timers, error)
+      call discard(self%kept_problem)
    end subroutine grow_coarse
 
    !> A mesh of the coarse network, new around the places where that has grown; the state goes
@@ -414,60 +442,62 @@ contains
       real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(mesher_t) :: mesher
-      type(mesh_t) :: mesh
+      type(coarse_problem_t), allocatable :: problem
       type(mesh_map_t) :: map
 
       call timers%heed(error)
       if (allocated(error)) return
+      allocate (problem)
       associate (size_fracture => self%scene%discretization%size_fracture)
          call timers%start(phase_remesh)
-         call remesh(self%mesher, self%coarse_network, centres, &
+         call remesh(self%problem%mesher, self%now%coarse_network, centres, &
                      max(5.0_rk*self%rules%increment, 3.0_rk*size_fracture), size_fracture, &
-                     mesher, mesh, map, error)
+                     problem%mesher, problem%mesh, map, error)
          call timers%stop(phase_remesh)
       end associate
       if (allocated(error)) return
       call timers%start(phase_transfer)
-      call transfer_mesher(mesher, self%mesher)
-      call transfer_levels(self, mesh, map)
+      call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
-      call self%model%set_mesh(self%mesh, self%scene, timers, error)
+      if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
+      call discard(self%problem)
+      call move_alloc(problem, self%problem)
+      call self%windows%coarse_changed()
+      call self%reference%coarse_changed()
+      call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
       if (allocated(error)) return
-      call self%feed_wells(error)
+      call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
-      call rest_fluid(self%model, self%state)
+      call rest_fluid(self%problem%model, self%now%coarse)
+      self%now%has_new_mesh = .true.
    end subroutine remesh_coarse
 
-   !> Carry cells, state and wells over to a new coarse mesh.
-   subroutine transfer_levels(self, mesh, map)
-      class(two_levels_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh  !< the new one
+   !> Carry cells, wells and state over to a new coarse mesh.
+   subroutine transfer_levels(scene, old, map, new, now)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: old
       type(mesh_map_t), intent(in) :: map
+      type(coarse_problem_t), intent(inout) :: new
+      type(levels_state_t), intent(inout) :: now
       type(state_t) :: state
-      type(fracture_cells_t) :: cells
       type(overlaps_t) :: overlaps
       real(rk) :: prefilled
       integer(ik) :: i
       logical :: is_prefilled
 
-      is_prefilled = self%scene%growth%new_volume == "prefilled"
-      call transfer_cells(self%mesh, mesh, self%model%cells, self%scene%growth%new_aperture, &
-                          is_prefilled, cells)
-      call transfer_state(map, self%mesh, mesh, cells, is_prefilled, self%state, state, prefilled)
-      self%share = transfer_shares(self%scene%injections, self%mesh%fracture, mesh%fracture, &
-                                   self%share)
-      overlaps = fracture_overlaps(self%mesh%fracture, mesh%fracture)
-      self%grown = pack([(i, i=1, mesh%fracture%n_cells)], &
-                        overlaps%is_new([(i, i=1, mesh%fracture%n_cells)]))
-      self%mesh = mesh
-      self%model%cells = cells
-      self%state = state
-      call self%trend%transfer(map)
-      self%prefilled = self%prefilled + prefilled
-      self%values_are_current = .false.
-      call self%windows%coarse_changed()
-      call self%reference%coarse_changed()
+      is_prefilled = scene%growth%new_volume == "prefilled"
+      call transfer_cells(old%mesh, new%mesh, old%model%cells, scene%growth%new_aperture, &
+                          is_prefilled, new%model%cells)
+      call transfer_state(map, old%mesh, new%mesh, new%model%cells, is_prefilled, now%coarse, &
+                          state, prefilled)
+      associate (before => old%mesh%fracture, after => new%mesh%fracture)
+         new%share = transfer_shares(scene%injections, before, after, old%share)
+         overlaps = fracture_overlaps(before, after)
+         now%grown = pack([(i, i=1, after%n_cells)], overlaps%is_new([(i, i=1, after%n_cells)]))
+      end associate
+      now%coarse = state
+      call now%trend%transfer(map)
+      now%fluid%prefilled = now%fluid%prefilled + prefilled
    end subroutine transfer_levels
 
 end module twolevel_state

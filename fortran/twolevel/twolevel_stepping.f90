@@ -22,13 +22,13 @@
 !! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
 !! until the pressure at the new tips has settled.
 module twolevel_stepping
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
    use scene_types, only: time_t
    implicit none(type, external)
    private
 
-   public :: stepper_t, trial_t
+   public :: improve_by_body, improve_edge, improve_elements, improvement_t, stepper_t, trial_t
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
@@ -39,6 +39,17 @@ module twolevel_stepping
    !> Share of a segment that a tip goes along in a step at most.
    real(rk), parameter :: most = 0.75_rk
 
+   ! What makes a window better.
+   integer, parameter :: improve_elements = 1  !< smaller ones
+   integer, parameter :: improve_edge = 2  !< one farther away
+   integer, parameter :: improve_by_body = 3  !< no edge
+
+   !> A better window for a tip.
+   type :: improvement_t
+      integer(ik) :: tip = 0
+      integer :: kind = improve_elements
+   end type improvement_t
+
    !> What a tried step has shown.
    type :: trial_t
       logical :: converged = .false.  !< its equations are solved
@@ -46,7 +57,6 @@ module twolevel_stepping
       logical :: jumps = .false.  !< they do, and may
       logical :: was_beyond = .false.  !< one of these was, of its toughness, before it
       logical :: has_joined = .false.  !< a tip has joined something in it
-      logical :: needs_windows = .false.  !< better ones, which are there now: to be tried again
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
       logical :: gains_all = .false.  !< it comes not to a joint, but as far as growth is wanted
@@ -56,7 +66,10 @@ module twolevel_stepping
       real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
       real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
       character(len=:), allocatable :: reason  !< why the equations were not solved
+      !> Better windows that it needs, to be tried again then; unallocated or none: it does not
+      type(improvement_t), allocatable :: improvements(:)
    contains
+      procedure :: needs_windows
       procedure :: why_cut
    end type trial_t
 
@@ -278,6 +291,14 @@ contains
       self%next = self%after_growth
       if (allocated(self%pressure)) deallocate (self%pressure)
    end subroutine network_grew
+
+   !> Better windows are needed, to try the step again.
+   pure logical function needs_windows(self)
+      class(trial_t), intent(in) :: self
+
+      needs_windows = allocated(self%improvements)
+      if (needs_windows) needs_windows = size(self%improvements) > 0
+   end function needs_windows
 
    !> Why a step was not taken.
    pure function why_cut(self) result(words)

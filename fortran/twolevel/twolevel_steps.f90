@@ -6,15 +6,17 @@ module twolevel_steps
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_state, only: guess_t, step_report_t
-   use report_limits, only: limit_time_error
+   use coarse_state, only: step_report_t
    use report_rows, only: event_step_cut, event_unstable
+   use report_limits, only: limit_time_error
+   use twolevel_doubt, only: improve_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_notes, only: notes_t
-   use twolevel_schedule, only: last_switch, next_switch
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_stepping, only: improvement_t, stepper_t, trial_t
+   use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_limits, only: note_wells, share_before_switch
+   use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
    private
 
@@ -45,9 +47,10 @@ contains
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step, cut as often as it takes. Where tips find no equilibrium in a step that is
-   !! short beside the time since the wells were switched, or in the shortest one, in which errors
-   !! in time are not judged either, growth is unstable: nothing but that happens, until it arrests.
+   !> One accepted step from the remembered state, cut as often as it takes. Where tips find no
+   !! equilibrium in a step that is short beside the time since the wells were switched, or in the
+   !! shortest one, in which errors in time are not judged either, growth is unstable: nothing but
+   !! that happens, until it arrests.
    subroutine take_step(self, timers, error)
       class(stepping_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -61,11 +64,9 @@ contains
                           brief_text(self%dt, 4)//" s or so, the last because "//self%why_cut)
          return
       end if
-      if (self%scene%growth%intensities) then
-         call self%windows%accept()
-         call self%reference%accept()
-      end if
-      self%dt = self%stepper%step_to(next_switch(self%scene, self%state%time) - self%state%time)
+      associate (time => self%now%coarse%time)
+         self%dt = self%stepper%step_to(next_switch(self%scene, time) - time)
+      end associate
       wanted = self%dt
       self%is_after_switch = self%ends_at_switch
       is_too_short = .false.
@@ -75,20 +76,25 @@ contains
       do
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
-         if (trial%needs_windows) cycle
+         if (trial%needs_windows()) then
+            call try_better_windows(self, trial%improvements, timers, error)
+            if (allocated(error)) return
+            cycle
+         end if
          if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
          if (is_last .or. (is_too_short .and. .not. trial%converged)) then
             call raise_error(error, "", trial%why_cut()//", even with a time step of " &
                              //brief_text(self%dt, 4)//" s"//way_out(trial))
             return
          end if
+         call self%put_back()
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
          may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
       end do
       is_unstable = is_unstable .or. trial%jumps
-      if (self%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
+      if (self%now%trend%is_known() .and. .not. (self%is_after_switch .or. is_unstable)) then
          call self%watch%see(limit_time_error, trial%time_error, self%last_state())
       end if
       call accept_step(self, trial, is_unstable)
@@ -109,7 +115,9 @@ contains
    pure logical function is_moment(self)
       class(stepping_levels_t), intent(in) :: self
 
-      is_moment = self%dt <= punctual*(self%state%time - last_switch(self%scene, self%state%time))
+      associate (time => self%before%time)
+         is_moment = self%dt <= punctual*(time - last_switch(self%scene, time))
+      end associate
    end function is_moment
 
    !> The equations are solved and tips in equilibrium, whatever the error in time.
@@ -119,6 +127,24 @@ contains
       solves = trial%converged .and. .not. trial%goes_too_far
    end function solves
 
+   !> Windows become better ones in the state that the step begins from. Onsets are looked for from
+   !! what tips have there, and errors known from there; before the first step it has no tractions.
+   subroutine try_better_windows(self, improvements, timers, error)
+      class(stepping_levels_t), intent(inout) :: self
+      type(improvement_t), intent(in) :: improvements(:)
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%put_back()
+      call improve_windows(self, improvements)
+      if (allocated(self%now%coarse%tractions)) then
+         call self%evaluate(timers, error)
+         if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+         if (allocated(error)) return
+      end if
+      call self%remember()
+   end subroutine try_better_windows
+
    !> Try a step of the present length. The last try is taken if its equations are solved.
    subroutine try_length(self, is_last, may_jump, trial, timers, error)
       class(stepping_levels_t), intent(inout) :: self
@@ -126,33 +152,22 @@ contains
       type(trial_t), intent(out) :: trial
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(guess_t) :: guess
 
       if (self%is_equilibrium()) then
          call find_equilibrium(self, self%dt, is_last, may_jump, timers, self%report, trial, &
                                error)
-      else
-         self%before = self%state
-         guess = self%model%guess
-         call self%try_step(self%dt, timers, self%report, error)
-         if (allocated(error)) return
-         trial%converged = self%report%converged
-         if (trial%converged) then
-            trial%time_error = self%step_error(self%dt)
-            if (.not. is_last) then
-               call share_before_switch(self, self%dt, punctual, trial%switch, timers, error)
-               if (allocated(error)) then
-                  self%state = self%before
-                  return
-               end if
-               if (self%errs(trial%time_error) .or. trial%switch < 1.0_rk) then
-                  self%state = self%before
-                  self%model%guess = guess
-               end if
-            end if
-         else
-            trial%reason = self%report%reason
-         end if
+         return
+      end if
+      call self%try_step(self%dt, timers, self%report, error)
+      if (allocated(error)) return
+      trial%converged = self%report%converged
+      if (.not. trial%converged) then
+         trial%reason = self%report%reason
+         return
+      end if
+      trial%time_error = self%step_error(self%dt)
+      if (.not. is_last) then
+         call share_before_switch(self, self%dt, punctual, trial%switch, timers, error)
       end if
    end subroutine try_length
 
@@ -166,7 +181,7 @@ contains
       self%why_cut = trial%why_cut()
       self%summary%step_cuts = self%summary%step_cuts + 1
       self%summary%newton_total = self%summary%newton_total + self%report%iterations
-      call self%chronicle%add_event(self%state%time, event_step_cut, "step cut to " &
+      call self%chronicle%add_event(self%now%coarse%time, event_step_cut, "step cut to " &
                                     //brief_text(self%dt, 4)//" s: "//self%why_cut)
    end subroutine cut_step
 
@@ -178,21 +193,22 @@ contains
 
       call note_wells(self, self%dt, self%ends_at_switch)
       self%ends_at_switch = self%ends_at_switch .or. next_switch(self%scene, self%before%time) &
-                            <= self%state%time*(1.0_rk + same_time)
+                            <= self%now%coarse%time*(1.0_rk + same_time)
       call self%book_step(self%dt)
       self%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (self%is_equilibrium()) then
          ! Nor does the speed of tips in a step in which cracks join, or without equilibrium.
          call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
-         call self%notes%note_competition(self)
+         call self%notes%note_competition(self%tip, self%now%rivals, self%rules%increment, &
+                                          self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%dt)
-      call self%trend%accept(self%before, self%state, self%dt)
+      call self%now%trend%accept(self%before, self%now%coarse, self%dt)
       ! The rates of a step in which cracks have joined mean nothing for the next.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)
       if (.not. is_unstable) return
-      call self%chronicle%add_event(self%state%time, event_unstable, "unstable growth of " &
+      call self%chronicle%add_event(self%now%coarse%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
       ! The rates of such a step mean nothing for the next.
       call self%follow_trend(at_rest=.false.)
@@ -203,7 +219,7 @@ contains
       class(stepping_levels_t), intent(in) :: self
       character(len=:), allocatable :: words
 
-      words = brief_text(self%state%time, 6)//" s"
+      words = brief_text(self%now%coarse%time, 6)//" s"
    end function last_state
 
 end module twolevel_steps

@@ -10,10 +10,12 @@
 !! around them at the start, as the injectivity index of a well has it; per metre of thickness.
 module twolevel_stimulation
    use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
    use growth_network, only: fracture_length, total_length
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: history_row_t
    use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
+   use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: end_at_tips, fracture_volume
    use twolevel_state, only: two_levels_t
    use twolevel_well_rows, only: well_flows
@@ -41,17 +43,18 @@ module twolevel_stimulation
 contains
 
    !> The present state is that before the injection.
-   subroutine begin(self, levels)
+   subroutine begin(self, problem, state)
       class(stimulation_t), intent(out) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
 
       call self%faces%clear()
-      self%fracture = levels%mesh%fracture
-      self%content = sum(levels%state%content)
+      self%fracture = problem%mesh%fracture
+      self%content = sum(state%content)
       if (self%fracture%n_cells == 0) return
-      self%jump = mean_jump(levels)
-      self%fracture_volume = fracture_volume(levels)
-      self%rock_pressure = pressure_around_wells(levels)
+      self%jump = mean_jump(state)
+      self%fracture_volume = fracture_volume(problem, state)
+      self%rock_pressure = pressure_around_wells(problem, state)
    end subroutine begin
 
    !> A step that has been accepted.
@@ -65,9 +68,9 @@ contains
 
       self%compressed = self%compressed + compressed
       self%rock_outflow = self%rock_outflow + rock_outflow
-      associate (fracture => levels%mesh%fracture)
+      associate (fracture => levels%problem%mesh%fracture)
          if (fracture%n_cells == 0) return
-         jump = mean_jump(levels)
+         jump = mean_jump(levels%now%coarse)
          do i = 1, fracture%n_cells
             associate (f => fracture%cell_fracture(i), s => fracture%cell_s(:, i))
                if (.not. has_moved(self, levels, f, s, jump(:, i))) cycle
@@ -110,13 +113,14 @@ contains
       real(rk) :: rise
       integer(ik) :: i
 
-      row%rock_fluid = sum(levels%state%content) - self%content
+      row%rock_fluid = sum(levels%now%coarse%content) - self%content
       row%rock_outflow = self%rock_outflow
-      row%injection_rate = sum(well_flows(levels))
-      fracture = levels%mesh%fracture
+      row%injection_rate = sum(well_flows(levels%scene, levels%problem, levels%before%time, &
+                                          levels%now%coarse))
+      fracture = levels%problem%mesh%fracture
       if (fracture%n_cells == 0) return
       row%fracture_fluid = row%fracture_volume - self%fracture_volume + self%compressed
-      call end_at_tips(levels, fracture)
+      call end_at_tips(levels%scene, levels%network, levels%tip, fracture)
       row%n_clusters = cluster_count(fracture)
       row%connections_per_branch = connections_per_branch(fracture)
       row%stimulated_length = self%faces%length() + total_length(levels%network) &
@@ -129,10 +133,10 @@ contains
       end if
       length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
       is_stimulated = [(counts(self, levels, fracture%cell_fracture(i), &
-                               0.5_rk*sum(levels%mesh%fracture%cell_s(:, i))), &
+                               0.5_rk*sum(levels%problem%mesh%fracture%cell_s(:, i))), &
                         i=1, fracture%n_cells)]
       allocate (all_pass(fracture%n_cells), source=.true.)
-      is_connected = reached_cells(fracture, fed_cells(levels, fracture), all_pass)
+      is_connected = reached_cells(fracture, fed_cells(levels%problem, fracture), all_pass)
       row%connected_length = sum(length, mask=is_connected)
       row%connected_stimulated = sum(length, mask=is_connected .and. is_stimulated)
    end subroutine describe
@@ -148,38 +152,39 @@ contains
    end function counts
 
    !> The cells that wells feed, or that reach joints that these feed.
-   pure function fed_cells(levels, fracture) result(is_fed)
-      class(two_levels_t), intent(in) :: levels
+   pure function fed_cells(problem, fracture) result(is_fed)
+      type(coarse_problem_t), intent(in) :: problem
       type(fracture_mesh_t), intent(in) :: fracture  !< cells end where tips are
       logical, allocatable :: is_fed(:)
       integer(ik) :: j
 
-      is_fed = sum(levels%share, dim=2) > 0.0_rk
-      do j = 1, levels%model%joints%n
-         if (.not. sum(levels%joint_share(j, :)) > 0.0_rk) cycle
-         is_fed(fracture%point_cells%of(levels%model%joints%point(j))) = .true.
+      is_fed = sum(problem%share, dim=2) > 0.0_rk
+      do j = 1, problem%model%joints%n
+         if (.not. sum(problem%joint_share(j, :)) > 0.0_rk) cycle
+         is_fed(fracture%point_cells%of(problem%model%joints%point(j))) = .true.
       end do
    end function fed_cells
 
    !> Mean jump of each cell: normal, tangential [m].
-   pure function mean_jump(levels) result(jump)
-      class(two_levels_t), intent(in) :: levels
-      real(rk) :: jump(2, levels%mesh%fracture%n_cells)
+   pure function mean_jump(state) result(jump)
+      type(state_t), intent(in) :: state
+      real(rk) :: jump(2, size(state%pressure))
 
-      jump = 0.5_rk*sum(levels%state%jump, dim=2)
+      jump = 0.5_rk*sum(state%jump, dim=2)
    end function mean_jump
 
    !> Mean pore pressure of the triangles along the fracture cells that wells feed [Pa].
-   pure real(rk) function pressure_around_wells(levels) result(pressure)
-      class(two_levels_t), intent(in) :: levels
-      logical :: is_fed(levels%mesh%fracture%n_cells)
-      real(rk) :: rock(levels%mesh%n_cells)  ! [Pa]
+   pure real(rk) function pressure_around_wells(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      logical :: is_fed(problem%mesh%fracture%n_cells)
+      real(rk) :: rock(problem%mesh%n_cells)  ! [Pa]
       integer(ik) :: i, side
 
       pressure = 0.0_rk
-      rock = levels%rock_pressure()
-      is_fed = fed_cells(levels, levels%mesh%fracture)
-      associate (mesh => levels%mesh)
+      rock = problem%rock_pressure(state)
+      associate (mesh => problem%mesh)
+         is_fed = fed_cells(problem, mesh%fracture)
          do i = 1, mesh%fracture%n_cells
             if (.not. is_fed(i)) cycle
             do side = 1, 2

@@ -46,7 +46,6 @@ contains
          end if
          old = overlaps%main(i)
          after%law(i) = before%law(old)
-         after%injection(i) = before%injection(old)
          if (allocated(before%skin)) after%skin(i) = before%skin(old)
          after%residual_aperture(i) = before%residual_aperture(old)
          after%roughness(i) = before%roughness(old)
@@ -97,6 +96,7 @@ contains
          end do
       end do
 
+      if (allocated(before%rock_well_control)) after%rock_well_control = before%rock_well_control
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
       allocate (after%slip_before(2, n), source=0.0_rk)
       if (allocated(before%slip_path)) then
@@ -105,7 +105,7 @@ contains
       end if
       allocate (after%contact(2, n), source=0_ik)
       allocate (after%pressure(n), after%aperture(n))
-      allocate (after%void(n), source=0.0_rk)
+      allocate (after%void(n), after%injection(n), source=0.0_rk)
       prefilled = 0.0_rk
       do i = 1, n
          if (overlaps%is_new(i)) then
@@ -131,6 +131,7 @@ contains
          after%aperture(i) = before%aperture(old)
          after%void(i) = before%void(old)
          after%leakoff(i) = before%leakoff(old)
+         after%injection(i) = before%injection(old)
          after%unknowns(:, end_block(mesh, i, both)) = &
             before%unknowns(:, end_block(mesh_before, old, both))
          if (.not. overlaps%is_whole(i, mesh_before%fracture, mesh%fracture)) then

@@ -72,7 +72,7 @@ contains
 
       if (self%scene%discretization%window_is_body) then
          do i = 1, size(self%tip, kind=ik)
-            associate (seen => self%windows%tip(i))
+            associate (seen => self%now%windows%tip(i))
                seen%of_elements = max(seen%found%k1_error, seen%found%k2_error)
             end associate
          end do
@@ -84,7 +84,8 @@ contains
       if (.not. allocated(error)) call compare_pressures(self, error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         if (self%tip(i)%is_free) self%tip(i)%intensity = self%windows%intensity_of(i)
+         if (.not. self%tip(i)%is_free) cycle
+         self%tip(i)%intensity = self%windows%intensity_of(i, self%now%windows%tip(i))
       end do
    end subroutine estimate
 
@@ -97,19 +98,21 @@ contains
 
       if (.not. is_due(self)) then
          do i = 1, size(tips, kind=ik)
-            if (self%tip(i)%is_free) call judge_as_before(self%windows%tip(i))
+            if (self%tip(i)%is_free) call judge_as_before(self%now%windows%tip(i))
          end do
          return
       end if
       tips = self%tip
-      call self%reference%evaluate(self%scene, self%network, tips, tips%is_free, self%mesher, &
-                                   self%mesh, self%coarse_values, self%state, self%undrained, &
-                                   error)
+      associate (now => self%now)
+         call self%reference%evaluate(self%scene, self%network, tips, tips%is_free, .false., &
+                                      self%problem, now%coarse, now%undrained, now%reference, &
+                                      error)
+      end associate
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
          if (.not. tips(i)%is_free) cycle
-         call judge_beside(self%reference%tip(i), self%windows%tip(i))
-         self%windows%tip(i)%compared_at = tips(i)%xy
+         call judge_beside(self%now%reference%tip(i), self%now%windows%tip(i))
+         self%now%windows%tip(i)%compared_at = tips(i)%xy
       end do
    end subroutine compare_with_body
 
@@ -122,7 +125,7 @@ contains
       is_due = .not. self%reference%has_to_mesh(self%tip)
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
-         associate (tip => self%windows%tip(i))
+         associate (tip => self%now%windows%tip(i))
             is_due = is_due .or. norm2(self%tip(i)%xy - tip%compared_at) > self%rules%increment &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
                      <= like_before*norm2(tip%compared)
@@ -161,32 +164,37 @@ contains
    subroutine compare_edges(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: displacement(2, self%mesh%n_nodes), gradient(2, 2, self%mesh%n_nodes)
-      real(rk) :: straight(2, 2, self%mesh%n_nodes)
+      real(rk) :: displacement(2, self%problem%mesh%n_nodes)
+      real(rk) :: gradient(2, 2, self%problem%mesh%n_nodes)
+      real(rk) :: straight(2, 2, self%problem%mesh%n_nodes)
       real(rk), dimension(2, size(self%tip)) :: better, worse
       integer(ik) :: i, w
 
-      call improve(self, displacement, gradient, error)
+      call improve(self%windows, self%tip, self%problem, self%now%coarse, displacement, gradient, &
+                   error)
       if (allocated(error)) return
       straight = 0.0_rk
-      associate (tips => self%windows%tip, scene => self%scene, mesh => self%mesh, &
-                 linear => self%coarse_values%nodal(:2, :))
-         do w = 1, size(self%windows%window, kind=ik)
+      associate (tips => self%now%windows%tip, scene => self%scene, mesh => self%problem%mesh, &
+                 linear => self%problem%values%nodal(:2, :))
+         do w = 1, size(self%windows%slot, kind=ik)
             if (.not. self%windows%is_asked(w, self%tip)) cycle
-            associate (window => self%windows%window(w))
-               call window%intensities_with(tips, better, error, &
+            associate (window => self%windows%slot(w)%window, &
+                       history => self%now%windows%history(w))
+               call window%intensities_with(history, better, error, &
                                             edge=window%curved_edge(mesh, displacement, &
                                                                     gradient))
                if (allocated(error)) return
-               call window%intensities_with(tips, worse, error, &
+               call window%intensities_with(history, worse, error, &
                                             edge=window%curved_edge(mesh, linear, straight))
                if (allocated(error)) return
             end associate
          end do
          do i = 1, size(tips, kind=ik)
             if (.not. self%tip(i)%is_free) cycle
-            call judge_edges(self, self%windows%window(self%windows%window_of(i)), better(:, i), &
-                             worse(:, i), tips(i))
+            associate (w => self%windows%window_of(i))
+               call judge_edges(self, self%windows%slot(w)%window, better(:, i), worse(:, i), &
+                                tips(i))
+            end associate
          end do
       end associate
    end subroutine compare_edges
@@ -216,27 +224,28 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: rough(2, size(self%tip))
-      type(failure_t) :: failure(size(self%windows%window))
+      type(failure_t) :: failure(size(self%windows%slot))
       integer(ik) :: i, w
 
-      if (self%undrained) then
+      if (self%now%undrained) then
          do i = 1, size(self%tip, kind=ik)
-            self%windows%tip(i)%passing = 0.0_rk
+            self%now%windows%tip(i)%passing = 0.0_rk
          end do
          return
       end if
       !$omp parallel do schedule(dynamic, 1)
-      do w = 1, size(self%windows%window, kind=ik)
+      do w = 1, size(self%windows%slot, kind=ik)
          if (.not. self%windows%is_asked(w, self%tip)) cycle
-         call self%windows%window(w)%intensities_with(self%windows%tip, rough, failure(w)%error, &
-                                                      pressure=self%state%unknowns(3, :))
+         call self%windows%slot(w)%window%intensities_with(self%now%windows%history(w), rough, &
+                                                           failure(w)%error, pressure= &
+                                                           self%now%coarse%unknowns(3, :))
       end do
       !$omp end parallel do
       call first_failure(failure, error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_free) cycle
-         associate (tip => self%windows%tip(i))
+         associate (tip => self%now%windows%tip(i))
             tip%passing = safety*share_of_pressure &
                           *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed) &
                           + errors_of_layer(self, i)
@@ -252,9 +261,10 @@ contains
       type(layer_t) :: layer
       real(rk) :: age
 
-      associate (of => self%tip(tip), found => self%windows%tip(tip)%found, time => self%state%time)
-         layer = layer_at_tip(self%mesh, self%model%rock, self%state, &
-                              self%coarse_values%nodal(3, :), of%fracture, of%end)
+      associate (of => self%tip(tip), found => self%now%windows%tip(tip)%found, &
+                 time => self%now%coarse%time)
+         layer = layer_at_tip(self%problem%mesh, self%problem%model%rock, self%now%coarse, &
+                              self%problem%values%nodal(3, :), of%fracture, of%end)
          ! A tip that moves meets rock that the fluid has not reached.
          age = time
          if (of%advance > 0.0_rk) age = min(age, (time - self%before%time)*layer%cell/of%advance)
@@ -271,7 +281,7 @@ contains
       integer(ik) :: cell
 
       holds_a_cell = .false.
-      associate (fracture => self%mesh%fracture)
+      associate (fracture => self%problem%mesh%fracture)
          do cell = 1, fracture%n_cells
             if (fracture%cell_fracture(cell) /= tip%fracture) cycle
             holds_a_cell = window%holds(fracture%point_xy(:, fracture%cell_points(:, cell)))

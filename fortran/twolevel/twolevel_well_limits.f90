@@ -10,12 +10,12 @@ module twolevel_well_limits
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_state, only: guess_t, state_t, step_report_t
+   use coarse_state, only: go_back, state_t, step_report_t
    use coarse_wells, only: control_limited, control_pressure, control_rate
    use report_rows, only: event_well
    use scene_types, only: injection_t
-   use twolevel_schedule, only: last_switch
    use twolevel_state, only: two_levels_t
+   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 
@@ -29,10 +29,10 @@ contains
    !> Wells that flow at less than their rate now, (controlled wells).
    pure function are_at_limit(self) result(at_limit)
       class(two_levels_t), intent(in) :: self
-      logical :: at_limit(self%model%wells%n_all)
+      logical :: at_limit(self%problem%model%wells%n_all)
       integer(ik) :: w
 
-      associate (wells => self%model%wells, now => self%state)
+      associate (wells => self%problem%model%wells, now => self%now%coarse)
          at_limit = [(wells%is_at_limit(w, now%well_rate(w), now%well_head(w)), &
                       w=1, wells%n_all)]
       end associate
@@ -42,12 +42,12 @@ contains
    pure function were_at_limit(self, dt) result(were)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical :: were(self%model%wells%n_all)
+      logical :: were(self%problem%model%wells%n_all)
       integer(ik) :: w
 
       associate (time => self%before%time, wells => self%scene%injections, &
-                 number => self%model%wells%number)
-         were = [(self%at_limit(w) .and. wells(number(w))%stage_at(time + 0.5_rk*dt) &
+                 number => self%problem%model%wells%number)
+         were = [(self%now%at_limit(w) .and. wells(number(w))%stage_at(time + 0.5_rk*dt) &
                   == wells(number(w))%stage_at(time*(1.0_rk - same_time)), w=1, size(were))]
       end associate
    end function were_at_limit
@@ -62,7 +62,7 @@ contains
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical, dimension(self%model%wells%n_all) :: changes, were
+      logical, dimension(self%problem%model%wells%n_all) :: changes, were
       real(rk) :: later
       integer(ik) :: w
 
@@ -70,7 +70,7 @@ contains
       if (size(changes) == 0) return
       were = were_at_limit(self, dt)
       changes = are_at_limit(self) .neqv. were
-      changes = changes .and. self%model%wells%control == control_limited
+      changes = changes .and. self%problem%model%wells%control == control_limited
       do w = 1, size(changes, kind=ik)
          if (.not. changes(w)) cycle
          call find_share(self, w, were(w), dt, later, timers, error)
@@ -87,40 +87,40 @@ contains
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
       logical, intent(out) :: any_changed  !< at a limit
-      logical :: at_limit(self%model%wells%n_all)
+      logical :: at_limit(self%problem%model%wells%n_all)
       character(len=:), allocatable :: words
       integer(ik) :: stage, stage_before, w
 
       do w = 1, size(self%scene%injections, kind=ik)
          associate (well => self%scene%injections(w))
-            stage = well%stage_at(self%state%time - 0.5_rk*dt)
+            stage = well%stage_at(self%now%coarse%time - 0.5_rk*dt)
             stage_before = 0
             associate (before => self%before%time)
                if (before > 0.0_rk) stage_before = well%stage_at(before*(1.0_rk - same_time))
                if (stage == stage_before .or. (stage == 1 .and. .not. before > 0.0_rk)) cycle
                call self%chronicle%add_event(before, event_well, what_begins(well, stage))
             end associate
-            if (self%model%wells%n_all == 0) cycle
-            where (self%model%wells%number == w)
-               self%at_limit = .false.
-               self%given = 0.0_rk
+            if (self%problem%model%wells%n_all == 0) cycle
+            where (self%problem%model%wells%number == w)
+               self%now%at_limit = .false.
+               self%now%given = 0.0_rk
             end where
          end associate
       end do
       any_changed = .false.
-      if (self%model%wells%n_all == 0) return
+      if (self%problem%model%wells%n_all == 0) return
       at_limit = are_at_limit(self)
       do w = 1, size(at_limit, kind=ik)
-         if (at_limit(w) .eqv. self%at_limit(w)) cycle
+         if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
-         self%given(w) = 0.0_rk
+         self%now%given(w) = 0.0_rk
          words = " is at its rate again"
          if (at_limit(w)) words = " has reached its pressure limit"
-         call self%chronicle%add_event(self%state%time, event_well, &
-                                      trim(self%scene%injections(self%model%wells%number(w))%name) &
-                                       //words)
+         associate (well => self%scene%injections(self%problem%model%wells%number(w)))
+            call self%chronicle%add_event(self%now%coarse%time, event_well, trim(well%name)//words)
+         end associate
       end do
-      self%at_limit = at_limit
+      self%now%at_limit = at_limit
    end subroutine note_wells
 
    !> What begins with a stage of a well, in words.
@@ -137,8 +137,7 @@ contains
       if (allocated(well%pressure)) words = words//" "//brief_text(well%pressure(stage), 4)//" Pa"
    end function what_begins
 
-   !> Try the step with one well held as it was. What it gives is forgotten again, and all that it
-   !! leaves in the model.
+   !> Try the step with one well held as it was, beside the state.
    subroutine find_share(self, w, was_at_limit, dt, share, timers, error)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: w  !< controlled well
@@ -147,51 +146,28 @@ contains
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(state_t) :: state
+      type(state_t) :: held
       type(step_report_t) :: report
-      type(guess_t) :: guess
-      real(rk), allocatable :: injection(:), into_joints(:), source(:, :)
-      integer(ik), allocatable :: way(:)
-      logical :: is_current, is_undrained
 
       share = 0.0_rk
       if (.not. was_at_limit .and. is_beyond(self, w)) return
-      state = self%state
-      is_current = self%values_are_current
-      is_undrained = self%undrained
-      guess = self%model%guess
-      injection = self%model%cells%injection
-      if (self%model%joints%n > 0) into_joints = self%model%joints%injection
-      if (allocated(self%model%source)) source = self%model%source
-      if (self%model%rock_wells%n > 0) way = self%model%rock_wells%way
-      self%held_well = w
-      self%held_control = merge(control_pressure, control_rate, was_at_limit)
-      self%state = self%before
-      call self%try_step(dt, timers, report, error)
-      self%held_well = 0
-      share = 0.5_rk
-      if (.not. allocated(error) .and. report%converged) then
-         associate (wells => self%model%wells, held => self%state)
+      held = self%now%coarse
+      associate (before => self%before, problem => self%problem, wells => self%problem%model%wells)
+         call go_back(held, before)
+         call problem%advance(self%scene, dt, held, timers, report, error, held=w, &
+                              control=merge(control_pressure, control_rate, was_at_limit))
+         share = 0.5_rk
+         if (.not. allocated(error) .and. report%converged) then
             if (was_at_limit) then
-               share = part(self%before%well_rate(w), wells%rate(w), held%well_rate(w))
+               share = part(before%well_rate(w), wells%rate(w), held%well_rate(w))
             else
                share = part(head_at_rate(self, w), wells%pressure(w), held%well_head(w))
                ! Right after a switch pressures rise as the root of time does.
-               if (.not. self%before%time > last_switch(self%scene, self%before%time)) then
-                  share = share**2
-               end if
+               if (.not. before%time > last_switch(self%scene, before%time)) share = share**2
             end if
-         end associate
-      end if
-      self%state = state
-      self%values_are_current = is_current
-      self%undrained = is_undrained
-      self%model%guess = guess
-      self%model%cells%injection = injection
-      if (self%model%joints%n > 0) self%model%joints%injection = into_joints
-      if (allocated(self%model%source)) self%model%source = source
-      if (self%model%rock_wells%n > 0) self%model%rock_wells%way = way
-      self%model%wells%control(w) = control_limited
+         end if
+         call problem%ask(self%scene, before%time, dt)
+      end associate
    end subroutine find_share
 
    !> A well that begins to flow at its rate is at its limit at once, or beyond it.
@@ -199,7 +175,7 @@ contains
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: w  !< controlled well
 
-      associate (wells => self%model%wells)
+      associate (wells => self%problem%model%wells)
          is_beyond = wells%is_at_limit(w, 0.0_rk, head_at_rate(self, w))
       end associate
    end function is_beyond
@@ -211,7 +187,7 @@ contains
       integer(ik), intent(in) :: w  !< controlled well
       real(rk) :: lost_now, lost_then, slope
 
-      associate (wells => self%model%wells, before => self%before)
+      associate (wells => self%problem%model%wells, before => self%before)
          head = before%well_head(w)
          if (wells%storage(w) > 0.0_rk) return
          call wells%lost(w, before%well_flow(w), lost_then, slope)

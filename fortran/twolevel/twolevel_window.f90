@@ -8,51 +8,49 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
+   use contact_law, only: is_same
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_regions, only: new_rock, rock_t
    use coarse_state, only: state_t
-   use contact_law, only: contact_law_t, is_same
-   use fine_contact, only: contact_t, transfer_contact
    use fine_elasticity, only: elasticity_t
+   use fine_contact, only: contact_t, transfer_contact
    use fine_faces, only: face_conditions_t
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
-   use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
+   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips
+   use mesh_types, only: mesh_t, network_t
+   use scene_types, only: scene_t
+   use report_scene, only: place_rocks, regions_of_other_rock, shape_body
    use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
-   use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips, transfer_mesher
-   use mesh_types, only: mesh_t, network_t
-   use report_scene, only: place_rocks, regions_of_other_rock, shape_body
-   use scene_types, only: scene_t
    use twolevel_faces, only: face_map_t, match_faces
+   use twolevel_problem, only: coarse_values_t
    use twolevel_window_edges, only: clear_edges
    use twolevel_window_map, only: window_map_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
-   use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
+   use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
+   use twolevel_windows_state, only: window_history_t
    implicit none(type, external)
    private
 
-   public :: coarse_values_t, window_t
+   public :: window_t
 
-   !> What a window takes from the coarse level.
-   type :: coarse_values_t
-      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      !> For interpolation that is exact for quadratic fields (curved_displacement)
-      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
-      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
-      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
-      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
-   end type coarse_values_t
+   !> What the mesh of a window was made for, or has followed since.
+   type :: made_for_t
+      type(network_t) :: network  !< that it was made for
+      integer(ik), allocatable :: kept(:)  !< its vertices that the mesh has
+      real(rk), allocatable :: place(:, :)  !< (2, tips) [m]
+      logical, allocatable :: is_free(:)  !< (tips) had not joined anything
+      logical :: is_projected = .false.  !< its place in the coarse mesh is known
+   end type made_for_t
 
-   !> One window.
+   !> One window. All of it follows from the scene, the network and the coarse state, and from when
+   !! it was meshed; what it remembers is in its window_history_t.
    type :: window_t
       integer(ik), allocatable :: serves(:)  !< the tips that it is for
       logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
-      !> Its intensities are held against those of the whole body, which shows what its elements
-      !! make wrong.
-      logical :: is_beside_body = .false.
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
       real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
@@ -60,10 +58,11 @@ module twolevel_window
       type(mesher_t) :: mesher
       type(mesher_t) :: as_made  !< the mesh before tips moved in it, if they have
       type(mesh_t) :: mesh
-      type(network_t) :: network  !< that it was made for
-      integer(ik), allocatable :: kept(:)  !< its vertices that the mesh has
+      type(made_for_t), allocatable :: made  !< unallocated: there is no mesh
       logical :: has_moved = .false.  !< the mesh is another one than was made
+      logical :: follows_other = .false.  !< which another window has
       type(fine_model_t) :: model
+      integer(ik), allocatable :: at(:)  !< (tips served) numbers in the mesh; 0: is not free
       !> (tips served) what finds their intensities, as long as the model stays the same
       type(tip_probe_t), allocatable :: probe(:)
       type(fine_loads_t) :: loads
@@ -72,20 +71,13 @@ module twolevel_window
       real(rk), allocatable :: force_in_situ(:, :)
       real(rk), allocatable :: pressure_in_situ(:)  !< (fracture cells) if the scene has any [Pa]
       real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
-      !> Of the last solution; its slip is the history of the next.
-      type(contact_t), allocatable :: contact
-      type(fine_mesh_t), allocatable :: contact_mesh  !< the mesh of that, where it is another one
-      ! The same of the last accepted state.
-      type(contact_t), allocatable :: accepted
-      type(fine_mesh_t), allocatable :: accepted_mesh
       logical :: undrained = .false.  !< the model's constants are the undrained ones
       type(window_map_t) :: map  !< where it lies in the coarse mesh
       type(face_map_t) :: faces
    contains
       procedure :: build
       procedure :: follow
-      procedure :: accept
-      procedure :: take_back
+      procedure :: take_plan
       procedure :: edge_length
       procedure :: can_be_larger
       procedure :: set_rock
@@ -100,55 +92,80 @@ module twolevel_window
 
 contains
 
+   !> A window that is to follow the tips, as another one has been made; that keeps its mesh, but
+   !! not its matrix.
+   subroutine take_plan(self, other)
+      class(window_t), intent(inout) :: self
+      type(window_t), intent(inout) :: other
+
+      self%serves = other%serves
+      self%is_body = other%is_body
+      self%lower = other%lower
+      self%upper = other%upper
+      self%coarser = other%coarser
+      self%element_size = other%element_size
+      self%times_larger = other%times_larger
+      self%made = other%made
+      self%follows_other = .true.
+      self%sides = other%sides
+      call self%model%take_order(other%model)
+   end subroutine take_plan
+
    !> Mesh the window.
-   subroutine build(self, scene, network, tips, error)
+   subroutine build(self, scene, network, tips, is_beside_body, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
+      type(window_tip_t), intent(in) :: tips(:)  !< of the network
+      !> Its intensities are held against those of the whole body, which shows what its elements
+      !! make wrong.
+      logical, intent(in) :: is_beside_body
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       type(network_t) :: far_straight
 
+      if (allocated(self%made)) deallocate (self%made)
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
       call place(self, scene, network, tips)
       self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
       spec = window_spec(self%lower, self%upper, self%element_size, scene)
       if (self%is_body) call shape_body(scene, spec)
-      if (self%is_beside_body .and. .not. self%is_body) call grow_away(spec)
+      if (is_beside_body .and. .not. self%is_body) call grow_away(spec)
       call focus(scene, network, tips, self%serves, spec, error)
       if (allocated(error)) return
-      call straighten_far(network, spec, self%is_body, far_straight, self%kept)
+      allocate (self%made)
+      self%made%network = network
+      call straighten_far(network, spec, self%is_body, far_straight, self%made%kept)
       call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
-      self%network = network
       self%has_moved = .false.
-      call restore_arc_lengths(network, far_straight, self%kept, self%mesh%fracture)
+      self%follows_other = .false.
+      call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
       call set_up(self, scene, tips, error)
    end subroutine build
 
-   !> Let the nodes of the window's mesh follow tips that have gone on along the last pieces of
+   !> Let the nodes of the mesh that was made follow tips that have gone on along the last pieces of
    !! their paths. The window stays where it is. Where this does not go, it has to be built anew.
-   subroutine follow(self, scene, network, tips, is_done, error)
+   subroutine follow(self, scene, network, tips, as_made, is_done, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
+      type(window_tip_t), intent(in) :: tips(:)  !< of the network
+      type(mesher_t), intent(in) :: as_made
       logical, intent(out) :: is_done
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: refusal
       type(network_t) :: far_straight
 
       is_done = .false.
-      if (.not. allocated(self%kept) .or. any(regions_of_other_rock(scene))) return
-      if (size(network%xy, 2) /= size(self%network%xy, 2)) return
-      if (any(network%first /= self%network%first)) return
-      far_straight = without(network, self%kept)
-      if (.not. self%has_moved) call transfer_mesher(self%mesher, self%as_made)
+      if (any(regions_of_other_rock(scene))) return
+      if (size(network%xy, 2) /= size(self%made%network%xy, 2)) return
+      if (any(network%first /= self%made%network%first)) return
+      far_straight = without(network, self%made%kept)
       self%has_moved = .true.
-      call move_tips(self%as_made, far_straight, self%mesher, self%mesh, refusal)
+      call move_tips(as_made, far_straight, self%mesher, self%mesh, refusal)
       if (allocated(refusal)) return
-      call restore_arc_lengths(network, far_straight, self%kept, self%mesh%fracture)
+      call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
       call set_up(self, scene, tips, error)
       is_done = .not. allocated(error)
    end subroutine follow
@@ -157,24 +174,16 @@ contains
    subroutine set_up(self, scene, tips, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(window_tip_t), intent(inout) :: tips(:)  !< of the network
+      type(window_tip_t), intent(in) :: tips(:)  !< of the network
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
-      if (allocated(self%contact) .and. .not. allocated(self%contact_mesh)) then
-         self%contact_mesh = self%model%mesh
-         if (allocated(self%accepted) .and. .not. allocated(self%accepted_mesh)) then
-            self%accepted_mesh = self%contact_mesh
-         end if
-      end if
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => tips(self%serves(i)), fracture => self%mesh%fracture)
-            tip%at = findloc(fracture%tip_fracture == tip%fracture .and. &
-                             fracture%tip_end == tip%end, .true., dim=1)
-         end associate
-      end do
+      associate (fracture => self%mesh%fracture, tip => tips(self%serves))
+         self%at = [(findloc(fracture%tip_fracture == tip(i)%fracture .and. &
+                             fracture%tip_end == tip(i)%end, .true., dim=1), i=1, size(tip))]
+      end associate
       self%loads = no_loads(self%model%mesh)
       call load_in_situ(self, scene)
       if (any(self%sides%of%changes())) self%force_in_situ = self%loads%force
@@ -212,27 +221,6 @@ contains
               i=1, fine%fracture%n_cells)]
       end associate
    end subroutine load_in_situ
-
-   !> The state that was evaluated last has become history: its slip is what the next one starts
-   !! from.
-   pure subroutine accept(self)
-      class(window_t), intent(inout) :: self
-
-      if (.not. allocated(self%contact)) return
-      call self%contact%accept()
-      self%accepted = self%contact
-      if (allocated(self%accepted_mesh)) deallocate (self%accepted_mesh)
-      if (allocated(self%contact_mesh)) self%accepted_mesh = self%contact_mesh
-   end subroutine accept
-
-   !> Contact is that of the last accepted state again, whatever has been evaluated since.
-   pure subroutine take_back(self)
-      class(window_t), intent(inout) :: self
-
-      if (.not. allocated(self%accepted)) return
-      self%contact = self%accepted
-      if (allocated(self%accepted_mesh)) self%contact_mesh = self%accepted_mesh
-   end subroutine take_back
 
    !> Of the square that the body cuts [m].
    pure real(rk) function edge_length(self, scene)
@@ -319,16 +307,18 @@ contains
       call self%map%find(self%model%mesh, mesher, coarse, error)
       if (allocated(error)) return
       self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
+      self%made%is_projected = .true.
    end subroutine project
 
    !> Load the window with the state of the coarse level, solve, and evaluate its tips.
-   subroutine find_intensities(self, scene, coarse, values, state, tips, error)
+   subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: coarse
       type(coarse_values_t), intent(in) :: values
       type(state_t), intent(in) :: state
       type(window_tip_t), intent(inout) :: tips(:)
+      type(window_history_t), intent(inout) :: history
       type(error_t), allocatable, intent(out) :: error
       type(face_conditions_t) :: conditions
       integer(ik) :: i
@@ -343,8 +333,8 @@ contains
          self%loads%pore_pressure = scene%initial%pressure
          if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
       end if
-      if (.not. allocated(self%contact) .or. allocated(self%contact_mesh)) then
-         call remember_contact(self, state)
+      if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
+         call remember_contact(self, state, history)
       end if
       associate (face_condition => scene%discretization%face_condition)
          conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
@@ -355,13 +345,13 @@ contains
          call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
          if (allocated(error)) return
       end if
-      call self%model%solve(self%loads, self%displacement, error, self%contact)
+      call self%model%solve(self%loads, self%displacement, error, history%contact)
       if (allocated(error)) return
-      if (.not. allocated(self%probe)) call find_probes(self, tips, error)
+      if (.not. allocated(self%probe)) call find_probes(self, error)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => tips(self%serves(i)))
-            if (tip%at == 0) cycle
+            if (self%at(i) == 0) cycle
             call tip_intensity(self%model, self%loads, self%displacement, self%probe(i), &
                                tip%found, error)
             if (allocated(error)) return
@@ -370,16 +360,15 @@ contains
    end subroutine find_intensities
 
    !> What finds the intensities of the tips.
-   subroutine find_probes(self, tips, error)
+   subroutine find_probes(self, error)
       class(window_t), intent(inout) :: self
-      type(window_tip_t), intent(in) :: tips(:)
       type(error_t), allocatable, intent(out) :: error
       type(tip_probe_t) :: probe(size(self%serves))
       integer(ik) :: i
 
       do i = 1, size(self%serves, kind=ik)
-         if (tips(self%serves(i))%at == 0) cycle
-         call probe_of_tip(self%model, tips(self%serves(i))%at, probe(i), error)
+         if (self%at(i) == 0) cycle
+         call probe_of_tip(self%model, self%at(i), probe(i), error)
          if (allocated(error)) return
       end do
       self%probe = probe
@@ -400,9 +389,9 @@ contains
 
    !> K_I and K_II under the last solution's loads with other displacements on the edge, or another
    !! pressure in the rock. Nothing is remembered of it.
-   subroutine intensities_with(self, tips, k, error, edge, pressure)
+   subroutine intensities_with(self, history, k, error, edge, pressure)
       class(window_t), intent(inout) :: self
-      type(window_tip_t), intent(in) :: tips(:)
+      type(window_history_t), intent(in) :: history
       real(rk), intent(inout) :: k(:, :)  !< (2, tips), where the window serves them [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
       real(rk), intent(in), optional :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
@@ -419,12 +408,12 @@ contains
          loads%pore_pressure(:self%model%mesh%n_vertices) = &
             pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
       end if
-      contact = self%contact
+      contact = history%contact
       call self%model%solve(loads, displacement, error, contact)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => self%serves(i))
-            if (tips(tip)%at == 0) cycle
+            if (self%at(i) == 0) cycle
             call tip_intensity(self%model, loads, displacement, self%probe(i), result, error, &
                                quickly=.true.)
             if (allocated(error)) return
@@ -470,17 +459,18 @@ contains
    end subroutine displacement_at
 
    !> Contact on a new mesh: that of the window before, and beyond it what the coarse level has.
-   subroutine remember_contact(self, state)
-      class(window_t), intent(inout) :: self
+   subroutine remember_contact(self, state, history)
+      class(window_t), intent(in) :: self
       type(state_t), intent(in) :: state
+      type(window_history_t), intent(inout) :: history
       type(contact_t) :: contact
 
       contact = self%faces%history(self%model%mesh, state)
-      if (allocated(self%contact_mesh)) then
-         call transfer_contact(self%contact_mesh, self%contact, self%model%mesh, contact)
-         deallocate (self%contact_mesh)
+      if (allocated(history%mesh)) then
+         call transfer_contact(history%mesh, history%contact, self%model%mesh, contact)
+         deallocate (history%mesh)
       end if
-      self%contact = contact
+      history%contact = contact
    end subroutine remember_contact
 
    !> The matrix that the model has is that of these conditions.

@@ -1,5 +1,4 @@
-!> A tip as a window sees it: where it is in the window's mesh, its intensities, and how far they
-!! can be trusted.
+!> A tip as a window sees it: its intensities, and how far they can be trusted.
 module twolevel_window_tip
    use base_kinds, only: ik, rk
    use fine_tip_intensity, only: complete_errors
@@ -17,7 +16,6 @@ module twolevel_window_tip
    !> One tip of the network, free or not.
    type :: window_tip_t
       integer(ik) :: fracture = 0, end = 0  !< of the network
-      integer(ik) :: at = 0  !< its number in the window's mesh; 0: it is not free, nothing is seen
       integer :: times_finer = 0  !< than the scene says
       type(intensity_t) :: found  !< in the last solution, without the coarse level's error
       !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated

@@ -8,15 +8,17 @@ module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use fine_tip_types, only: intensity_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
-   use mesh_builder, only: mesher_t
-   use mesh_types, only: mesh_t, network_t
-   use report_scene, only: has_other_toughness, relative_toughness
+   use mesh_builder, only: mesher_t, transfer_mesher
+   use mesh_types, only: network_t
    use scene_types, only: scene_t
-   use twolevel_window, only: coarse_values_t, window_t
+   use report_scene, only: has_other_toughness, relative_toughness
+   use fine_tip_types, only: intensity_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
+   use twolevel_windows_state, only: window_history_t, windows_state_t
    implicit none(type, external)
    private
 
@@ -31,22 +33,24 @@ module twolevel_windows
       type(error_t), allocatable :: error
    end type failure_t
 
-   !> The windows, and whether each is that of the present network and coarse mesh.
+   !> The place of a window.
+   type :: slot_t
+      type(window_t), allocatable :: window
+      !> As it was in the last accepted state, where it has been meshed since
+      type(window_t), allocatable :: kept
+   end type slot_t
+
+   !> The windows, which stand beside the state: what they remember is in windows_state_t.
    type :: windows_t
-      type(window_t), allocatable :: window(:)
-      logical, allocatable :: built(:), projected(:)  !< (windows)
-      logical, allocatable :: may_follow(:)  !< (windows) built, but tips have moved since
+      type(slot_t), allocatable :: slot(:)
       integer(ik), allocatable :: window_of(:)  !< (tips)
-      type(window_tip_t), allocatable :: tip(:)  !< what the windows know of the tips
-      real(rk), allocatable :: built_for(:, :, :)  !< (2, tips, windows) places of the tips [m]
       !> (tips) K_IC of the rock that each grows in over that of the scene's [-]
       real(rk), allocatable :: resistance(:)
-      logical, allocatable :: was_free(:, :)  !< (tips, windows) it had not joined anything then
    contains
       procedure :: begin
+      procedure :: begin_step
+      procedure :: put_back
       procedure :: evaluate
-      procedure :: accept
-      procedure :: take_back
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: intensity_of
@@ -60,34 +64,72 @@ module twolevel_windows
 contains
 
    !> No window has been built. After those of the tips there is one that is the body, for none.
-   subroutine begin(self, tips, is_body, body_coarser)
+   subroutine begin(self, tips, is_body, body_coarser, known)
       class(windows_t), intent(out) :: self
       type(tip_t), intent(in) :: tips(:)
       logical, intent(in) :: is_body  !< it is one window for all tips
       !> Elements of the body along fractures, over what the scene says [-]
       real(rk), intent(in) :: body_coarser
+      type(windows_state_t), intent(out) :: known
       integer(ik) :: i, n_windows
 
       n_windows = size(tips, kind=ik) + 1
       if (is_body) n_windows = 1
-      allocate (self%window(n_windows), self%window_of(size(tips)))
-      allocate (self%tip(size(tips)))
+      allocate (self%slot(n_windows), self%window_of(size(tips)))
+      allocate (known%history(n_windows), known%tip(size(tips)))
       allocate (self%resistance(size(tips)), source=1.0_rk)
-      allocate (self%built_for(2, size(tips), n_windows), source=0.0_rk)
-      allocate (self%was_free(size(tips), n_windows), source=.true.)
-      allocate (self%built(n_windows), self%projected(n_windows), self%may_follow(n_windows), &
-                source=.false.)
       do i = 1, size(tips, kind=ik)
          self%window_of(i) = merge(1_ik, i, is_body)
-         self%tip(i)%fracture = tips(i)%fracture
-         self%tip(i)%end = tips(i)%end
+         known%tip(i)%fracture = tips(i)%fracture
+         known%tip(i)%end = tips(i)%end
       end do
       do i = 1, n_windows
-         self%window(i)%is_body = i == n_windows
-         if (self%window(i)%is_body) self%window(i)%coarser = body_coarser
-         self%window(i)%serves = numbers_of(self%window_of == i)
+         allocate (self%slot(i)%window)
+         associate (window => self%slot(i)%window)
+            window%is_body = i == n_windows
+            if (window%is_body) window%coarser = body_coarser
+            window%serves = numbers_of(self%window_of == i)
+         end associate
       end do
    end subroutine begin
+
+   !> A step is tried from now on: the windows are those of an accepted state.
+   subroutine begin_step(self)
+      class(windows_t), intent(inout) :: self
+      integer(ik) :: w
+
+      if (.not. allocated(self%slot)) return
+      do w = 1, size(self%slot, kind=ik)
+         associate (slot => self%slot(w))
+            if (.not. allocated(slot%kept)) cycle
+            if (slot%window%follows_other) then
+               if (slot%kept%has_moved) then
+                  call transfer_mesher(slot%kept%as_made, slot%window%as_made)
+               else
+                  call transfer_mesher(slot%kept%mesher, slot%window%as_made)
+               end if
+               slot%window%follows_other = .false.
+            end if
+            deallocate (slot%kept)
+         end associate
+      end do
+   end subroutine begin_step
+
+   !> A try is rejected: the windows are those of the last accepted state again.
+   subroutine put_back(self)
+      class(windows_t), intent(inout) :: self
+      integer(ik) :: w
+
+      if (.not. allocated(self%slot)) return
+      do w = 1, size(self%slot, kind=ik)
+         associate (slot => self%slot(w))
+            if (.not. allocated(slot%kept)) cycle
+            call slot%kept%model%take_order(slot%window%model)
+            deallocate (slot%window)
+            call move_alloc(slot%kept, slot%window)
+         end associate
+      end do
+   end subroutine put_back
 
    !> Which are true.
    pure function numbers_of(mask) result(numbers)
@@ -98,44 +140,40 @@ contains
       numbers = pack([(i, i=1, size(mask, kind=ik))], mask)
    end function numbers_of
 
-   !> Intensities, drive and rosette radius of every tip that is asked for, in the present state of
-   !! the coarse level.
-   subroutine evaluate(self, scene, network, tips, asked, mesher, mesh, values, state, undrained, &
-                       error)
+   !> Intensities, drive and rosette radius of every tip that is asked for, in a state of the coarse
+   !! level.
+   subroutine evaluate(self, scene, network, tips, asked, is_beside_body, problem, state, &
+                       undrained, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
       logical, intent(in) :: asked(:)  !< (tips)
-      type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
-      type(mesh_t), intent(in) :: mesh  !< the coarse one
-      type(coarse_values_t), intent(in) :: values
+      logical, intent(in) :: is_beside_body  !< they are held against the body as one window
+      type(coarse_problem_t), intent(in) :: problem  !< with its values of the state
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
+      type(windows_state_t), intent(inout) :: known
       type(error_t), allocatable, intent(out) :: error
-      type(failure_t) :: failure(size(self%window))
-      integer(ik) :: i, w, largest_first(size(self%window))
+      type(failure_t) :: failure(size(self%slot))
+      integer(ik) :: i, w, largest_first(size(self%slot))
 
-      call see_tips(self, tips)
       if (has_other_toughness(scene)) then
          self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
                              i=1, size(tips))]
       end if
-      largest_first = by_size(self%window)
+      largest_first = by_size(self%slot)
       !$omp parallel private(w)
       !$omp single
-      do i = 1, size(self%window, kind=ik)
+      do i = 1, size(self%slot, kind=ik)
          w = largest_first(i)
-         if (self%is_asked(w, tips)) then
-            if (.not. any(asked(self%window(w)%serves))) cycle
-            !$omp task firstprivate(w) default(shared)
-            call evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
-                                 undrained, failure(w)%error)
-            !$omp end task
-         else
-            self%built(w) = .false.
-            self%may_follow(w) = .false.
-         end if
+         if (.not. self%is_asked(w, tips)) cycle
+         if (.not. any(asked(self%slot(w)%window%serves))) cycle
+         !$omp task firstprivate(w) default(shared)
+         call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, state, &
+                              undrained, self%resistance, known%tip, known%history(w), &
+                              failure(w)%error)
+         !$omp end task
       end do
       !$omp end single
       !$omp end parallel
@@ -144,14 +182,14 @@ contains
 
    !> Windows by the sizes of the meshes that they have now, so that none of the largest is left for
    !! one thread at the end.
-   pure function by_size(window) result(order)
-      type(window_t), intent(in) :: window(:)
-      integer(ik) :: order(size(window))
+   pure function by_size(slot) result(order)
+      type(slot_t), intent(in) :: slot(:)
+      integer(ik) :: order(size(slot))
       integer(ik) :: i, k
 
-      do i = 1, size(window, kind=ik)
+      do i = 1, size(slot, kind=ik)
          do k = i, 2, -1
-            if (window(order(k - 1))%mesh%n_cells >= window(i)%mesh%n_cells) exit
+            if (slot(order(k - 1))%window%mesh%n_cells >= slot(i)%window%mesh%n_cells) exit
             order(k) = order(k - 1)
          end do
          order(k) = i
@@ -172,99 +210,122 @@ contains
    end subroutine first_failure
 
    !> The same for the tips of one window. It changes nothing of other windows or tips.
-   subroutine evaluate_window(self, w, scene, network, tips, mesher, mesh, values, state, &
-                              undrained, error)
-      class(windows_t), intent(inout) :: self
-      integer(ik), intent(in) :: w
+   subroutine evaluate_window(slot, scene, network, tips, is_beside_body, problem, state, &
+                              undrained, resistance, seen, history, error)
+      type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       type(tip_t), intent(inout) :: tips(:)
-      type(mesher_t), intent(in) :: mesher
-      type(mesh_t), intent(in) :: mesh
-      type(coarse_values_t), intent(in) :: values
+      logical, intent(in) :: is_beside_body
+      type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained
+      real(rk), intent(in) :: resistance(:)  !< (tips) [-]
+      type(window_tip_t), intent(inout) :: seen(:)  !< (tips)
+      type(window_history_t), intent(inout) :: history
       type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
 
-      associate (window => self%window(w))
-         if (.not. self%built(w)) then
-            call renew(self, w, scene, network, tips, error)
+      if (has_to_be_meshed(slot%window, tips)) then
+         call renew(slot, scene, network, tips, is_beside_body, seen, history, error)
+         if (allocated(error)) return
+      end if
+      associate (window => slot%window)
+         if (.not. window%made%is_projected) then
+            call window%project(problem%mesher, problem%mesh, problem%values, error)
             if (allocated(error)) return
          end if
-         if (.not. self%projected(w)) then
-            call window%project(mesher, mesh, values, error)
-            if (allocated(error)) return
-            self%projected(w) = .true.
-         end if
-         if (window%undrained .neqv. undrained) then
+         if ((window%undrained .neqv. undrained) .or. .not. allocated(window%model%stiffness)) then
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
-         call window%find_intensities(scene, mesh, values, state, self%tip, error)
+         call window%find_intensities(scene, problem%mesh, problem%values, state, seen, history, &
+                                      error)
          if (allocated(error)) return
-         call tell(self, window, tips)
+         do i = 1, size(window%serves, kind=ik)
+            associate (t => window%serves(i), tip => tips(window%serves(i)))
+               if (.not. tip%is_free) cycle
+               tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
+               tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))
+               tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
+                                        window%crack_modulus(window%at(i)))
+               call tip%resist(resistance(t))
+            end associate
+         end do
       end associate
    end subroutine evaluate_window
 
    !> Mesh a window anew, or let its mesh follow the tips if nothing else has changed in it.
-   subroutine renew(self, w, scene, network, tips, error)
-      class(windows_t), intent(inout) :: self
-      integer(ik), intent(in) :: w  !< window
+   subroutine renew(slot, scene, network, tips, is_beside_body, seen, history, error)
+      type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       type(tip_t), intent(in) :: tips(:)
+      logical, intent(in) :: is_beside_body
+      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
+      type(window_history_t), intent(inout) :: history
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
       logical :: follows
 
-      associate (window => self%window(w))
-         follows = self%may_follow(w) .and. all(tips%is_free .eqv. self%was_free(:, w))
-         if (follows) call window%follow(scene, network, self%tip, follows, error)
+      call history%leave_mesh(slot%window%model%mesh)
+      if (allocated(slot%window%made) .and. .not. allocated(slot%kept)) then
+         call move_alloc(slot%window, slot%kept)
+         allocate (slot%window)
+         call slot%window%take_plan(slot%kept)
+      end if
+      associate (window => slot%window)
+         follows = allocated(window%made)
+         if (follows) follows = all(tips%is_free .eqv. window%made%is_free)
+         if (follows) call follow_tips(slot, scene, network, seen, follows, error)
          if (.not. (follows .or. allocated(error))) then
-            call window%build(scene, network, self%tip, error)
+            call window%build(scene, network, seen, is_beside_body, error)
          end if
          if (allocated(error)) return
-         if (any(tips(window%serves)%is_free .and. self%tip(window%serves)%at == 0)) then
+         if (any(tips(window%serves)%is_free .and. window%at == 0)) then
             call raise_error(error, "evaluate", "a window has not the tip that it is for")
             return
          end if
+         window%made%is_projected = .false.
+         window%made%is_free = tips%is_free
+         window%made%place = reshape([(tips(i)%xy, i=1, size(tips))], [2, size(tips)])
       end associate
-      self%built(w) = .true.
-      self%may_follow(w) = .true.
-      self%projected(w) = .false.
-      self%was_free(:, w) = tips%is_free
-      do i = 1, size(tips, kind=ik)
-         self%built_for(:, i, w) = tips(i)%xy
-      end do
    end subroutine renew
 
-   !> What a window has found, to the free tips that it serves.
-   pure subroutine tell(self, window, tips)
-      class(windows_t), intent(in) :: self
-      type(window_t), intent(in) :: window
-      type(tip_t), intent(inout) :: tips(:)
-      integer(ik) :: i
+   !> The mesh that was made follows the tips, wherever it is.
+   subroutine follow_tips(slot, scene, network, seen, is_done, error)
+      type(slot_t), intent(inout) :: slot
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
+      logical, intent(out) :: is_done
+      type(error_t), allocatable, intent(out) :: error
+      type(mesher_t) :: as_made
 
-      do i = 1, size(window%serves, kind=ik)
-         associate (t => window%serves(i), tip => tips(window%serves(i)))
-            if (.not. tip%is_free) cycle
-            tip%intensity = self%intensity_of(t)
-            tip%rosette_radius = window%mesh%fracture%tip_radius(self%tip(t)%at)
-            tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
-                                     window%crack_modulus(self%tip(t)%at))
-            call tip%resist(self%resistance(t))
-         end associate
-      end do
-   end subroutine tell
+      associate (window => slot%window)
+         if (.not. window%follows_other) then
+            if (.not. window%has_moved) call transfer_mesher(window%mesher, window%as_made)
+            call transfer_mesher(window%as_made, as_made)
+            call window%follow(scene, network, seen, as_made, is_done, error)
+            call transfer_mesher(as_made, window%as_made)
+         else if (slot%kept%has_moved) then
+            call window%follow(scene, network, seen, slot%kept%as_made, is_done, error)
+         else
+            call window%follow(scene, network, seen, slot%kept%mesher, is_done, error)
+         end if
+      end associate
+   end subroutine follow_tips
 
    !> The intensities of a tip in the last solution of its window, with the errors of both levels.
-   pure function intensity_of(self, tip) result(intensity)
+   pure function intensity_of(self, tip, seen) result(intensity)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: tip
+      type(window_tip_t), intent(in) :: seen  !< that tip
       type(intensity_t) :: intensity
 
-      associate (window => self%window(self%window_of(tip)))
-         intensity = self%tip(tip)%with_coarse_error(window%crack_modulus(self%tip(tip)%at))
+      associate (window => self%slot(self%window_of(tip))%window)
+         intensity = seen%with_coarse_error(window%crack_modulus(window%at(findloc( &
+                                                                       window%serves, tip, dim=1))))
       end associate
    end function intensity_of
 
@@ -274,70 +335,45 @@ contains
       integer(ik), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
 
-      is_asked = any(tips(self%window(window)%serves)%is_free)
+      is_asked = any(tips(self%slot(window)%window%serves)%is_free)
    end function is_asked
 
    !> Meshes of some windows are those of other tips than these: to be made anew, or to be moved.
    pure logical function has_to_mesh(self, tips)
       class(windows_t), intent(in) :: self
       type(tip_t), intent(in) :: tips(:)
-      integer(ik) :: i, w
+      integer(ik) :: w
 
       has_to_mesh = .false.
-      do w = 1, size(self%window, kind=ik)
-         if (.not. self%is_asked(w, tips)) cycle
-         has_to_mesh = has_to_mesh .or. .not. self%built(w)
-         if (has_to_mesh) return
-         has_to_mesh = any([(has_moved(self, tips, i, w), i=1, size(tips, kind=ik))])
+      do w = 1, size(self%slot, kind=ik)
+         if (self%is_asked(w, tips) .and. .not. has_to_mesh) then
+            has_to_mesh = has_to_be_meshed(self%slot(w)%window, tips)
+         end if
       end do
    end function has_to_mesh
 
-   !> The state that was evaluated last has become history: its slip is what the next one starts
-   !! from.
-   pure subroutine accept(self)
-      class(windows_t), intent(inout) :: self
-      integer(ik) :: i
-
-      if (.not. allocated(self%window)) return
-      do i = 1, size(self%window, kind=ik)
-         call self%window(i)%accept()
-      end do
-   end subroutine accept
-
-   !> What has been evaluated since then was a try that is rejected.
-   pure subroutine take_back(self)
-      class(windows_t), intent(inout) :: self
-      integer(ik) :: i
-
-      if (.not. allocated(self%window)) return
-      do i = 1, size(self%window, kind=ik)
-         call self%window(i)%take_back()
-      end do
-   end subroutine take_back
-
-   !> Windows that hold the last segment of a tip that has moved, as it was or as it is, must be
-   !! meshed again.
-   pure subroutine see_tips(self, tips)
-      class(windows_t), intent(inout) :: self
+   !> There is no mesh of a window, or it holds the last segment of a tip that has moved since, as
+   !! it was or as it is.
+   pure logical function has_to_be_meshed(window, tips) result(has_to)
+      type(window_t), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
-      integer(ik) :: i, w
+      integer(ik) :: i
 
-      do w = 1, size(self%window, kind=ik)
-         do i = 1, size(tips, kind=ik)
-            if (self%built(w)) self%built(w) = .not. has_moved(self, tips, i, w)
-         end do
+      has_to = .not. allocated(window%made)
+      do i = 1, size(tips, kind=ik)
+         if (.not. has_to) has_to = has_moved(window, tips, i)
       end do
-   end subroutine see_tips
+   end function has_to_be_meshed
 
    !> A tip has moved noticeably in a window since that was meshed.
-   pure logical function has_moved(self, tips, i, w)
-      class(windows_t), intent(in) :: self
+   pure logical function has_moved(window, tips, i)
+      type(window_t), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
-      integer(ik), intent(in) :: i, w
+      integer(ik), intent(in) :: i
       real(rk) :: apart, moved
       integer(ik) :: k
 
-      associate (tip => tips(i), before => self%built_for(:, i, w), window => self%window(w))
+      associate (tip => tips(i), before => window%made%place(:, i))
          moved = norm2(tip%xy - before)
          has_moved = moved > 0.0_rk
          if (has_moved) has_moved = overlaps(window, tip%origin, before) .or. &
@@ -349,7 +385,7 @@ contains
          end do
          ! The last stretch to a joint, there or back, is short but not small.
          has_moved = any(window%serves == i) .or. moved > noticeable*apart .or. &
-                     (tip%is_free .neqv. self%was_free(i, w))
+                     (tip%is_free .neqv. window%made%is_free(i))
       end associate
    end function has_moved
 
@@ -362,54 +398,72 @@ contains
    end function overlaps
 
    !> The window of a tip must be meshed again, for it is to be a better one.
-   pure subroutine make_anew(self, tip)
+   pure subroutine make_anew(self, tip, seen)
       class(windows_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
+      type(window_tip_t), intent(inout) :: seen  !< that tip
 
-      self%built(self%window_of(tip)) = .false.
-      self%may_follow(self%window_of(tip)) = .false.
-      call self%tip(tip)%forget_coarse_error()
+      call forget_mesh(self%slot(self%window_of(tip))%window)
+      call seen%forget_coarse_error()
    end subroutine make_anew
 
+   !> A window has to be meshed anew.
+   pure subroutine forget_mesh(window)
+      type(window_t), intent(inout) :: window
+
+      if (allocated(window%made)) deallocate (window%made)
+   end subroutine forget_mesh
+
    !> A tip is to be known from the body from now on, not from a window of its own.
-   pure subroutine take_body(self, tip)
+   pure subroutine take_body(self, tip, seen)
       class(windows_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
+      type(window_tip_t), intent(inout) :: seen  !< that tip
       integer(ik) :: body, own
 
       own = self%window_of(tip)
-      body = size(self%window, kind=ik)
+      body = size(self%slot, kind=ik)
       self%window_of(tip) = body
-      self%window(own)%serves = numbers_of(self%window_of == own)
-      self%window(body)%serves = numbers_of(self%window_of == body)
-      self%built(own) = .false.
-      call self%make_anew(tip)
+      self%slot(own)%window%serves = numbers_of(self%window_of == own)
+      self%slot(body)%window%serves = numbers_of(self%window_of == body)
+      call forget_mesh(self%slot(own)%window)
+      call self%make_anew(tip, seen)
    end subroutine take_body
 
    !> The network is another one now, not only at its tips.
    pure subroutine network_changed(self)
       class(windows_t), intent(inout) :: self
+      integer(ik) :: w
 
-      if (.not. allocated(self%built)) return
-      self%built = .false.
-      self%may_follow = .false.
+      if (.not. allocated(self%slot)) return
+      do w = 1, size(self%slot, kind=ik)
+         call forget_mesh(self%slot(w)%window)
+      end do
    end subroutine network_changed
 
    !> The coarse mesh is another one now.
    pure subroutine coarse_changed(self)
       class(windows_t), intent(inout) :: self
+      integer(ik) :: w
 
-      if (allocated(self%projected)) self%projected = .false.
+      if (.not. allocated(self%slot)) return
+      do w = 1, size(self%slot, kind=ik)
+         if (allocated(self%slot(w)%window%made)) self%slot(w)%window%made%is_projected = .false.
+      end do
    end subroutine coarse_changed
 
-   !> Number of unknowns of all windows.
-   pure integer(ik) function n_unknowns(self)
+   !> Number of unknowns of all windows of free tips.
+   pure integer(ik) function n_unknowns(self, tips)
       class(windows_t), intent(in) :: self
-      integer(ik) :: i
+      type(tip_t), intent(in) :: tips(:)
+      integer(ik) :: w
 
       n_unknowns = 0
-      do i = 1, size(self%window, kind=ik)
-         if (self%built(i)) n_unknowns = n_unknowns + self%window(i)%model%constraints%n_dofs
+      do w = 1, size(self%slot, kind=ik)
+         associate (window => self%slot(w)%window)
+            if (.not. allocated(window%made) .or. .not. self%is_asked(w, tips)) cycle
+            n_unknowns = n_unknowns + window%model%constraints%n_dofs
+         end associate
       end do
    end function n_unknowns
 

@@ -1,6 +1,6 @@
 !> Tips that compete: small systems whose answers are written down by hand.
 program test_growth_competition
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use growth_competition, only: complementary_advances, learn_from_trial, preference
    use testing_checks, only: checks_t
    implicit none(type, external)

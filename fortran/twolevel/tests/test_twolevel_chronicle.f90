@@ -33,7 +33,7 @@ contains
       call simulation%set_scene(scene)
       simulation%start = network_of_scene(scene)
       simulation%network = simulation%start
-      simulation%state%time = 0.5_rk
+      simulation%now%coarse%time = 0.5_rk
       allocate (simulation%tip(2))
       do end = 1, 2
          simulation%tip(end)%fracture = 1

@@ -4,16 +4,17 @@
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
 !> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
 program test_twolevel_doubt
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use report_watch, only: doubtful
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
-   use testing_checks, only: checks_t
-   use twolevel_doubt, only: improve_windows
+   use report_watch, only: doubtful
+   use twolevel_doubt, only: find_improvements, improve_windows
    use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_stepping, only: improvement_t
    use twolevel_trust, only: estimate_coarse_errors
    implicit none(type, external)
 
@@ -76,6 +77,27 @@ contains
       call checks%no_error(error, "errors")
    end subroutine evaluate
 
+   !> Better windows for doubtful tips.
+   subroutine improve(simulation, any_improved, error)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      logical, intent(out) :: any_improved
+      type(error_t), allocatable, intent(out) :: error
+      type(improvement_t), allocatable :: improvements(:)
+
+      call find_improvements(simulation, 0.0_rk, improvements, error)
+      any_improved = size(improvements) > 0
+      call improve_windows(simulation, improvements)
+   end subroutine improve
+
+   !> Which of the tips' own windows have a mesh.
+   function are_built(simulation)
+      type(twolevel_simulation_t), intent(in) :: simulation
+      logical :: are_built(2)
+      integer :: i
+
+      are_built = [(allocated(simulation%windows%slot(i)%window%made), i=1, 2)]
+   end function are_built
+
    !> Smaller than the coarse cell at its tip: K is far off, which shows beside the body; where that
    !! is not asked nothing is known. Then larger.
    subroutine test_small_window(has_reference)
@@ -83,6 +105,7 @@ contains
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       logical :: any_improved
+      integer :: i
       real(rk) :: toughness  !< K_eq is 1 % above it, for what is known of K is [Pa m^1/2]
 
       toughness = 0.97_rk*usual_toughness
@@ -99,10 +122,11 @@ contains
          call checks%is_true(all(now%k1_error <= 0.0_rk), "closed faces have no K_I all the same")
       end associate
       call checks%is_true(all(doubtful(simulation%tip, toughness)), "the tips are doubtful")
-      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call improve(simulation, any_improved, error)
       call checks%no_error(error, "better windows")
-      call checks%is_true(any_improved .and. .not. any(simulation%windows%built), "to be built")
-      call checks%is_true(all(simulation%windows%window(:2)%times_larger == 1), "larger ones")
+      call checks%is_true(any_improved .and. .not. any(are_built(simulation)), "to be built")
+      call checks%is_true(all([(simulation%windows%slot(i)%window%times_larger == 1, i=1, 2)]), &
+                          "larger ones")
       call checks%is_true(size(simulation%chronicle%events) == 2, "an event for each")
       call evaluate(simulation)
       associate (now => simulation%tip%intensity)
@@ -110,7 +134,7 @@ contains
          call checks%is_true(all(abs(now%k2 - known) <= now%k2_error + finite*known), &
                              "within its error")
       end associate
-      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call improve(simulation, any_improved, error)
       call checks%no_error(error, "good windows")
       call checks%is_true(.not. any_improved, "that is enough")
    end subroutine test_small_window
@@ -122,11 +146,12 @@ contains
       integer(ik) :: n_unknowns
 
       call start(0.3_rk, 0.5_rk, simulation, usual_toughness)
-      n_unknowns = simulation%windows%n_unknowns()
-      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      n_unknowns = simulation%windows%n_unknowns(simulation%tip)
+      call improve(simulation, any_improved, error)
       call checks%no_error(error, "good windows")
-      call checks%is_true(.not. any_improved .and. all(simulation%windows%built(:2)), "they stay")
-      call checks%is_true(simulation%windows%n_unknowns() == n_unknowns, "all of them")
+      call checks%is_true(.not. any_improved .and. all(are_built(simulation)), "they stay")
+      call checks%is_true(simulation%windows%n_unknowns(simulation%tip) == n_unknowns, &
+                          "all of them")
       associate (now => simulation%tip%intensity)
          ! What verification/tip_cells allows.
          call checks%is_true(all(abs(now%k2 - known) < 0.01_rk*known), "K is right")
@@ -143,12 +168,12 @@ contains
 
       call start(0.3_rk, 0.5_rk, simulation, usual_toughness)
       do n = 1, 5
-         simulation%windows%tip%found%k2_error = 0.1_rk*usual_toughness
-         simulation%windows%tip%of_elements = 0.1_rk*usual_toughness
+         simulation%now%windows%tip%found%k2_error = 0.1_rk*usual_toughness
+         simulation%now%windows%tip%of_elements = 0.1_rk*usual_toughness
          simulation%tip%intensity%k2_error = 0.1_rk*usual_toughness
-         call improve_windows(simulation, 0.0_rk, any_improved, error)
+         call improve(simulation, any_improved, error)
          if (allocated(error)) exit
-         call checks%is_true(all(simulation%windows%tip%times_finer == n), "finer and finer")
+         call checks%is_true(all(simulation%now%windows%tip%times_finer == n), "finer and finer")
       end do
       call checks%is_true(n == 5, "four times")
     call checks%fails_with(error, "error of K over K_IC where a tip would grow 10 % above 5 at "// &
@@ -163,19 +188,19 @@ contains
       logical :: any_improved
 
       call start(0.4_rk, 0.5_rk, simulation, usual_toughness)
-      simulation%windows%tip%of_edge = 0.1_rk*usual_toughness
+      simulation%now%windows%tip%of_edge = 0.1_rk*usual_toughness
       simulation%tip%intensity%k2_error = 0.1_rk*usual_toughness
-      call improve_windows(simulation, 0.0_rk, any_improved, error)
+      call improve(simulation, any_improved, error)
       call checks%no_error(error, "the body")
       call checks%is_true(any_improved .and. all(simulation%windows%window_of == 3), "for both")
-      call checks%is_true(size(simulation%windows%window(3)%serves) == 2, "one for both")
-      call checks%is_true(size(simulation%windows%window(1)%serves) == 0, "not its own")
+      call checks%is_true(size(simulation%windows%slot(3)%window%serves) == 2, "one for both")
+      call checks%is_true(size(simulation%windows%slot(1)%window%serves) == 0, "not its own")
       call evaluate(simulation)
-      associate (now => simulation%tip%intensity, seen => simulation%windows%tip)
+      associate (now => simulation%tip%intensity, seen => simulation%now%windows%tip)
          call checks%is_true(all(abs(now%k2 - known) < 0.01_rk*known), "K of the body")
          call checks%is_true(all(seen%of_edge < 1.0e-3_rk*known), "nothing comes over the edge")
       end associate
-      call checks%is_true(.not. any(simulation%windows%built(:2)), "its own is not built")
+      call checks%is_true(.not. any(are_built(simulation)), "its own is not built")
    end subroutine test_body
 
 end program test_twolevel_doubt

@@ -71,8 +71,8 @@ contains
             call advance(loaded)
             call advance(in_situ)
          end if
-         one = history_of_levels(loaded, 0.0_rk)
-         other = history_of_levels(in_situ, 0.0_rk)
+         one = history_of_levels(loaded)
+         other = history_of_levels(in_situ)
          call same(one%well_pressure(1), other%well_pressure(1), 1.0e-9_rk, "pressure at the well")
          call same(one%max_slip, other%max_slip, 1.0e-9_rk, "slip")
          call same(one%fracture_volume, other%fracture_volume, 1.0e-9_rk, "volume")
@@ -85,13 +85,14 @@ contains
                    "K_II by displacement correlation")
       end do
       call checks%is_true(one%max_slip > 1.0e-6_rk, "it slips")
-      call probes_of_levels(loaded, probe, error)
-      call probes_of_levels(in_situ, probe_in_situ, error)
+      call probes_of_levels(loaded%scene%probes, loaded%problem, loaded%now%coarse, probe, error)
+      call probes_of_levels(in_situ%scene%probes, in_situ%problem, in_situ%now%coarse, &
+                            probe_in_situ, error)
       call same(probe%pressure(1), probe_in_situ%pressure(1), 1.0e-9_rk, "pressure of a probe")
       call checks%is_close(maxval(abs(probe%stress - probe_in_situ%stress)), 0.0_rk, 0.02_rk, &
                            "stress of a probe")
-      fields = snapshot_of_levels(loaded)
-      fields_in_situ = snapshot_of_levels(in_situ)
+      fields = snapshot_of_levels(loaded%scene, loaded%problem, loaded%now%coarse)
+      fields_in_situ = snapshot_of_levels(in_situ%scene, in_situ%problem, in_situ%now%coarse)
       call checks%is_close(maxval(abs(fields%matrix%stress - fields_in_situ%matrix%stress)), &
                            0.0_rk, 0.02_rk, "stress field")
       call checks%is_close(maxval(abs(fields%matrix%pressure - fields_in_situ%matrix%pressure)), &
@@ -152,9 +153,9 @@ contains
       call checks%no_error(error, "a basin")
       do round = 1, 2
          call advance(simulation)
-         call checks%is_close(maxval(abs(simulation%state%unknowns)), 0.0_rk, 0.0_rk, &
+         call checks%is_close(maxval(abs(simulation%now%coarse%unknowns)), 0.0_rk, 0.0_rk, &
                               "nothing moves or flows")
-         call checks%is_close(maxval(abs(simulation%state%jump)), 0.0_rk, 0.0_rk, "no jump")
+         call checks%is_close(maxval(abs(simulation%now%coarse%jump)), 0.0_rk, 0.0_rk, "no jump")
          ! Rounding: 1e-16 of 75 MPa over the root of 1 m is 1e-8; times 1e4 operations.
          call checks%is_close(maxval(abs([simulation%tip%intensity%k1, &
                                           simulation%tip%intensity%k2])), 0.0_rk, 1.0e-4_rk, "K")
@@ -163,7 +164,7 @@ contains
             call checks%no_error(error, "a new mesh")
          end if
       end do
-      call checks%is_true(maxval(simulation%state%traction(1, :, :)) < -20.0e6_rk, &
+      call checks%is_true(maxval(simulation%now%coarse%traction(1, :, :)) < -20.0e6_rk, &
                           "contact bears the stress beyond the pressure")
    end subroutine check_rest
 
@@ -212,7 +213,8 @@ contains
       ! (a/W)^2: 0.1 %. Of the difference, 0.4, that is 2.5 %.
       call checks%is_close(0.5_rk*sum(k), 1.0_rk, 0.01_rk, "mean")
       call checks%is_close(k(2) - k(1), 0.4_rk, 0.01_rk, "difference")
-      call same(simulation%well_pressure(), 300.0e6_rk + net, 0.002_rk, "pressure")
+      call same(simulation%problem%well_pressure(simulation%scene, simulation%now%coarse), &
+                300.0e6_rk + net, 0.002_rk, "pressure")
    end subroutine check_gradient
 
 end program test_twolevel_in_situ

@@ -67,7 +67,8 @@ contains
          exit
       end do
       call checks%is_true(states > 0, name//": something has joined")
-      call checks%is_close(simulation%mass_error/simulation%injected, 0.0_rk, 1.0e-10_rk, &
+      call checks%is_close(simulation%now%fluid%mass_error/simulation%now%fluid%injected, 0.0_rk, &
+                           1.0e-10_rk, &
                            name//": fluid is conserved")
    end subroutine march
 
@@ -97,7 +98,10 @@ contains
                                       - [1.2_rk, 1.0_rk])), 0.0_rk, 0.1_rk*gap, "right joint")
       call checks%is_close(simulation%tip(1)%advance, gap, 1.0e-3_rk*gap, "over the gap")
       s = scene%material%toughness/sqrt(pi*(half - gap))
-      call checks%is_true(simulation%well_pressure() < 2.0e6_rk + s, "the pressure falls")
+      associate (problem => simulation%problem, state => simulation%now%coarse)
+         call checks%is_true(problem%well_pressure(simulation%scene, state) < 2.0e6_rk + s, &
+                             "the pressure falls")
+      end associate
    end subroutine test_two_bars
 
    !> End to end: one joins the other, which is a tip no more.

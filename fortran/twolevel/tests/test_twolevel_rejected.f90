@@ -1,49 +1,74 @@
-!> A try of a step that is rejected leaves no trace: a run with further ones is the same to the last
-!! bit. Not so yet where tips are on their way: the coarse mesh keeps the cells of pieces that are
-!! begun, and windows the meshes that have followed the tips. What is known of the tips is as
-!! before.
+!> A try of a step that is rejected leaves no trace, wherever tips are and whatever it has begun:
+!! all parts of the state are as before to the last bit, and a run with further tries is the same.
 program test_twolevel_rejected
+   use testing_checks, only: checks_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use base_timers, only: timers_t
    use coarse_state, only: step_report_t
-   use growth_rivals, only: company_t
    use report_rows, only: history_row_t
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
-   use testing_checks, only: checks_t
    use twolevel_equilibrium, only: find_equilibrium
+   use twolevel_levels_state, only: checkpoint_t, different_part, equal, part_t, parts
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_stepping, only: trial_t
    implicit none(type, external)
 
-   integer, parameter :: most = 22  !< states that are followed
+   integer, parameter :: most = 60  !< states that are followed
    type(checks_t) :: checks
    type(timers_t) :: timers
 
    call timers%begin()
+   call test_parts()
    call test_rejected()
-   call test_on_the_way()
    call checks%finish()
 
 contains
 
-   !> Tries of several lengths, before each state in turn, beside the run without.
+   !> A copy is equal; a change of a part is found, and called by its name.
+   subroutine test_parts()
+      type(twolevel_simulation_t) :: simulation
+      type(error_t), allocatable :: error
+      type(checkpoint_t) :: copy, state
+      type(part_t), allocatable :: list(:)
+
+      call simulation%begin(two_fractures(), timers, error)
+      call simulation%next_state(timers, error)
+      if (.not. allocated(error)) call simulation%grow(timers, error)
+      call checks%no_error(error, "a state")
+      if (allocated(error)) return
+      state = simulation%present_state()
+      copy = state
+      call checks%is_true(equal(state, copy), "a copy is equal")
+      list = parts(state)
+      call checks%is_true(size(list) > 20, "a part for each thing that is remembered")
+      copy%levels%coarse%jump(1, 2, 3) = nearest(copy%levels%coarse%jump(1, 2, 3), 1.0_rk)
+      call checks%is_true(different_part(state, copy) == "jumps", "a bit of a jump")
+      copy = state
+      copy%front%tip(1)%xy(1) = nearest(copy%front%tip(1)%xy(1), 1.0_rk)
+      call checks%is_true(different_part(state, copy) == "tips", "a bit of a tip's place")
+      copy = state
+      copy%levels%windows%history(1)%contact%slip_before(1, 1) = 1.0_rk
+      call checks%is_true(different_part(state, copy) == "contact in windows", "a slip")
+      copy = state
+      deallocate (copy%levels%given)
+      call checks%is_true(equal(state, copy), "nothing and none are the same")
+   end subroutine test_parts
+
+   !> Tries of several lengths before each state, beside the run without.
    subroutine test_rejected()
-      real(rk), parameter :: lengths(3) = [0.1_rk, 0.4_rk, 1.0_rk]
+      real(rk), parameter :: lengths(2) = [0.5_rk, 8.0_rk]
       type(history_row_t), allocatable :: alone(:), row(:)
       real(rk), allocatable :: k_alone(:, :), k(:, :)
-      logical :: is_tried(most)
-      integer :: i, rejected
+      integer :: i, new_meshes, none
 
-      is_tried = .false.
-      call follow(0.0_rk, is_tried, alone, k_alone, rejected)
-      ! The first two states are that at rest and one with no rates before it.
-      is_tried(3:) = .not. alone(3:)%fracture_length > alone(1)%fracture_length
-      call checks%is_true(count(is_tried) > 5 .and. count(.not. is_tried) > 5, "growth")
+      call follow(0.0_rk, alone, k_alone, none)
+      call checks%is_true(maxval(alone%fracture_length) > alone(1)%fracture_length + 0.04_rk, &
+                          "growth of several pieces")
       do i = 1, size(lengths)
-         call follow(lengths(i), is_tried, row, k, rejected)
-         call checks%is_true(rejected == 2*count(is_tried), "tries are rejected")
+         call follow(lengths(i), row, k, new_meshes)
+         if (lengths(i) > 1.0_rk) call checks%is_true(new_meshes > 3, "pieces are begun in vain")
          call same(alone%time, row%time, "times")
          call same(pressures(alone), pressures(row), "pressures")
          call same(alone%fracture_length, row%fracture_length, "lengths")
@@ -62,54 +87,6 @@ contains
 
       pressures = [(rows(i)%well_pressure, i=1, size(rows))]
    end function pressures
-
-   !> Tries in which tips go on: what decides about the next one is as it was.
-   subroutine test_on_the_way()
-      type(twolevel_simulation_t) :: simulation
-      type(error_t), allocatable :: error
-      real(rk), allocatable :: matrix(:, :), measured(:, :), place(:, :), reached(:)
-      integer :: i, rejected
-
-      rejected = 0
-      call simulation%begin(two_fractures(), timers, error)
-      do i = 1, most
-         if (i > 2) then
-            matrix = simulation%rivals%matrix
-            measured = simulation%rivals%measured
-            reached = simulation%segment%reached
-            place = reshape([simulation%tip%xy(1), simulation%tip%xy(2)], [size(reached), 2])
-            associate (kinds => kinds_of(simulation))
-               call reject(simulation, 1.0_rk, rejected)
-               call checks%is_true(all(kinds == kinds_of(simulation)), "the same kinds of tips")
-            end associate
-            call same(reshape(matrix, [size(matrix)]), &
-                      reshape(simulation%rivals%matrix, [size(matrix)]), "rivals")
-            call same(reshape(measured, [size(matrix)]), &
-                      reshape(simulation%rivals%measured, [size(matrix)]), "measured rivals")
-            call same(reached, simulation%segment%reached, "places along pieces")
-            call same(reshape(place, [size(place)]), [simulation%tip%xy(1), simulation%tip%xy(2)], &
-                      "places")
-         end if
-         call simulation%next_state(timers, error)
-         if (.not. allocated(error)) call simulation%grow(timers, error)
-         call checks%no_error(error, "a state")
-         if (allocated(error)) return
-      end do
-   end subroutine test_on_the_way
-
-   !> Which tips would grow as one now.
-   function kinds_of(simulation) result(kind)
-      type(twolevel_simulation_t), intent(in) :: simulation
-      integer(ik) :: kind(size(simulation%tip))
-      type(company_t) :: company
-
-      company = simulation%company
-      associate (drive => simulation%tip%drive%intensity/simulation%rules%toughness)
-         call company%find_kinds(drive, 0.0_rk*drive, simulation%segment%gain, &
-                                 simulation%tip%arrested, simulation%rules%increment, &
-                                 simulation%rivals, kind)
-      end associate
-   end function kinds_of
 
    subroutine same(a, b, what)
       real(rk), intent(in) :: a(:), b(:)
@@ -135,22 +112,22 @@ contains
    end function two_fractures
 
    !> The states of a run, with tries that are rejected before each of its steps.
-   subroutine follow(length, is_tried, row, k, rejected)
-      real(rk), intent(in) :: length  !< of the tries, over that of the step [-]
-      logical, intent(in) :: is_tried(:)  !< (states) there are such tries before it
+   subroutine follow(length, row, k, new_meshes)
+      real(rk), intent(in) :: length  !< of the tries, over that of the step; 0: there are none [-]
       type(history_row_t), allocatable, intent(out) :: row(:)  !< (states)
       real(rk), allocatable, intent(out) :: k(:, :)  !< (tips, states) K_eq [Pa m^1/2]
-      integer, intent(out) :: rejected  !< tries
+      integer, intent(out) :: new_meshes  !< tries with one of their own
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       integer :: i
 
-      rejected = 0
+      new_meshes = 0
       call simulation%begin(two_fractures(), timers, error)
       call checks%no_error(error, "begin")
       allocate (row(most), k(size(simulation%tip), most))
       do i = 1, most
-         if (is_tried(i)) call reject(simulation, length, rejected)
+         ! The first two states are that at rest and one with no rates before it.
+         if (length > 0.0_rk .and. i > 2) call reject(simulation, length, new_meshes)
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) call simulation%grow(timers, error)
          call checks%no_error(error, "a state")
@@ -161,31 +138,35 @@ contains
    end subroutine follow
 
    !> Two tries that are rejected for their error in time: at once, and with the tips where they
-   !! come to rest.
-   subroutine reject(simulation, length, rejected)
+   !! come to rest, or later.
+   subroutine reject(simulation, length, new_meshes)
       type(twolevel_simulation_t), intent(inout) :: simulation
       real(rk), intent(in) :: length  !< over that of the step [-]
-      integer, intent(inout) :: rejected
+      integer, intent(inout) :: new_meshes  !< tries with one of their own
       type(error_t), allocatable :: error
       type(step_report_t) :: report
       type(trial_t) :: trial
-      real(rk) :: tolerance, time
+      type(checkpoint_t) :: before
+      real(rk) :: tolerance
       integer :: k
 
-      time = simulation%time()
       tolerance = simulation%scene%time%tolerance
-      call simulation%windows%accept()
-      call simulation%reference%accept()
+      call simulation%begin_step()
+      before = simulation%present_state()
       simulation%scene%time%tolerance = tiny(1.0_rk)
       do k = 1, 2
          call find_equilibrium(simulation, length*simulation%stepper%next, .false., .false., &
                                timers, report, trial, error)
          call checks%no_error(error, "a try")
+         if (allocated(simulation%kept_problem)) new_meshes = new_meshes + 1
+         call checks%is_true(.not. equal(simulation%present_state(), before), "a try changes much")
+         call simulation%put_back()
+         call checks%is_true(different_part(simulation%present_state(), before) == "", &
+                             "and leaves nothing: "//different_part(simulation%present_state(), &
+                                                                    before))
          simulation%scene%time%tolerance = trial%time_error/3.0_rk
-         rejected = rejected + 1
       end do
       simulation%scene%time%tolerance = tolerance
-      call checks%is_close(simulation%time(), time, 0.0_rk, "nothing is accepted")
    end subroutine reject
 
 end program test_twolevel_rejected

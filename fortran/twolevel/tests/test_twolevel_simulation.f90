@@ -19,6 +19,7 @@ program test_twolevel_simulation
    type(checks_t) :: checks
    type(timers_t) :: timers
 
+   call test_rock_well()
    call test_wells()
    call test_refused_step()
    call test_growth("conserved")
@@ -30,6 +31,53 @@ program test_twolevel_simulation
    call checks%finish()
 
 contains
+
+   !> A well in the rock, with a rate up to a pressure, after an initial state in equilibrium: it
+   !! gives its rate, then what its pressure lets through; a try that is put back leaves the same
+   !! matrix, though its conductances depend on the step's length.
+   subroutine test_rock_well()
+      real(rk), parameter :: limit = 8.0e6_rk
+      type(scene_t) :: scene
+      type(twolevel_simulation_t) :: simulation
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), allocatable :: flow(:)
+      real(rk) :: dt
+      integer :: step, try
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      scene%growth%intensities = .false.
+      scene%initial%fracture_pressure = "equilibrated"
+      scene%time = time_t(end=1.0e6_rk, tolerance=3.0e-2_rk, smallest_factor=1.0e-9_rk)
+      call add_fracture(scene, "far", [0.2_rk, 0.4_rk], [0.2_rk, 0.3_rk], 0.5_rk, 0.0_rk)
+      scene%injections = [injection_t(x=1.2_rk, y=1.1_rk, radius=0.004_rk, rate=[1.0e-6_rk], &
+                                      pressure=[limit], storage=1.0e-12_rk)]
+      call simulation%begin(scene, timers, error)
+      call checks%no_error(error, "a well in the rock")
+      do step = 1, 40
+         call simulation%next_state(timers, error)
+         if (.not. allocated(error)) call simulation%grow(timers, error)
+         call checks%no_error(error, "a state of it")
+         if (allocated(error)) return
+         call simulation%begin_step()
+         do try = 1, 3
+            dt = merge(0.3_rk, 1.0_rk, try == 2)*simulation%dt
+            if (simulation%is_initial) dt = 1.0_rk
+            call simulation%try_step(dt, timers, report, error)
+            call checks%no_error(error, "a try of it")
+            call simulation%put_back()
+            if (try == 1) flow = simulation%problem%model%matrix%flow
+         end do
+         call checks%is_close(maxval(abs(simulation%problem%model%matrix%flow - flow)), 0.0_rk, &
+                              0.0_rk, "the same matrix")
+         associate (state => simulation%now%coarse)
+            call checks%is_true(state%well_head(1) <= limit*(1.0_rk + 1.0e-6_rk), "up to its limit")
+         end associate
+      end do
+      call checks%is_true(simulation%now%at_limit(1), "it has come to it")
+      call checks%is_close(simulation%now%fluid%mass_error/simulation%now%fluid%injected, 0.0_rk, &
+                           1.0e-9_rk, "all fluid is accounted for")
+   end subroutine test_rock_well
 
    !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
    subroutine test_wells()
@@ -51,12 +99,14 @@ contains
                                       rate=[-3.0e-6_rk], start=0.0_rk, end=25.0_rk)]
       call simulation%begin(scene, timers, error)
       call checks%no_error(error, "wells")
-      n = simulation%mesh%fracture%n_cells
-      call checks%is_true(all(shape(simulation%share) == [n, 3_ik]), "shares of three wells")
-      call checks%is_close(maxval(abs(sum(simulation%share, dim=1) - 1.0_rk)), 0.0_rk, &
+      n = simulation%problem%mesh%fracture%n_cells
+      call checks%is_true(all(shape(simulation%problem%share) == [n, 3_ik]), &
+                          "shares of three wells")
+      call checks%is_close(maxval(abs(sum(simulation%problem%share, dim=1) - 1.0_rk)), 0.0_rk, &
                            1.0e-14_rk, "shares add up to one")
       do i = 1, n
-         associate (fracture => simulation%mesh%fracture, share => simulation%share(i, :))
+         associate (fracture => simulation%problem%mesh%fracture, &
+                    share => simulation%problem%share(i, :))
             middle = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, i)), dim=2)
             if (fracture%cell_fracture(i) == 1) then
                call checks%is_close(share(2), 0.0_rk, 0.0_rk, "well 2 feeds fracture 2 only")
@@ -116,18 +166,18 @@ contains
       call simulation%begin(scene, timers, error)
       call simulation%equilibrate(timers, report, error)
       call checks%is_true(report%converged, "initial state")
-      pressure = simulation%state%pressure
-      time = simulation%state%time
-      simulation%model%settings%iterations_max = 0
+      pressure = simulation%now%coarse%pressure
+      time = simulation%now%coarse%time
+      simulation%problem%model%settings%iterations_max = 0
       call step(simulation, report, error)
       call checks%no_error(error, "a refused step is no error")
       call checks%is_true(.not. report%converged, "refused step")
-      call checks%is_close(simulation%state%time, time, 0.0_rk, "time stands still")
-      call checks%is_close(maxval(abs(simulation%state%pressure - pressure)), 0.0_rk, 0.0_rk, &
+      call checks%is_close(simulation%now%coarse%time, time, 0.0_rk, "time stands still")
+      call checks%is_close(maxval(abs(simulation%now%coarse%pressure - pressure)), 0.0_rk, 0.0_rk, &
                            "the pressure stays")
-      call checks%is_close(simulation%injected, 0.0_rk, 0.0_rk, "nothing is injected")
-      call checks%is_close(simulation%leaked, 0.0_rk, 0.0_rk, "nothing leaks")
-      call checks%is_true(simulation%undrained, "still the initial state")
+      call checks%is_close(simulation%now%fluid%injected, 0.0_rk, 0.0_rk, "nothing is injected")
+      call checks%is_close(simulation%now%fluid%leaked, 0.0_rk, 0.0_rk, "nothing leaks")
+      call checks%is_true(simulation%now%undrained, "still the initial state")
    end subroutine test_refused_step
 
    !> A step of the scene's length, taken if it converges.
@@ -140,7 +190,7 @@ contains
          call simulation%try_step(dt, timers, report, error)
          if (report%converged) call simulation%book_step(dt)
       end associate
-      call simulation%windows%accept()
+      call simulation%begin_step()
    end subroutine step
 
    !> Both ends grow alike, and all fluid is accounted for: what the wells gave and what new cells
@@ -160,17 +210,17 @@ contains
       call simulation%begin(scene, timers, error)
       call simulation%equilibrate(timers, report, error)
       call checks%is_true(report%converged, new_volume//": initial state")
-      first = simulation%state
+      first = simulation%now%coarse
       given = -volume(simulation)
       compressed = 0.0_rk
       leaked = 0.0_rk
       growths = 0
       do steps = 1, 8
-         before = simulation%state
+         before = simulation%now%coarse
          call step(simulation, report, error)
          call checks%is_true(report%converged, new_volume//": a step converges")
          compressed = compressed + compression(simulation, before)
-         leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
+         leaked = leaked + scene%time%step*sum(simulation%now%coarse%leakoff*lengths(simulation))
          call simulation%evaluate(timers, error)
          call checks%no_error(error, new_volume//": tips")
          call simulation%grow_tips(any_grew, timers, error)
@@ -184,35 +234,38 @@ contains
       end do
       call checks%is_true(growths == 3, new_volume//": three growths")
       ! A step after the last growth fills its cells.
-      before = simulation%state
+      before = simulation%now%coarse
       call step(simulation, report, error)
       call checks%is_true(report%converged, new_volume//": the last step")
       compressed = compressed + compression(simulation, before)
-      leaked = leaked + scene%time%step*sum(simulation%state%leakoff*lengths(simulation))
+      leaked = leaked + scene%time%step*sum(simulation%now%coarse%leakoff*lengths(simulation))
 
-      gain = [end_gain(simulation%coarse_network, simulation%start, 1_ik, 1_ik), &
-              end_gain(simulation%coarse_network, simulation%start, 1_ik, 2_ik)]
+      gain = [end_gain(simulation%now%coarse_network, simulation%start, 1_ik, 1_ik), &
+              end_gain(simulation%now%coarse_network, simulation%start, 1_ik, 2_ik)]
       call checks%is_close(gain(1), gain(2), 0.02_rk*maxval(gain), new_volume &
                            //": both ends gain alike")
       call checks%is_close(maxval(abs(simulation%tip(1)%xy + simulation%tip(2)%xy &
                                       - 2.0_rk)), 0.0_rk, 0.02_rk*maxval(gain), new_volume &
                            //": and in the same direction")
-      given = given + volume(simulation) + compressed + sum(simulation%state%content) &
+      given = given + volume(simulation) + compressed + sum(simulation%now%coarse%content) &
               - sum(first%content)
-      call checks%is_close(simulation%injected, (steps + 1)*scene%time%step*1.0e-7_rk, &
+      call checks%is_close(simulation%now%fluid%injected, (steps + 1)*scene%time%step*1.0e-7_rk, &
                            1.0e-19_rk, new_volume//": injected")
-      call checks%is_close(given, simulation%injected + simulation%prefilled, &
-                           1.0e-12_rk*simulation%injected, new_volume &
+      call checks%is_close(given, simulation%now%fluid%injected + simulation%now%fluid%prefilled, &
+                           1.0e-12_rk*simulation%now%fluid%injected, new_volume &
                            //": all fluid is accounted for")
-      call checks%is_close(simulation%leaked, leaked, 1.0e-12_rk*simulation%injected, &
+      call checks%is_close(simulation%now%fluid%leaked, leaked, &
+                           1.0e-12_rk*simulation%now%fluid%injected, &
                            new_volume//": leak-off")
-      call checks%is_true((simulation%prefilled > 0.0_rk) .eqv. new_volume == "prefilled", &
+      call checks%is_true((simulation%now%fluid%prefilled > 0.0_rk) &
+                          .eqv. new_volume == "prefilled", &
                           new_volume//": fluid brought along")
-      if (new_volume == "prefilled") call checks%is_close(simulation%prefilled, &
+      if (new_volume == "prefilled") call checks%is_close(simulation%now%fluid%prefilled, &
                                                           sum(gain)*scene%growth%new_aperture, &
                                                           1.0e-16_rk, "prefilled volume")
       print "(2a,2f8.4,a,es9.2)", new_volume, ": gains [m]", gain, ", fluid error/injected", &
-         (given - simulation%injected - simulation%prefilled)/simulation%injected
+         (given - simulation%now%fluid%injected - simulation%now%fluid%prefilled) &
+         /simulation%now%fluid%injected
    end subroutine test_growth
 
    !> Tips in equilibrium: no accepted state beyond the toughness, tips that advance are at it, both
@@ -240,7 +293,7 @@ contains
          if (any(simulation%tip%advance > 0.1_rk*increment)) then
             grown = grown + 1
             ! A new piece of a path begins with a twentieth of its length, and a kink.
-            begins = all(simulation%segment%reached < 0.051_rk*increment)
+            begins = all(simulation%now%segment%reached < 0.051_rk*increment)
             call checks%is_true((maxval(ratio) > 0.98_rk .or. begins) .and. &
                                 minval(ratio) > 0.8_rk, "tips that advance are at it")
          end if
@@ -251,7 +304,8 @@ contains
       ! The growth at the start is unstable: which end is ahead in it, windows alike but for their
       ! meshes do not tell, and one ends a part of a segment farther.
       call checks%is_close(gain(1), gain(2), 0.25_rk*increment, "both ends gain alike")
-      call checks%is_close(simulation%mass_error/simulation%injected, 0.0_rk, 1.0e-10_rk, &
+      call checks%is_close(simulation%now%fluid%mass_error/simulation%now%fluid%injected, 0.0_rk, &
+                           1.0e-10_rk, &
                            "fluid is conserved")
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
    end subroutine test_equilibrium
@@ -265,25 +319,25 @@ contains
       type(error_t), allocatable :: error
       logical :: has_measured
 
-      if (.not. all(simulation%segment%is_open)) return
-      state = simulation%state
+      if (.not. all(simulation%now%segment%is_open)) return
+      state = simulation%now%coarse
       tip = simulation%tip
-      call simulation%rivals%begin(2)
+      call simulation%now%rivals%begin(2)
       call measure_rivals(simulation, spread(.true., 1, 2), simulation%dt, timers, has_measured, &
                           error)
       call checks%no_error(error, "tips are set back")
-      call checks%is_true(has_measured .eqv. any(simulation%segment%reached &
-                                                 >= 0.5_rk*simulation%segment%length), &
+      call checks%is_true(has_measured .eqv. any(simulation%now%segment%reached &
+                                                 >= 0.5_rk*simulation%now%segment%length), &
                           "from half of a piece on")
-      call checks%is_close(maxval(abs(simulation%state%unknowns - state%unknowns)), 0.0_rk, &
+      call checks%is_close(maxval(abs(simulation%now%coarse%unknowns - state%unknowns)), 0.0_rk, &
                            0.0_rk, "the state stays")
-      call checks%is_close(simulation%state%time, state%time, 0.0_rk, "and its time")
+      call checks%is_close(simulation%now%coarse%time, state%time, 0.0_rk, "and its time")
       call checks%is_close(maxval(abs([simulation%tip(1)%xy - tip(1)%xy, &
                                        simulation%tip(2)%xy - tip(2)%xy, &
                                        simulation%tip%drive%intensity - tip%drive%intensity])), &
                            0.0_rk, 0.0_rk, "and the tips")
       if (.not. has_measured) return
-      associate (matrix => simulation%rivals%measured)
+      associate (matrix => simulation%now%rivals%measured)
          call checks%is_true(all(matrix < 0.0_rk), "growth takes fluid from both")
          call checks%is_close(matrix(1, 1), matrix(2, 2), 0.1_rk*maxval(abs(matrix)), "mirrored")
          call checks%is_close(matrix(1, 2), matrix(2, 1), 0.1_rk*maxval(abs(matrix)), "both ways")
@@ -323,8 +377,9 @@ contains
          if (simulation%is_initial) cycle
          call checks%is_close(simulation%time() - before, simulation%dt, &
                               1.0e-12_rk*simulation%time(), law//": time goes on by the step")
-         call checks%is_close(simulation%injected, 1.0e-7_rk*simulation%time(), &
-                              1.0e-12_rk*simulation%injected, law//": the well never rests")
+         call checks%is_close(simulation%now%fluid%injected, 1.0e-7_rk*simulation%time(), &
+                              1.0e-12_rk*simulation%now%fluid%injected, &
+                              law//": the well never rests")
          before = simulation%time()
          if (any(simulation%tip%advance > 0.0_rk) .and. .not. has_grown) then
             has_grown = .true.
@@ -345,7 +400,9 @@ contains
       type(twolevel_simulation_t), intent(in) :: simulation
       real(rk), allocatable :: length(:)
 
-      length = simulation%mesh%fracture%cell_s(2, :) - simulation%mesh%fracture%cell_s(1, :)
+      associate (s => simulation%problem%mesh%fracture%cell_s)
+         length = s(2, :) - s(1, :)
+      end associate
    end function lengths
 
    !> Volume of the fractures that holds fluid [m2].
@@ -353,7 +410,7 @@ contains
       type(twolevel_simulation_t), intent(in) :: simulation
       real(rk) :: volume
 
-      volume = sum((simulation%state%aperture - simulation%model%cells%roughness) &
+      volume = sum((simulation%now%coarse%aperture - simulation%problem%model%cells%roughness) &
                    *lengths(simulation))
    end function volume
 
@@ -363,7 +420,7 @@ contains
       type(state_t), intent(in) :: before
       real(rk) :: gain
 
-      associate (now => simulation%state, c_p => simulation%scene%fluid%compressibility)
+      associate (now => simulation%now%coarse, c_p => simulation%scene%fluid%compressibility)
          gain = c_p*sum(lengths(simulation)*now%aperture*(now%pressure - before%pressure))
       end associate
    end function compression
@@ -374,11 +431,11 @@ contains
       real(rk), parameter :: length = 0.3_rk*sqrt(2.0_rk)  !< of the fracture at the start [m]
       logical, allocatable :: is_old(:)
 
-      call checks%is_close(sum(simulation%share), 1.0_rk, 1.0e-14_rk, "shares after growth")
-      associate (s => simulation%mesh%fracture%cell_s)
+      call checks%is_close(sum(simulation%problem%share), 1.0_rk, 1.0e-14_rk, "shares after growth")
+      associate (s => simulation%problem%mesh%fracture%cell_s)
          is_old = s(1, :) > -1.0e-12_rk .and. s(2, :) < length + 1.0e-12_rk
       end associate
-      call checks%is_true(all((simulation%share(:, 1) > 0.0_rk) .eqv. is_old), &
+      call checks%is_true(all((simulation%problem%share(:, 1) > 0.0_rk) .eqv. is_old), &
                           "new cells have no share")
    end subroutine check_shares
 

@@ -58,7 +58,6 @@ contains
       do i = 1, mesh_before%fracture%n_cells
          cells%law(i) = contact_law_t(friction=0.1_rk*i, dilation=0.01_rk*i)
          cells%residual_aperture(i) = 1.0e-4_rk*i
-         cells%injection(i) = 1.0e-9_rk*i
          cells%roughness(i) = 1.0e-6_rk*i
       end do
    end subroutine various_cells
@@ -78,8 +77,6 @@ contains
                call checks%is_true(here(i) == there(old), "a cell stays in its fracture")
                call checks%is_close(after%residual_aperture(i), before%residual_aperture(old), &
                                     0.0_rk, "residual aperture kept")
-               call checks%is_close(after%injection(i), before%injection(old), 0.0_rk, &
-                                    "injection kept")
                call checks%is_close(after%roughness(i), before%roughness(old), 0.0_rk, &
                                     "roughness kept")
             else
@@ -89,8 +86,6 @@ contains
                call checks%is_close(after%residual_aperture(i), new_aperture, 0.0_rk, &
                                     "new aperture")
                call checks%is_close(after%roughness(i), new_aperture, 0.0_rk, "which is rough")
-               call checks%is_close(after%injection(i), 0.0_rk, 0.0_rk, &
-                                    "no injection into new cells")
             end if
             call checks%is_close(after%law(i)%friction, before%law(old)%friction, 0.0_rk, &
                                  "friction")
@@ -119,6 +114,7 @@ contains
          allocate (state%aperture, source=1.0e-3_rk + 1.0e-4_rk*scattered(n))
          allocate (state%void, source=[(1.0e-5_rk*i, i=1, n)])
          allocate (state%leakoff, source=1.0e-9_rk*scattered(n))
+         allocate (state%injection, source=[(1.0e-9_rk*i, i=1, n)])
       end associate
    end subroutine various_state
 
@@ -152,9 +148,10 @@ contains
                                 .and. equal([after%traction(:, :, i)], &
                                             [before%traction(:, :, old)]) &
                                 .and. equal([after%pressure(i), after%aperture(i), &
-                                             after%leakoff(i), after%void(i)], &
+                                             after%leakoff(i), after%void(i), after%injection(i)], &
                                             [before%pressure(old), before%aperture(old), &
-                                             before%leakoff(old), before%void(old)]), &
+                                             before%leakoff(old), before%void(old), &
+                                             before%injection(old)]), &
                                 "an old fracture cell is kept to the last bit")
             cycle
          end if
@@ -167,6 +164,7 @@ contains
          call checks%is_close(after%pressure(i), before%pressure(origin), 0.0_rk, &
                               "a new cell has the pressure of the one it grew from")
          call checks%is_close(after%aperture(i), new_aperture, 0.0_rk, "a new cell's aperture")
+         call checks%is_close(after%injection(i), 0.0_rk, 0.0_rk, "nothing is fed into it")
          call checks%is_true(all(after%contact(:, i) == state_stick) .and. &
                              equal([after%jump(:, :, i)], [0.0_rk, 0.0_rk, 0.0_rk, 0.0_rk]), &
                              "a new cell is closed")

@@ -52,7 +52,7 @@ contains
       call estimate_coarse_errors(simulation, timers, error)
       call checks%no_error(error, "estimate")
       do i = 1, size(simulation%tip)
-         associate (seen => simulation%windows%tip(i), tip => simulation%tip(i))
+         associate (seen => simulation%now%windows%tip(i), tip => simulation%tip(i))
             ! A millionth of 10 MPa*sqrt(pi*0.2 m).
             call checks%is_true(all(abs(seen%lacking) <= 8.0_rk), "nothing is lacking")
             call checks%is_true(all(seen%uncertain <= 32.0_rk), "nothing is uncertain")
@@ -71,16 +71,16 @@ contains
       integer :: i
 
       call start(0.1_rk, simulation)
-      force = simulation%model%matrix%elastic_forces(simulation%state%unknowns) &
-              - simulation%model%matrix%elastic_known
-      associate (n => simulation%mesh%n_cells)
+      force = simulation%problem%model%matrix%elastic_forces(simulation%now%coarse%unknowns) &
+              - simulation%problem%model%matrix%elastic_known
+      associate (n => simulation%problem%mesh%n_cells)
          ! 20 MPa on a cell's side of 1 cm are 2e5 N/m.
          call checks%is_close(maxval(abs(force(:2, :n))), 0.0_rk, 1.0e-3_rk, "balance of forces")
       end associate
       call estimate_coarse_errors(simulation, timers, error)
       call checks%no_error(error, "estimate")
       do i = 1, size(simulation%tip)
-         associate (seen => simulation%windows%tip(i), now => simulation%tip(i)%intensity)
+         associate (seen => simulation%now%windows%tip(i), now => simulation%tip(i)%intensity)
             call checks%is_true(seen%uncertain(2) > 0.0_rk, "the coarse level has a part")
             call checks%is_true(seen%uncertain(2) < 0.05_rk*abs(now%k2), "a small one")
             call checks%is_close(now%k2_error, seen%found%k2_error + seen%uncertain(2), &
@@ -93,7 +93,7 @@ contains
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "the same state again")
       call checks%is_true(all(simulation%tip%intensity%k2_error >= &
-                              simulation%windows%tip%uncertain(2)), "the estimate stays")
+                              simulation%now%windows%tip%uncertain(2)), "the estimate stays")
    end subroutine test_balance
 
    !> A jump that is linear along the fracture is what the coarse level has at its third points, in
@@ -108,7 +108,7 @@ contains
       found = jumps_of(simulation, .false.)
       worst = 0.0_rk
       n = 0
-      associate (fracture => simulation%mesh%fracture)
+      associate (fracture => simulation%problem%mesh%fracture)
          do cell = 1, fracture%n_cells
             if (fracture%cell_s(1, cell) < entry_of(simulation)) cycle
             if (cell == fracture%n_cells) cycle  ! the tip's one node has no jump
@@ -135,7 +135,7 @@ contains
 
       call start(5.0_rk, simulation)
       found = jumps_of(simulation, .true.)
-      associate (fracture => simulation%mesh%fracture)
+      associate (fracture => simulation%problem%mesh%fracture)
          last = fracture%n_cells
          length = fracture%cell_s(2, last) - fracture%cell_s(1, last)
          mean = 2.0_rk/3.0_rk*sqrt(length)
@@ -156,9 +156,9 @@ contains
       real(rk) :: jump(2), s, tip
       integer(ik) :: i, k
 
-      associate (fine => simulation%windows%window(2)%model%mesh)
+      associate (fine => simulation%windows%slot(2)%window%model%mesh)
          allocate (displacement(2, fine%n_nodes), source=0.0_rk)
-         tip = simulation%mesh%fracture%cell_s(2, simulation%mesh%fracture%n_cells)
+         tip = simulation%problem%mesh%fracture%cell_s(2, simulation%problem%mesh%fracture%n_cells)
          do i = 1, fine%fracture%n_cells
             do k = 1, 3
                s = fine%face_s(k, i)
@@ -170,7 +170,7 @@ contains
                end associate
             end do
          end do
-         found = coarse_jumps(fine, displacement, simulation%mesh)
+         found = coarse_jumps(fine, displacement, simulation%problem%mesh)
       end associate
    end function jumps_of
 
@@ -178,7 +178,7 @@ contains
    pure real(rk) function entry_of(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
 
-      entry_of = minval(simulation%windows%window(2)%model%mesh%face_s)
+      entry_of = minval(simulation%windows%slot(2)%window%model%mesh%face_s)
    end function entry_of
 
    !> A quadratic displacement, given by its values and gradients at the coarse nodes.
@@ -189,7 +189,7 @@ contains
       integer(ik) :: v
 
       call start(5.0_rk, simulation)
-      associate (mesh => simulation%mesh, window => simulation%windows%window(1))
+      associate (mesh => simulation%problem%mesh, window => simulation%windows%slot(1)%window)
          allocate (values(2, mesh%n_nodes), gradient(2, 2, mesh%n_nodes))
          do v = 1, mesh%n_nodes
             values(:, v) = quadratic(mesh%xy(:, v))
@@ -250,10 +250,11 @@ contains
          storage = m%porosity*fluid%compressibility + (m%biot - m%porosity)/bulk
          bulk_undrained = bulk + m%biot**2/storage
          undrained = (3.0_rk*bulk_undrained - 2.0_rk*shear)/(6.0_rk*bulk_undrained + 2.0_rk*shear)
-         allocate (own(simulation%mesh%n_nodes), source=rock)
-         simulation%state%pressure = rock + beyond
+         allocate (own(simulation%problem%mesh%n_nodes), source=rock)
+         simulation%now%coarse%pressure = rock + beyond
          do end = 1, 2
-            layer = layer_at_tip(simulation%mesh, simulation%model%rock, simulation%state, own, &
+            layer = layer_at_tip(simulation%problem%mesh, simulation%problem%model%rock, &
+                                 simulation%now%coarse, own, &
                                  1_ik, end)
             call checks%is_close(layer%drained_tip, (1.0_rk - undrained)/(1.0_rk - m%poisson), &
                                  1.0e-12_rk, "drained tip")
@@ -278,7 +279,7 @@ contains
       integer(ik) :: c
       integer :: i
 
-      associate (mesh => simulation%mesh, pressure => simulation%state%unknowns(3, :))
+      associate (mesh => simulation%problem%mesh, pressure => simulation%now%coarse%unknowns(3, :))
          pressure = uniform
          do c = 1, mesh%n_cells
             x = sum(mesh%xy(1, mesh%cell_nodes(:, c)))/3.0_rk
@@ -286,22 +287,21 @@ contains
          end do
          do c = 1, mesh%fracture%n_cells
             x = 0.5_rk*sum(mesh%xy(1, mesh%face_nodes(:, mesh%fracture%cell_faces(1, c))))
-            simulation%state%pressure(c) = uniform + gradient*(x - 1.0_rk)
+            simulation%now%coarse%pressure(c) = uniform + gradient*(x - 1.0_rk)
             do i = 1, 2
                x = mesh%xy(1, mesh%face_nodes(i, mesh%fracture%cell_faces(1, c)))
                pressure(end_block(mesh, c, int(i, ik))) = uniform + gradient*(x - 1.0_rk)
             end do
          end do
       end associate
-      simulation%undrained = .false.
-      simulation%values_are_current = .false.
-      simulation%state%time = 1.0e15_rk  ! layers at faces are wider than cells
+      simulation%now%undrained = .false.
+      simulation%now%coarse%time = 1.0e15_rk  ! layers at faces are wider than cells
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "tips")
       call estimate_coarse_errors(simulation, timers, error)
       call checks%no_error(error, "estimate")
       do i = 1, 2
-         passing(:, i) = simulation%windows%tip(i)%passing
+         passing(:, i) = simulation%now%windows%tip(i)%passing
       end do
    end function passing_of
 

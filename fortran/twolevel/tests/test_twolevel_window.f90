@@ -79,7 +79,7 @@ contains
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
       call simulation%begin(scene, timers, error)
       window%serves = [1_ik]
-      call window%build(scene, simulation%network, tips, error)
+      call window%build(scene, simulation%network, tips, .false., error)
       call checks%no_error(error, "window")
       associate (e => scene%material%young, nu => scene%material%poisson)
          shear = e/(2.0_rk*(1.0_rk + nu))
@@ -129,7 +129,7 @@ contains
       call checks%no_error(error, "a crossing in the body")
       tips = window_tip_t(fracture=1, end=2)
       window%serves = [1_ik]
-      call window%build(scene, simulation%network, tips, error)
+      call window%build(scene, simulation%network, tips, .false., error)
       call checks%no_error(error, "a crossing beside the window's edge")
       if (allocated(error)) return
       if (moves) then
@@ -161,7 +161,7 @@ contains
       call checks%no_error(error, "a fracture across a window's edge")
       tips = window_tip_t(fracture=1, end=2)
       window%serves = [1_ik]
-      call window%build(scene, simulation%network, tips, error)
+      call window%build(scene, simulation%network, tips, .false., error)
       call checks%no_error(error, "a fracture beside the window's corner")
       if (allocated(error)) return
       if (moves) then
@@ -182,8 +182,8 @@ contains
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, 0.0_rk, simulation)
       do w = 1, 2
-         call check_places(simulation%windows%window(w), simulation%mesh)
-         call check_faces(simulation%windows%window(w), simulation%mesh)
+         call check_places(simulation%windows%slot(w)%window, simulation%problem%mesh)
+         call check_faces(simulation%windows%slot(w)%window, simulation%problem%mesh)
       end do
    end subroutine test_projection
 
@@ -247,17 +247,18 @@ contains
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, 0.0_rk, simulation)
-      call checks%is_true(all(simulation%state%contact == state_stick), "all stick")
+      call checks%is_true(all(simulation%now%coarse%contact == state_stick), "all stick")
       do undrained = 0, 1
-         simulation%undrained = undrained == 1
+         simulation%now%undrained = undrained == 1
          do k = 1, size(conditions)
             simulation%scene%discretization%face_condition = conditions(k)
             call simulation%evaluate(timers, error)
             call checks%no_error(error, "uniform stress")
             do w = 1, 2
-               call checks%is_true(simulation%windows%window(w)%undrained .eqv. undrained == 1, &
+               call checks%is_true(simulation%windows%slot(w)%window%undrained .eqv. &
+                                   undrained == 1, &
                                    "rock as wanted")
-               call check_uniform(simulation%windows%window(w), undrained_strain(scene), &
+               call check_uniform(simulation%windows%slot(w)%window, undrained_strain(scene), &
                                   simulation%tip(w)%intensity, trim(conditions(k)))
             end do
          end do
@@ -310,12 +311,12 @@ contains
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 5.0_rk, degree, simulation)
-      do i = 1, size(simulation%state%contact, 2)
-         simulation%state%jump(:, 1, i) = 1.0e-7_rk*[i, 2*i]
-         simulation%state%jump(:, 2, i) = 1.0e-7_rk*[3*i, 4*i]
-         simulation%state%slip_before(:, i) = 1.0e-7_rk*[5*i, 6*i]
-         simulation%state%pressure(i) = 1.0e6_rk*i
-         simulation%state%traction(:, :, i) = 1.0e5_rk*reshape([i, 2*i, 3*i, 4*i], [2, 2])
+      do i = 1, size(simulation%now%coarse%contact, 2)
+         simulation%now%coarse%jump(:, 1, i) = 1.0e-7_rk*[i, 2*i]
+         simulation%now%coarse%jump(:, 2, i) = 1.0e-7_rk*[3*i, 4*i]
+         simulation%now%coarse%slip_before(:, i) = 1.0e-7_rk*[5*i, 6*i]
+         simulation%now%coarse%pressure(i) = 1.0e6_rk*i
+         simulation%now%coarse%traction(:, :, i) = 1.0e5_rk*reshape([i, 2*i, 3*i, 4*i], [2, 2])
       end do
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "contact")
@@ -339,7 +340,7 @@ contains
       real(rk) :: t
       real(rk), allocatable :: pressure(:)
 
-      associate (window => simulation%windows%window(2), state => simulation%state)
+      associate (window => simulation%windows%slot(2)%window, state => simulation%now%coarse)
          associate (fine => window%model%mesh)
             pressure = window%faces%pressure%on_faces(state%pressure, 0.0_rk)
             call checks%is_true(all(window%model%conditions%condition == condition), name)
@@ -382,11 +383,11 @@ contains
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 0.1_rk, degree, simulation)
       ! The kink opens a little, all else slips.
-      call checks%is_true(count(simulation%state%contact == state_slip) >= 20 .and. &
-                          all(simulation%state%contact /= state_stick), "nothing sticks")
+      call checks%is_true(count(simulation%now%coarse%contact == state_slip) >= 20 .and. &
+                          all(simulation%now%coarse%contact /= state_stick), "nothing sticks")
       before = simulation%tip%intensity
       call checks%is_true(minval(abs(before%k2)) > 1.0e5_rk, "there is an intensity")
-      call simulation%windows%accept()
+      call simulation%begin_step()
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "nothing happens")
       call compare(simulation, before, 1.0e-9_rk, "nothing happens")
@@ -408,9 +409,9 @@ contains
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       scene%discretization%window_is_body = .true.
       call start(scene, 5.0_rk, 0.0_rk, sticking)
-      call checks%is_true(size(sticking%windows%window) == 1, "one window")
+      call checks%is_true(size(sticking%windows%slot) == 1, "one window")
       do w = 1, 2
-         call check_uniform(sticking%windows%window(1), undrained_strain(scene), &
+         call check_uniform(sticking%windows%slot(1)%window, undrained_strain(scene), &
                             sticking%tip(w)%intensity, "the body")
       end do
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
@@ -426,13 +427,13 @@ contains
       call estimate_coarse_errors(together, timers, error)
       call checks%no_error(error, "errors")
       do w = 1, 2
-         associate (seen => together%windows%tip(w))
+         associate (seen => together%now%windows%tip(w))
             call checks%is_true(all(abs(seen%lacking) <= 0.0_rk) .and. &
                                 all(abs(seen%uncertain) <= 0.0_rk), "nothing comes over an edge")
          end associate
       end do
-      call checks%is_true(.not. allocated(together%reference%window), "nothing beside it")
-      call checks%is_true(allocated(apart%reference%window), "the body beside other windows")
+      call checks%is_true(.not. allocated(together%reference%slot), "nothing beside it")
+      call checks%is_true(allocated(apart%reference%slot), "the body beside other windows")
    end subroutine test_body
 
    !> Both tips have their earlier intensities.

@@ -54,11 +54,11 @@ contains
       do k = 1, size(gains, kind=ik)
          call move(simulation, place, gains(k))
          followed = simulation%tip(1)%intensity%k2
-         call checks%is_true(simulation%windows%window(1)%has_moved .eqv. k < 4, &
+         call checks%is_true(simulation%windows%slot(1)%window%has_moved .eqv. k < 4, &
                              "it follows, if not too far")
          call simulation%windows%network_changed()
          call move(simulation, place, gains(k))
-         call checks%is_true(.not. simulation%windows%window(1)%has_moved, "made anew")
+         call checks%is_true(.not. simulation%windows%slot(1)%window%has_moved, "made anew")
          call checks%is_close(followed/simulation%tip(1)%intensity%k2, 1.0_rk, 2.0e-3_rk, &
                               "the intensity of a tip whose window has followed it")
          ! From the first mesh again.
@@ -109,7 +109,7 @@ contains
    logical function is_meshed_for(window)
       integer(ik), intent(in) :: window
 
-      is_meshed_for = .not. norm2(simulation%windows%built_for(:, 1, window) &
+      is_meshed_for = .not. norm2(simulation%windows%slot(window)%window%made%place(:, 1) &
                                   - simulation%tip(1)%xy) > 0.0_rk
    end function is_meshed_for
 

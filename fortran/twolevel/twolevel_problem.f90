@@ -1,64 +1,89 @@
-!> The coarse level and what its wells give to fractures and rock; the whole pressures, of which the
-!! level has what is beyond the state in situ.
-module twolevel_fed
+!> The coarse level's equations on one mesh, which stand beside its state: mesh, model with its
+!! factors, and where its wells feed fractures and rock; the whole pressures of a state, of which
+!! that has what is beyond the state in situ.
+module twolevel_problem
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_timers, only: timers_t
    use base_tolerances, only: same_value
-   use coarse_model, only: coarse_model_t
-   use coarse_state, only: state_t
-   use coarse_wells, only: control_rate, well_index
-   use mesh_builder, only: locate, mesher_t
    use mesh_geometry, only: cell_area
+   use coarse_model, only: coarse_model_t
+   use coarse_nodes, only: nodal_fields
+   use coarse_own_pressure, only: own_pressure
+   use coarse_wells, only: well_index
+   use coarse_state, only: state_t, step_report_t
+   use contact_law, only: contact_law_t
+   use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
-   use report_simulation, only: simulation_t
+   use scene_types, only: scene_t
+   use twolevel_schedule, only: follow_sides
    use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
                              rate
    implicit none(type, external)
    private
 
-   public :: cell_heights, fed_level_t
+   public :: cell_heights, coarse_problem_t, coarse_values_t, discard
 
-   !> The coarse mesh, model and state, and the wells on them.
-   type, abstract, extends(simulation_t) :: fed_level_t
-      type(mesher_t) :: mesher  !< of the coarse mesh
-      type(mesh_t) :: mesh  !< the coarse one
+   !> What windows take from the coarse level.
+   type :: coarse_values_t
+      real(rk), allocatable :: of(:, :)  !< the unknowns that the following are of [m], [m], [Pa]
+      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      !> For interpolation that is exact for quadratic fields (curved_displacement)
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
+      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
+      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
+   end type coarse_values_t
+
+   !> What belongs to one mesh.
+   type :: coarse_problem_t
+      type(mesher_t) :: mesher
+      type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(state_t) :: state
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
-      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
-      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
-      integer(ik) :: held_well = 0  !< a controlled well that a try holds as it was; 0: none
-      integer(ik) :: held_control = 0  !< of coarse_wells: how
       integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
+      type(coarse_values_t) :: values  !< of the state that tips were evaluated in last
    contains
       procedure :: feed_wells
       procedure :: rest_wells
       procedure :: ask
+      procedure :: advance
+      procedure :: find_values
       procedure :: well_pressure
       procedure :: well_in_situ
       procedure :: rock_pressure
       procedure :: fracture_pressure
       procedure :: joint_pressure
       procedure :: thickness
-   end type fed_level_t
+   end type coarse_problem_t
 
 contains
 
+   !> A problem is not needed any more.
+   subroutine discard(problem)
+      type(coarse_problem_t), allocatable, intent(inout) :: problem
+
+      if (.not. allocated(problem)) return
+      call problem%model%release()
+      deallocate (problem)
+   end subroutine discard
+
    !> What the wells feed on the present mesh.
-   subroutine feed_wells(self, error)
-      class(fed_level_t), intent(inout) :: self
+   subroutine feed_wells(self, scene, error)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: cell(1), w
 
-      associate (wells => self%scene%injections)
+      associate (wells => scene%injections)
          call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
                           self%joint_share)
          call control_wells(wells, self%share, self%joint_share, self%model%wells)
-         call part_twins(self)
+         call part_twins(self, scene)
          if (allocated(self%model%in_situ)) then
             self%model%wells%pressure_in_situ = &
-               [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
+               [(self%well_in_situ(scene, self%model%wells%number(w)), w=1, self%model%wells%n_all)]
          end if
          self%rock_cell = spread(0_ik, 1, size(wells))
          if (.not. any(wells%fracture == 0)) return
@@ -70,15 +95,16 @@ contains
             if (allocated(error)) return
             self%rock_cell(w) = cell(1)
          end do
-         if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, error)
+         if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, scene, error)
       end associate
    end subroutine feed_wells
 
    !> Where several wells keep to pressures in one and the same place and lose nothing on their way
    !! there, nothing says which of them gives what: each loses a thousandth of what half a cell
    !! takes.
-   pure subroutine part_twins(self)
-      class(fed_level_t), intent(inout) :: self
+   pure subroutine part_twins(self, scene)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       real(rk), parameter :: share_of_half_cell = 1.0e-3_rk
       logical :: is_twin(self%model%wells%n)
       integer(ik) :: k, w
@@ -90,8 +116,8 @@ contains
             if (wells%is_between(w) .or. wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
             do k = 1, wells%n
                if (k == w) cycle
-               if (.not. all([allocated(self%scene%injections(wells%number(w))%pressure), &
-                              allocated(self%scene%injections(wells%number(k))%pressure)])) cycle
+               if (.not. all([allocated(scene%injections(wells%number(w))%pressure), &
+                              allocated(scene%injections(wells%number(k))%pressure)])) cycle
                is_twin(w) = is_twin(w) .or. all(abs(wells%share(:, k) - wells%share(:, w)) &
                                                 <= same_value) &
                             .and. all(abs(wells%joint_share(:, k) - wells%joint_share(:, w)) &
@@ -106,17 +132,17 @@ contains
    end subroutine part_twins
 
    !> Those in the rock whose rate depends on pressures.
-   pure subroutine place_rock_wells(self, error)
-      class(fed_level_t), intent(inout) :: self
+   pure subroutine place_rock_wells(self, scene, error)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: k
 
       associate (wells => self%model%wells, rock => self%model%rock_wells)
          rock%n = wells%n_all - wells%n
          rock%cell = self%rock_cell(wells%number(wells%n + 1:))
-         if (.not. allocated(rock%way)) rock%way = spread(control_rate, 1, int(rock%n))
          rock%conductance = spread(0.0_rk, 1, int(rock%n))
-         rock%index = [(well_index(self%scene%injections(wells%number(wells%n + k))%radius, &
+         rock%index = [(well_index(scene%injections(wells%number(wells%n + k))%radius, &
                                    cell_area(self%mesh, rock%cell(k)), &
                                    self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
          if (.not. all(rock%index > 0.0_rk)) then
@@ -131,12 +157,11 @@ contains
    end subroutine place_rock_wells
 
    !> Nothing flows in wells, whose heads have the pressure of what they feed.
-   subroutine rest_wells(self)
-      class(fed_level_t), intent(inout) :: self
+   pure subroutine rest_wells(self, state)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(inout) :: state
 
-      associate (wells => self%model%wells, state => self%state)
-         self%at_limit = spread(.false., 1, int(wells%n_all))
-         self%given = spread(0.0_rk, 1, int(wells%n_all))
+      associate (wells => self%model%wells)
          if (wells%n_all == 0) return
          state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
          state%well_rate = state%well_flow
@@ -146,25 +171,67 @@ contains
       end associate
    end subroutine rest_wells
 
-   !> Ask the wells for what the scene says of a step of length dt.
-   pure subroutine ask(self, dt)
-      class(fed_level_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< [s]
+   !> Ask the wells for what the scene says of a step from a time on, of length dt.
+   pure subroutine ask(self, scene, time, dt)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: time, dt  !< [s]
 
-      associate (rates => rate(self%scene%injections, self%state%time, dt))
+      associate (rates => rate(scene%injections, time, dt))
          self%model%cells%injection = matmul(self%share, rates)
          if (self%model%joints%n > 0) then
             self%model%joints%injection = matmul(self%joint_share, rates)
          end if
          if (allocated(self%model%source)) call feed_rock(self, rates)
       end associate
-      call ask_wells(self%scene%injections, self%state%time, dt, self%model%wells)
-      if (self%held_well > 0) self%model%wells%control(self%held_well) = self%held_control
+      call ask_wells(scene%injections, time, dt, self%model%wells)
    end subroutine ask
+
+   !> One step of a state, which changes only if that converges.
+   subroutine advance(self, scene, dt, state, timers, report, error, held, control)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(inout) :: scene  !< its sides follow their courses
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), intent(in), optional :: held  !< a controlled well that is controlled otherwise
+      integer(ik), intent(in), optional :: control  !< of coarse_wells: how that one is
+
+      if (any(self%model%sides%changes())) then
+         call follow_sides(scene, state%time + dt, state%time)
+         call self%model%change_sides(self%mesh, scene, timers, error)
+         if (allocated(error)) return
+      end if
+      call self%ask(scene, state%time, dt)
+      if (present(held)) self%model%wells%control(held) = control
+      call self%model%advance(self%mesh, dt, state, timers, report, error)
+   end subroutine advance
+
+   !> What windows take from a state, unless it is that which was asked for last.
+   subroutine find_values(self, state)
+      class(coarse_problem_t), intent(inout) :: self
+      type(state_t), intent(in) :: state
+
+      if (allocated(self%values%of)) then
+         if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) return
+      end if
+      self%values = coarse_values_t(of=state%unknowns, law=self%model%cells%law, &
+                                    is_grown=self%model%cells%roughness > 0.0_rk)
+      associate (values => self%values, model => self%model, mesh => self%mesh, &
+                 n => self%mesh%n_nodes)
+         allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
+         call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, &
+                           values%nodal, values%displacement, values%gradient)
+         values%nodal(3, :) = own_pressure(mesh, state%unknowns(3, :mesh%n_cells), &
+                                           values%nodal(3, :), state%pressure)
+      end associate
+   end subroutine find_values
 
    !> Wells in the rock.
    pure subroutine feed_rock(self, rates)
-      class(fed_level_t), intent(inout) :: self
+      class(coarse_problem_t), intent(inout) :: self
       real(rk), intent(in) :: rates(:)  !< (wells) [m2/s]
       integer(ik) :: w
 
@@ -179,36 +246,39 @@ contains
 
    !> Mean pressure at the wells; 0 without any [Pa]. That of a cell is at its middle; a well
    !! between two cells is half a cell away, which the fluid that it gives to the cell has to flow.
-   pure real(rk) function well_pressure(self)
-      class(fed_level_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%pressure))
+   pure real(rk) function well_pressure(self, scene, state)
+      class(coarse_problem_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%pressure))
       logical :: between(size(self%share, 2))
       integer(ik) :: w
 
-      pressure = self%fracture_pressure()
-      between = between_cells(self%scene%injections, self%share)
+      pressure = self%fracture_pressure(state)
+      between = between_cells(scene%injections, self%share)
       do w = 1, size(between, kind=ik)
          if (.not. between(w)) cycle
-         associate (cells => self%model%cells, length => self%model%condensed%length, &
-                    viscosity => self%model%settings%viscosity, thickness => self%thickness())
+         associate (length => self%model%condensed%length, &
+                    viscosity => self%model%settings%viscosity, thickness => self%thickness(state))
             where (self%share(:, w) > 0.0_rk)
-               pressure = pressure + 6.0_rk*viscosity*length*cells%injection &
-                          /self%state%aperture**3*thickness
+               pressure = pressure + 6.0_rk*viscosity*length*state%injection &
+                          /state%aperture**3*thickness
             end where
          end associate
       end do
       well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
-                                    self%joint_pressure())
+                                    self%joint_pressure(state))
    end function well_pressure
 
    !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
-   pure real(rk) function well_in_situ(self, well) result(pressure)
-      class(fed_level_t), intent(in) :: self
+   pure real(rk) function well_in_situ(self, scene, well) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
       integer(ik), intent(in) :: well  !< of the scene
 
       pressure = 0.0_rk
       if (.not. allocated(self%model%in_situ)) return
-      associate (given => self%scene%injections(well))
+      associate (given => scene%injections(well))
          if (given%at_point .or. given%fracture == 0) then
             pressure = self%model%in_situ%pressure_at(given%y)
          else
@@ -218,33 +288,36 @@ contains
    end function well_in_situ
 
    !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
-   pure function rock_pressure(self) result(pressure)
-      class(fed_level_t), intent(in) :: self
+   pure function rock_pressure(self, state) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
       real(rk) :: pressure(self%mesh%n_cells)
 
-      pressure = self%state%unknowns(3, :self%mesh%n_cells)
+      pressure = state%unknowns(3, :self%mesh%n_cells)
       if (allocated(self%model%in_situ)) then
          pressure = pressure + self%model%in_situ%pressure_at(cell_heights(self%mesh))
       end if
    end function rock_pressure
 
    !> The whole pressure in the fracture cells [Pa].
-   pure function fracture_pressure(self) result(pressure)
-      class(fed_level_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%pressure))
+   pure function fracture_pressure(self, state) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%pressure))
 
-      pressure = self%state%pressure
+      pressure = state%pressure
       if (allocated(self%model%cells%pressure_in_situ)) then
          pressure = pressure + self%model%cells%pressure_in_situ
       end if
    end function fracture_pressure
 
    !> The whole pressure in the joints [Pa].
-   pure function joint_pressure(self) result(pressure)
-      class(fed_level_t), intent(in) :: self
-      real(rk) :: pressure(size(self%state%joint_pressure))
+   pure function joint_pressure(self, state) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%joint_pressure))
 
-      pressure = self%state%joint_pressure
+      pressure = state%joint_pressure
       if (allocated(self%model%joints%pressure_in_situ)) then
          pressure = pressure + self%model%joints%pressure_in_situ
       end if
@@ -252,13 +325,14 @@ contains
 
    !> How much more pressure a flow takes in the fracture cells than at the viscosity of the scene,
    !! where that follows pressure [-].
-   pure function thickness(self)
-      class(fed_level_t), intent(in) :: self
-      real(rk) :: thickness(size(self%state%pressure))
+   pure function thickness(self, state)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      real(rk) :: thickness(size(state%pressure))
 
       thickness = 1.0_rk
       if (allocated(self%model%settings%fluid_law)) then
-         thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure())
+         thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure(state))
       end if
    end function thickness
 
@@ -271,4 +345,4 @@ contains
       y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
    end function cell_heights
 
-end module twolevel_fed
+end module twolevel_problem
