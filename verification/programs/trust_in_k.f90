@@ -180,7 +180,7 @@ contains
       call run("solid.nml", body)
       do tip = 1, size(levels%tip, kind=ik)
          associate (found => levels%tip(tip)%intensity, known => body%tip(tip)%intensity, &
-                    window => levels%windows%tip(tip)%found)
+                    window => levels%now%windows%tip(tip)%found)
             call note(tip, 1_ik, known%k1, found%k1, found%k1_corrected, found%k1_error, &
                       window%k1_error, hypot(known%k1, known%k2))
             call note(tip, 2_ik, known%k2, found%k2, found%k2_corrected, found%k2_error, &

@@ -4,7 +4,7 @@ program test_coarse_equations
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_fractures, only: newton_settings_t, prepare
+   use coarse_fractures, only: flow_paths_t, prepare
    use coarse_full_step, only: full_slopes
    use coarse_layout, only: fracture_layout, fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
@@ -25,6 +25,7 @@ program test_coarse_equations
    real(rk), parameter :: vapour_pressure = 5.0e6_rk  !< below it are some of some_unknowns [Pa]
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< sides
    type(checks_t) :: checks
+   type(flow_paths_t), target :: paths  !< of the equations that are set up last
    type(mesh_t) :: mesh
    type(coarse_model_t), target :: model
    type(state_t), target :: state
@@ -183,13 +184,11 @@ contains
       logical, intent(in) :: equilibrate
       type(equations_t), intent(out) :: eq
       integer(ik), allocatable, intent(out) :: contact(:, :)
-      type(newton_settings_t) :: settings
 
-      settings = model%settings
-      model%settings%equilibrate = equilibrate
-      model%settings%vapour_pressure = vapour_pressure
-      call prepare(model%fracture_problem_t, dt, g, state, eq)
-      model%settings = settings
+      paths = flow_paths_t(model%settings, model%connections, model%joints, model%wells)
+      paths%settings%equilibrate = equilibrate
+      paths%settings%vapour_pressure = vapour_pressure
+      call prepare(model%fracture_problem_t, paths, dt, g, state, eq)
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

@@ -5,7 +5,7 @@ program test_coarse_joints
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
-   use coarse_fractures, only: prepare
+   use coarse_fractures, only: flow_paths_t, prepare
    use coarse_full_step, only: full_slopes
    use coarse_model, only: coarse_model_t, new_state
    use coarse_newton, only: equations_t
@@ -22,6 +22,7 @@ program test_coarse_joints
 
    real(rk), parameter :: side_pressure = 2.0e6_rk  !< of the left side, where it has one [Pa]
    type(checks_t) :: checks
+   type(flow_paths_t), target :: paths  !< of the equations that are set up last
 
    call test_places()
    call test_slopes(.false.)
@@ -168,7 +169,8 @@ contains
       call model%condensed%factorize(mesh, model%matrix, dt, error)
       call checks%no_error(error, "factorization")
       allocate (g(model%condensed%layout%count()), source=0.0_rk)
-      call prepare(model%fracture_problem_t, dt, g, state, eq)
+      paths = flow_paths_t(model%settings, model%connections, model%joints, model%wells)
+      call prepare(model%fracture_problem_t, paths, dt, g, state, eq)
       x = 4.0e6_rk*scattered(eq%layout%count())
       x(eq%layout%at_flow(1_ik):) = 1.0e-3_rk*x(eq%layout%at_flow(1_ik):)
       below = eq
