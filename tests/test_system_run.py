@@ -401,7 +401,7 @@ def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
     assert "toughness decides about growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
     assert "toughness and viscosity decide about growth, K_m = 2.000E+00" in told["between"]
     assert "viscosity decides about growth, K_m = 4.000E-01" in told["viscous"]
-    warning = "&injection 'well_1': K_m is 0.4: the fluid's viscosity decides"
+    warning = "&injection 'well_1': K_m is 0.4: growth is then viscosity-dominated"
     assert [warning in told[name] for name in told] == [False, False, True]
 
 

@@ -49,7 +49,7 @@ contains
                                   rate=[0.0_rk, k**4/(32.0e9_rk**3*12.0e-3_rk)])]
       call expect(s, "", "K_m = 1")
       s%injections(1)%rate = s%injections(1)%rate/0.9_rk**4
-      call expect(s, "&injection 'w': K_m is 0.9: the fluid's viscosity decides", "K_m = 0.9")
+      call expect(s, "&injection 'w': K_m is 0.9: growth is then viscosity-dominated", "K_m = 0.9")
       s%injections(1)%rate = -s%injections(1)%rate
       call expect(s, "", "a well that draws")
       s%injections(1)%rate = -s%injections(1)%rate
@@ -73,7 +73,7 @@ contains
       s%fractures(2)%x = [0.7_rk, 0.7_rk]
       call expect(s, "", "a T")
       s%fractures(2)%x = [0.7005_rk, 0.7005_rk]
-      call expect(s, "&fracture 'a' to 'b': gap is 5.0e-4 m: the rock between fails", "a gap")
+      call expect(s, "&fracture 'a' to 'b': gap is 5.0e-4 m: the ligament fails", "a gap")
       s%fractures(2)%x = [0.7005_rk, 0.9_rk]
       s%fractures(2)%y = [1.0_rk, 1.3_rk]
       call expect(s, "&fracture 'a' to 'b': gap is 5.0e-4 m: ", "end to end, once", .true.)
@@ -81,7 +81,7 @@ contains
       call expect(s, "&fracture 'b' to 'a': gap is 5.0e-4 m: ", "in the other order", .true.)
       s%fractures(1)%x = [0.6992_rk, 0.6992_rk]
       s%fractures(1)%y = [0.8_rk, 1.3_rk]
-      call expect(s, "&fracture 'a' past 'b': stub is 8.0e-4 m: its end is a tip", "a stub")
+      call expect(s, "&fracture 'a' past 'b': stub is 8.0e-4 m: its end is a separate tip", "a stub")
       s%fractures(1)%x = [0.5_rk, 0.5_rk]
       call expect(s, "", "a cross")
       s%fractures(1)%x = [0.3_rk, 0.3_rk]
@@ -104,7 +104,7 @@ contains
       s%restraints = [restraint_t(0.0_rk, 0.0_rk, [.false., .true.], [0.0_rk, 0.0_rk])]
       call expect(s, "", "a component beside a side of rollers")
       s%restraints(1)%displacement_given(1) = .true.
-      call expect(s, "&restraint: surplus is 1.0: they are point loads", "held twice")
+      call expect(s, "&restraint: surplus is 1.0: they are then point loads", "held twice")
       s%sides(1)%displacement_given(1) = .false.
       s%restraints = [s%restraints, &
                       restraint_t(1.0_rk, 0.0_rk, [.false., .true.], [0.0_rk, 0.0_rk])]
@@ -180,13 +180,13 @@ contains
       call expect(s, "&material: anisotropy is 12.5: ", "a better conductor one way")
       s = solid
       s%material%poisson = 0.4999_rk
-      call expect(s, "&material: poisson is 0.4999: friction follows", "poisson and friction")
+      call expect(s, "&material: poisson is 0.4999: friction then follows", "poisson and friction")
       s%adaptive%enabled = .true.
-      call expect(s, "&material: poisson is 0.4999: friction follows", "with any mesh", .true.)
+      call expect(s, "&material: poisson is 0.4999: friction then follows", "with any mesh", .true.)
       s%fractures%law = "frictionless"
       call expect(s, "", "poisson with a mesh that follows the error")
       s%adaptive%enabled = .false.
-      call expect(s, "&material: poisson is 0.4999: the elements", "poisson")
+      call expect(s, "&material: poisson is 0.4999: elements around", "poisson")
       s = solid
       s%material%density = 2.65_rk
       call expect(s, "&material: density is 2.65 kg/m3: ", "density")
@@ -236,7 +236,7 @@ contains
       s%material%biot = 0.1_rk
       s%material%porosity = 0.05_rk
       s%fluid%compressibility = 1.0e-12_rk
-      call expect(s, "&fluid: compressibility is 1.0e-12 1/Pa: a load", "Skempton's coefficient")
+      call expect(s, "&fluid: compressibility is 1.0e-12 1/Pa: the undrained", "Skempton's coefficient")
       s%material%biot = 0.3_rk
       call expect(s, "", "Skempton's coefficient below 1")
       s = sound()
@@ -287,7 +287,7 @@ contains
       s = basin
       s%in_situ%stress = [-20.0e6_rk, -25.0e6_rk, 0.0_rk]
       s%in_situ%per_y = 0.0_rk
-      call expect(s, "&in_situ: syy_per_y is 0.0 Pa/m: the weight loads", "no gradient")
+      call expect(s, "&in_situ: syy_per_y is 0.0 Pa/m: the weight then loads", "no gradient")
       s%in_situ%stress = 0.0_rk
       call expect(s, "", "no stress in situ")
       s = basin
