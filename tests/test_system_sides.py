@@ -188,7 +188,7 @@ def test_restraints_beyond_need(tmp_path: Path) -> None:
         POROUS, ("x = 0.5, y = 0, y_disp", "x = 0.5, y = 0, x_displacement = 0, y_disp")
     )
     out = run(tmp_path, SQUARE + more)
-    assert "&restraint: surplus is 1.0: they are point loads" in str(record(out)["warnings"])
+    assert "&restraint: surplus is 1.0: they are then point loads" in str(record(out)["warnings"])
 
 
 # A stiff body on springs along two sides, which the tractions on the top push and turn.
