@@ -6,14 +6,14 @@
 !!
 !! The caller evaluates the tips at `place`, passes their excess to `improve`, and evaluates them at
 !! the new `place` until that has not moved. Each proposal solves the linear complementarity problem
-!! of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates improve the
-!! matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei and Pang,
+!! of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates improve
+!! the matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei and Pang,
 !! Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003, sections 1.5 and
 !! 8.3); otherwise the trust region shrinks. Where this makes no headway, as at jumps of K_eq, each
-!! tip advances from its lower bound until it does not exceed its toughness, and its place is found by
-!! bisection. The farthest place at which it exceeded its toughness never falls, so that this search
-!! ends. It may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or where
-!! others have grown past it.
+!! tip advances from its lower bound until it does not exceed its toughness, and its place is found
+!! by bisection. The farthest place at which it exceeded its toughness never falls, so that this
+!! search ends. It may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or
+!! where others have grown past it.
 module growth_advances
    use base_kinds, only: rk
    use growth_competition, only: complementary_advances, learn_from_trial
@@ -66,14 +66,14 @@ contains
       real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower <= upper [m]
       real(rk), intent(in) :: place(:)  !< (tips) to be evaluated first [m]
       real(rk), intent(in) :: matrix(:, :)  !< (tips, tips) estimate of d(excess)/da [1/m]
-      real(rk), intent(in), optional :: sliver(:)  !< so near to its upper bound a tip goes there [m]
+      real(rk), intent(in), optional :: sliver(:)  !< so near to its bound a tip goes there [m]
       integer :: i
 
       self%lower = lower
       self%upper = upper
       self%place = min(upper, max(lower, place))
       self%matrix = matrix
-      self%length = max(upper - lower, epsilon(1.0_rk)*max(abs(upper), tiny(1.0_rk)/epsilon(1.0_rk)))
+      self%length = max(upper - lower, epsilon(1.0_rk)*abs(upper), tiny(1.0_rk))
       self%sliver = resolution*self%length
       if (present(sliver)) self%sliver = max(self%sliver, sliver)
       self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]

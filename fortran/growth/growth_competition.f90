@@ -2,9 +2,9 @@
 !! them could run ahead.
 !!
 !! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f
-!! (growth_control). Equal growth is stable where M is negative definite on the advances on which the
-!! load does no work, c^T da = 0: else there are others, in which one tip runs ahead and the load
-!! unloads the rest.
+!! (growth_control). Equal growth is stable where M is negative definite on the advances on which
+!! the load does no work, c^T da = 0: else there are others, in which one tip runs ahead and the
+!! load unloads the rest.
 !!
 !! Where a fluid drives the tips there is no such factor: what is held is its volume, and c = 0.
 !! Then each tip has not advanced and K_i <= K_IC, or has and K_i = K_IC, a linear complementarity

@@ -70,19 +70,19 @@ module scene_describe
                                    "yes"), &
                              row_t("sides: pressure, inflow", "no: there is no fluid", &
                                    "yes"), &
-               row_t("time-dependent sides", "no: loads vary by the load factor, `&load`", &
+                       row_t("time-dependent sides", "no: loads vary by the load factor, `&load`", &
                                    "yes, all values but springs"), &
                              row_t("unloading", "a load factor that decreases, or a load cycle", &
                                    "decreasing values of sides, extraction wells"), &
                              row_t("restraints, point loads", "yes", &
-                        "yes; the window is then the whole body, since a square does not "// &
-                        "include them"), &
+                              "yes; the window is then the whole body, since a square does not "// &
+                                   "include them"), &
                              row_t("faces `friction`, `frictionless`", "yes", &
                                    "yes"), &
                              row_t("faces `open`", "yes", &
-                  "no: overlapping faces would have negative fluid volume; use `frictionless`"), &
+                    "no: overlapping faces would have negative fluid volume; use `frictionless`"), &
                              row_t("faces with a given `slip`", "yes", &
-                            "no: prescribed slip would need a schedule; use wells and sides"), &
+                                "no: prescribed slip would need a schedule; use wells and sides"), &
                              row_t("faces `held_closed`", "yes", &
                                    "no: fluid could not open them"), &
                              row_t("`face_pressure`", "yes", &

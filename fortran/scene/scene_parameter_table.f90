@@ -130,10 +130,10 @@ module scene_parameter_table
                   meaning="Prescribed displacement in x"), &
       parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is prescribed", &
                   meaning="Prescribed displacement in y"), &
-      parameter_t("side", "x_traction", kind_reals, "Pa", absent=&
+      parameter_t("side", "x_traction", kind_reals, "Pa", absent= &
                   "0, or displacement is prescribed", &
                   meaning="Total traction in x: on the right side, compression is negative"), &
-      parameter_t("side", "y_traction", kind_reals, "Pa", absent=&
+      parameter_t("side", "y_traction", kind_reals, "Pa", absent= &
                   "0, or displacement is prescribed", &
                   meaning="Total traction in y: on the top side, compression is negative"), &
       parameter_t("side", "normal_traction", kind_reals, "Pa", absent="0", &

