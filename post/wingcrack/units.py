@@ -5,7 +5,7 @@ from __future__ import annotations
 FARTHEST = 1.0e8  # of places and lengths [m]: farther than the earth is wide
 
 # Ends of column names and their units; longer ends come first. A test holds them against
-# docs/output.md, which the solver writes.
+# the table of names.
 _ENDS = (
     ("_pa_sqrtm", "Pa m^1/2"),
     ("_m2_s_pa", "m2/s/Pa"),
