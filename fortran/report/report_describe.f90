@@ -1,6 +1,6 @@
-!> The table of names as JSON, for `wingcrack-solver --describe json`: what a scene can say, what the
-!! files of a run hold, limits and plausibility checks. The pages of docs/ and the Python packages
-!! take it from post/wingcrack/names.json, which is this text.
+!> The table of names as JSON, for `wingcrack-solver --describe json`: what a scene can say, what
+!! the files of a run hold, limits and plausibility checks. The pages of docs/ and the Python
+!! packages take it from post/wingcrack/names.json, which is this text.
 module report_describe
    use base_kinds, only: rk
    use report_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
