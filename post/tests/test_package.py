@@ -31,6 +31,8 @@ def test_units_are_those_of_the_solver() -> None:
     fields = [(name, unit) for file, name, unit in described() if file.endswith(".vtu")]
     assert len(columns) > 80
     assert len(fields) > 10
+    assert field_unit("stress") == "Pa"
+    assert field_unit("state") == "-"
     for file, name, unit in columns:
         assert column_unit(name) == unit, (file, name)
     for name, unit in fields:

@@ -17,6 +17,7 @@ def table() -> dict[str, Any]:
     return found
 
 
+@cache
 def columns() -> dict[str, dict[str, dict[str, str]]]:
     """Rows of the columns, keys or fields of each file of a run, by their names."""
     return {
