@@ -1,10 +1,11 @@
-"""docs/output.md against the files of real runs: what is written is described, and vice versa."""
+"""The table of names against files of real runs: what is written is described, and vice versa."""
 
 from __future__ import annotations
 
 import csv
 import json
 import re
+import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,9 @@ import pytest
 import pyvista
 from system_scene import TOP, rows, run, varied
 from vtkmodules.vtkCommonCore import vtkDataArray
+
+from wingcrack.names import NAMES, columns
+from wingcrack.names import table as names_of_all
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -38,8 +42,6 @@ MECHANICS = {
 }
 SLIP, WELLS = "slip_events.csv", "wells.csv"  # with a fluid only
 TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv", SLIP, WELLS)
-ROW = re.compile(r"\| `(?P<name>\S+)` \| (?P<unit>[^|]+) \| (?P<runs>[^|]+) \| (?P<meaning>.+) \|")
-WORD = re.compile(r"\* `(?P<word>\S+)`: .+")
 
 # An edge crack that grows once on meshes that follow the error: all that mechanics can write.
 EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
@@ -71,7 +73,7 @@ SEVERAL_WELLS = varied(("&time", "&injection fracture = 'f1', rate = -1.0e-9 /\n
 
 @dataclass(frozen=True)
 class Entry:
-    """A column, key or field as the page describes it."""
+    """A column, key or field as the table of names describes it."""
 
     name: str
     unit: str
@@ -79,30 +81,29 @@ class Entry:
 
 
 @pytest.fixture(scope="module")
-def sections() -> dict[str, list[str]]:
-    """Lines of the page by file."""
-    found: dict[str, list[str]] = {}
-    for part in (TOP / "docs/output.md").read_text().split("\n## ")[1:]:
-        title, *lines = part.splitlines()
-        found[title] = lines
-    return found
-
-
-@pytest.fixture(scope="module")
-def described(sections: dict[str, list[str]]) -> dict[str, list[Entry]]:
-    """Columns, keys and fields of the page, in order."""
-    rows = {file: [m for m in map(ROW.fullmatch, lines) if m] for file, lines in sections.items()}
+def described() -> dict[str, list[Entry]]:
+    """Columns, keys and fields of each file, in order."""
     return {
-        file: [Entry(m["name"], m["unit"], m["runs"]) for m in matches]
-        for file, matches in rows.items()
+        file: [Entry(row["name"], row["unit"], row["runs"]) for row in rows.values()]
+        for file, rows in columns().items()
     }
+
+
+def test_the_table_of_names_is_that_of_the_solver(program: None) -> None:
+    done = subprocess.run(
+        [TOP / "build/release/fortran/app/wingcrack-solver", "--describe", "json"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == NAMES.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module", params=["fluid", "joints", "wells", "mechanics"])
 def out_and_runs(
     program: None, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, set[str]]:
-    """Files of a run, and the words of the page that hold for it."""
+    """Files of a run, and the words of the table that hold for it."""
     which: str = request.param
     if which == "fluid":
         return request.getfixturevalue("growing"), FLUID
@@ -136,7 +137,7 @@ def keys(content: object, above: str = "") -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def test_every_run_that_the_page_names_is_tested(described: dict[str, list[Entry]]) -> None:
+def test_every_run_that_the_table_names_is_tested(described: dict[str, list[Entry]]) -> None:
     assert {entry.runs for entries in described.values() for entry in entries} == (
         JOINTS | SEVERAL | MECHANICS
     )
@@ -252,11 +253,10 @@ def test_paraview_finds_units(out_and_runs: tuple[Path, set[str]]) -> None:
     assert error < 0.05 * np.abs(moved).max()
 
 
-def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str]]) -> None:
+def test_words(out_and_runs: tuple[Path, set[str]]) -> None:
     out, _ = out_and_runs
     words = {
-        file: {m["word"] for m in map(WORD.fullmatch, lines) if m}
-        for file, lines in sections.items()
+        (entry["file"], entry["name"]): set(entry["words"]) for entry in names_of_all()["words"]
     }
     for file, column in (
         ("fractures.csv", "state"),
@@ -267,10 +267,10 @@ def test_words(sections: dict[str, list[str]], out_and_runs: tuple[Path, set[str
         if not (out / file).exists():
             continue
         header, lines = table(out / file)
-        assert {line[header.index(column)] for line in lines} <= words[file]
-    assert json.loads((out / "run.json").read_text())["status"] in words["run.json"]
+        assert {line[header.index(column)] for line in lines} <= words[file, column]
+    assert json.loads((out / "run.json").read_text())["status"] in words["run.json", "status"]
     for joint in json.loads((out / "network.json").read_text())["joints"]:
-        assert joint["kind"] in words["network.json"]
+        assert joint["kind"] in words["network.json", "joints[].kind"]
 
 
 # Two layers of other constants under a weight, between smooth walls: nothing moves along x or

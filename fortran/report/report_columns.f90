@@ -1,7 +1,7 @@
 !> The one table of everything that the files of a run hold: every column, key and field.
 !!
-!! The tables of a run take the names and the order of their columns from here, and docs/output.md
-!! is written from it (report_describe); tests hold the keys of run.json and network.json and the
+!! The tables of a run take the names and the order of their columns from here, and so does
+!! the table of names (report_describe); tests hold the keys of run.json and network.json and the
 !! fields of the VTU files against it. A new column is one entry here, at the place where it shall
 !! stand, and one line in report_tables that says where its value comes from.
 module report_columns

@@ -1,195 +1,360 @@
-!> docs/output.md, written from the table of columns.
+!> The table of names as JSON, for `wingcrack-solver --describe json`: what a scene can say, what
+!! the files of a run hold, limits and plausibility checks. The pages of docs/ and the Python
+!! packages take it from post/wingcrack/names.json, which is this text.
 module report_describe
+   use base_kinds, only: rk
    use report_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
                              fracture_columns, fracture_fields, history_columns, &
                              intersection_fields, joint_words, matrix_fields, network_keys, &
                              probe_columns, record_keys, slip_event_columns, slip_words, &
                              status_words, tip_columns, well_columns, well_words, word_t
+   use report_limits, only: limits
+   use report_text, only: json_t
+   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, &
+                               in_mechanics, kind_choice, kind_integer, kind_logical, kind_name, &
+                               kind_real, kind_reals, kind_wholes, need_always, need_choice, &
+                               need_fluid, need_fracture, need_growth, need_tips, parameter_t, &
+                               parameters
+   use scene_plausible, only: doubts
    implicit none(type, external)
    private
 
-   public :: describe_output
-
-   character(len=*), parameter :: nl = new_line("a")
-
-   !&<
-   character(len=*), parameter :: introduction(*) = [character(len=128) :: &
-      "# Files of a run", &
-      "", &
-      "This page is written by `wingcrack-solver --describe-output` from the table that defines", &
-      "the output; tests compare it with the code and with the files of real runs.", &
-      "", &
-      "Released names do not change; new ones may be added. In addition to the files below, a", &
-      "run writes `scene.nml`, the scene with all defaults ([input.md](input.md)), and the", &
-      "event log `run.log`, whose lines begin with the wall time.", &
-      "", &
-      "## Conventions", &
-      "", &
-      "* All numbers are in SI units, angles in degrees; a column's name ends with its unit.", &
-      "* Stress and traction are positive in tension, fluid pressure is positive. Stress is", &
-      "  total, not effective.", &
-      "* The direction of a fracture is that of its vertices in the scene. The jump is the", &
-      "  displacement of the left side minus that of the right side: the normal part is positive", &
-      "  in opening, the tangential part if the left side moves in the fracture's direction.", &
-      "  Contact traction has the same axes: its normal part is negative in compression.", &
-      "* The body has unit thickness. Volumes are in m2, that is m3 per metre of thickness;", &
-      "  energy (J/m) and seismic moment (N m/m) are per metre of thickness too.", &
-      "* Fractures and tips are numbered from 1.", &
-      "* A scene with `&fluid` is a run with a fluid; one without is mechanics only. The column", &
-      "  `in runs` below states in which of them a column, key or field is written.", &
-      "* Without a fluid there is no time. `load_factor`, the factor on the loads of the scene,", &
-      "  replaces it in all tables, in network.json and as the time of the VTU files.", &
-      "* Rows of the other tables correspond to those of history.csv with the same `time_s` or", &
-      "  `load_factor`. Growth can proceed at constant load; `history_row` distinguishes such", &
-      "  states.", &
-      "* Files are complete at any time: they are written under another name and renamed, the", &
-      "  tables every few seconds during a run, run.json last.", &
-      "", &
-      "## Reading", &
-      "", &
-      "The tables are CSV with a header, comma separators, decimal points, and quotes where", &
-      "needed. Numbers have enough digits to be read back as the same double.", &
-      "", &
-      "```python", &
-      "import json", &
-      "import pandas", &
-      "", &
-      "history = pandas.read_csv(""out/onset/history.csv"")", &
-      "history.plot(x=""time_s"", y=""well_pressure_pa"")", &
-      "cells = pandas.read_csv(""out/onset/fractures.csv"")", &
-      "last = cells[cells.history_row == len(history)]  # the state at the end", &
-      "record = json.load(open(""out/onset/run.json""))  # null: not a number", &
-      "```", &
-      "", &
-      "In ParaView open `matrix.pvd`, `fractures.pvd` and `intersections.pvd`, which list the", &
-      "times with their files in `vtu/`. Tensors have the component order of ParaView, and Warp", &
-      "By Vector displays `displacement`. In Python, `pyvista.read` reads each VTU file."]
-   !&>
+   public :: description
 
 contains
 
-   !> Write the page to an open unit.
-   subroutine describe_output(unit)
-      integer, intent(in) :: unit  !< connected for formatted writing
+   !> The whole table.
+   function description(version) result(text)
+      character(len=*), intent(in) :: version  !< of the program
+      character(len=:), allocatable :: text
+      type(json_t) :: json
       integer :: i
 
-      do i = 1, size(introduction)
-         write (unit, "(a)") trim(introduction(i))
+      call json%begin_object("")
+      call json%add("version", version)
+      call json%begin_array("groups")
+      do i = 1, size(groups)
+         call put_group(json, groups(i))
       end do
-      call describe(unit, "history.csv", &
-                    "A row per accepted time step, after that of the initial state if"//nl// &
-                    "it was in equilibrium; without a fluid a row at the end of each"//nl// &
-                    "step of the load programme and at each onset of growth. Growth"//nl// &
-                    "follows its step: it appears in the next row, also if it ends"//nl// &
-                    "the run. With a fluid, a step may contain several increments of"//nl// &
-                    "growth, which the windows around the tips follow: tips.csv has a"//nl// &
-                    "row for each, and the next row of history.csv follows when the"//nl// &
-                    "mesh of the body has been updated. Fluid is conserved: up to the"//nl// &
-                    "mass error, the injected and prefilled volume is the sum of"//nl// &
-                    "fracture_fluid_m2, rock_fluid_m2, outflow_m2 and"//nl// &
-                    "rock_outflow_m2, and leak-off is the sum of rock_fluid_m2 and"//nl// &
+      call json%end_array()
+      call json%begin_array("files")
+      call put_files(json)
+      call json%end_array()
+      call json%begin_array("words")
+      call put_words(json, "fractures.csv", "state", contact_words)
+      call put_words(json, "events.csv", "kind", event_words)
+      call put_words(json, "slip_events.csv", "ended_by", end_words)
+      call put_words(json, "slip_events.csv", "kind", slip_words)
+      call put_words(json, "wells.csv", "control", well_words)
+      call put_words(json, "run.json", "status", status_words)
+      call put_words(json, "network.json", "joints[].kind", joint_words)
+      call json%end_array()
+      call json%begin_array("limits")
+      do i = 1, size(limits)
+         call begin_row(json, limits(i)%name, limits(i)%unit)
+         call json%add("runs", trim(limits(i)%runs))
+         call put_limit(json, "warning", limits(i)%warning)
+         call put_limit(json, "stop", limits(i)%stop)
+         call json%add("remedy", trim(limits(i)%remedy))
+         call end_row(json, limits(i)%meaning)
+      end do
+      call json%end_array()
+      call json%begin_array("checks")
+      do i = 1, size(doubts)
+         call begin_row(json, doubts(i)%name, doubts(i)%unit)
+         call json%add("group", trim(doubts(i)%group))
+         call json%add("condition", trim(doubts(i)%doubtful))
+         call end_row(json, doubts(i)%usual)
+      end do
+      call json%end_array()
+      call json%end_object()
+      text = json%text()
+   end function description
+
+   subroutine put_group(json, group)
+      type(json_t), intent(inout) :: json
+      type(group_t), intent(in) :: group
+      integer :: i
+
+      call json%begin_object("")
+      call json%add("name", trim(group%name))
+      call put_logical(json, "repeated", group%repeated)
+      call put_scenes(json, group%scenes)
+      call json%add("meaning", trim(group%meaning))
+      call json%begin_array("parameters")
+      do i = 1, size(parameters)
+         if (parameters(i)%group == group%name) call put_parameter(json, parameters(i))
+      end do
+      call json%end_array()
+      call json%end_object()
+   end subroutine put_group
+
+   !> A name of a group; without the members that say nothing of it.
+   subroutine put_parameter(json, parameter)
+      type(json_t), intent(inout) :: json
+      type(parameter_t), intent(in) :: parameter
+      character(len=:), allocatable :: rest
+
+      call begin_row(json, parameter%name, parameter%unit)
+      call json%add("kind", kind_words(parameter%kind))
+      call put_text(json, "default", parameter%default)
+      call put_text(json, "required", need_words(parameter%need))
+      call put_text(json, "absent", parameter%absent)
+      call put_logical(json, "derived", parameter%derived)
+      call put_scenes(json, parameter%scenes)
+      associate (range => parameter%range)
+         if (range%lowest > -huge(1.0_rk)) call json%add("minimum", range%lowest)
+         if (range%highest < huge(1.0_rk)) call json%add("maximum", range%highest)
+         call put_logical(json, "above_minimum", range%open_below)
+         call put_logical(json, "below_maximum", range%open_above)
+      end associate
+      call put_text(json, "at_most", parameter%at_most)
+      call put_text(json, "with", parameter%with)
+      if (parameter%of /= "") then
+         call json%begin_object("of")
+         call json%add(choice_name(parameter), choice_value(parameter))
+         call json%end_object()
+      end if
+      if (parameter%choices /= "") then
+         call json%begin_array("choices")
+         rest = trim(parameter%choices)//"|"
+         do while (len(rest) > 0)
+            call json%add("", rest(:index(rest, "|") - 1))
+            rest = rest(index(rest, "|") + 1:)
+         end do
+         call json%end_array()
+      end if
+      call end_row(json, parameter%meaning)
+   end subroutine put_parameter
+
+   pure function kind_words(kind) result(words)
+      integer, intent(in) :: kind
+      character(len=:), allocatable :: words
+
+      select case (kind)
+      case (kind_real)
+         words = "number"
+      case (kind_reals)
+         words = "list of numbers"
+      case (kind_integer)
+         words = "whole number"
+      case (kind_wholes)
+         words = "list of whole numbers"
+      case (kind_logical)
+         words = "logical"
+      case (kind_name)
+         words = "name"
+      case (kind_choice)
+         words = "choice"
+      case default
+         words = "text"
+      end select
+   end function kind_words
+
+   !> Where a name without a default is required; empty: nowhere.
+   pure function need_words(need) result(words)
+      integer, intent(in) :: need
+      character(len=:), allocatable :: words
+
+      select case (need)
+      case (need_always)
+         words = "always"
+      case (need_fluid)
+         words = "with &fluid"
+      case (need_fracture)
+         words = "with &fracture"
+      case (need_tips)
+         words = "with growth or intensities"
+      case (need_growth)
+         words = "with growth"
+      case (need_choice)
+         words = "with its choice"
+      case default
+         words = ""
+      end select
+   end function need_words
+
+   !> The files of a run.
+   subroutine put_files(json)
+      type(json_t), intent(inout) :: json
+
+      call put_file(json, "history.csv", &
+                    "A row per accepted time step, after that of the initial state if "// &
+                    "it was in equilibrium; without a fluid a row at the end of each "// &
+                    "step of the load programme and at each onset of growth. Growth "// &
+                    "follows its step: it appears in the next row, also if it ends "// &
+                    "the run. With a fluid, a step may contain several increments of "// &
+                    "growth, which the windows around the tips follow: tips.csv has a "// &
+                    "row for each, and the next row of history.csv follows when the "// &
+                    "mesh of the body has been updated. Fluid is conserved: up to the "// &
+                    "mass error, the injected and prefilled volume is the sum of "// &
+                    "fracture_fluid_m2, rock_fluid_m2, outflow_m2 and "// &
+                    "rock_outflow_m2, and leak-off is the sum of rock_fluid_m2 and "// &
                     "rock_outflow_m2.", history_columns)
-      call describe(unit, "tips.csv", &
-                    "With growth or stress intensity factors: a row per free tip and"//nl// &
-                    "state, or per tip and increment of growth. If any tip grows, the"//nl// &
-                    "rows of all tips contain the values before the increment. A tip"//nl// &
+      call put_file(json, "tips.csv", &
+                    "With growth or stress intensity factors: a row per free tip and "// &
+                    "state, or per tip and increment of growth. If any tip grows, the "// &
+                    "rows of all tips contain the values before the increment. A tip "// &
                     "that has joined a target, or was joined, has no further rows.", tip_columns)
-      call describe(unit, "fractures.csv", &
-                    "With fractures: a row per fracture cell and written state. These"//nl// &
-                    "are the times given by `interval` of `&output`, without a fluid"//nl// &
-                    "the ends of the steps of the load programme; the first state on"//nl// &
-                    "each mesh that was updated after growth, without a fluid each"//nl// &
+      call put_file(json, "fractures.csv", &
+                    "With fractures: a row per fracture cell and written state. These "// &
+                    "are the times given by `interval` of `&output`, without a fluid "// &
+                    "the ends of the steps of the load programme; the first state on "// &
+                    "each mesh that was updated after growth, without a fluid each "// &
                     "onset of growth; and the end of the run.", fracture_columns)
-      call describe_words(unit, "state", contact_words)
-      call describe(unit, "probes.csv", &
-                    "With probes: a row per row of history.csv. `NAME` stands for the"//nl// &
-                    "name of a probe; all columns except the time repeat for each"//nl// &
+      call put_file(json, "probes.csv", &
+                    "With probes: a row per row of history.csv. `NAME` stands for the "// &
+                    "name of a probe; all columns except the time repeat for each "// &
                     "probe.", probe_columns)
-      call describe(unit, "events.csv", "A row per event.", event_columns)
-      call describe_words(unit, "kind", event_words)
-      call describe(unit, "slip_events.csv", &
-                    "With a fluid and fractures: a row per slip event, after its end."//nl// &
-                    "In a step, a patch is a sequence of adjacent cells of one"//nl// &
-                    "fracture that slip, in contact or open. Patches of successive"//nl// &
-                    "steps belong to one event if they have faces in common; events"//nl// &
-                    "that meet merge. An event ends when no cell of it slips any"//nl// &
-                    "more, or when its largest slip rate passes `seismic_slip_rate`"//nl// &
-                    "of `&output`: faster slip is a separate event, from nucleation"//nl// &
-                    "to arrest. Events with a mean slip below `stimulated_jump` of"//nl// &
-                    "`&output` are omitted, and slip of the initial equilibrium is no"//nl// &
-                    "event. Without `radiation_damping` the simulation is"//nl// &
-                    "quasi-static: slip lasts as long as the injection drives it, the"//nl// &
-                    "rate of a jump is that of the step that contains it, and moment"//nl// &
-                    "and magnitude include all slip, seismic or not. `sudden_share`"//nl// &
-                    "is the part due to unstable growth, which is instantaneous. The"//nl// &
-                    "sum of the moments is the increase of seismic_moment_nm of"//nl// &
-                    "history.csv since the first state, times `out_of_plane_length`,"//nl// &
+      call put_file(json, "events.csv", "A row per event.", event_columns)
+      call put_file(json, "slip_events.csv", &
+                    "With a fluid and fractures: a row per slip event, after its end. "// &
+                    "In a step, a patch is a sequence of adjacent cells of one "// &
+                    "fracture that slip, in contact or open. Patches of successive "// &
+                    "steps belong to one event if they have faces in common; events "// &
+                    "that meet merge. An event ends when no cell of it slips any "// &
+                    "more, or when its largest slip rate passes `seismic_slip_rate` "// &
+                    "of `&output`: faster slip is a separate event, from nucleation "// &
+                    "to arrest. Events with a mean slip below `stimulated_jump` of "// &
+                    "`&output` are omitted, and slip of the initial equilibrium is no "// &
+                    "event. Without `radiation_damping` the simulation is "// &
+                    "quasi-static: slip lasts as long as the injection drives it, the "// &
+                    "rate of a jump is that of the step that contains it, and moment "// &
+                    "and magnitude include all slip, seismic or not. `sudden_share` "// &
+                    "is the part due to unstable growth, which is instantaneous. The "// &
+                    "sum of the moments is the increase of seismic_moment_nm of "// &
+                    "history.csv since the first state, times `out_of_plane_length`, "// &
                     "except for the omitted events.", &
                     slip_event_columns)
-      call describe_words(unit, "ended_by", end_words)
-      call describe_words(unit, "kind", slip_words)
-      call describe(unit, "wells.csv", "With wells: a row per well and row of history.csv.", &
+      call put_file(json, "wells.csv", "With wells: a row per well and row of history.csv.", &
                     well_columns)
-      call describe_words(unit, "control", well_words)
-      call describe(unit, "run.json", &
+      call put_file(json, "run.json", &
                     "Summary of the run. A dot in a name denotes an object.", &
                     record_keys)
-      call describe_words(unit, "status", status_words)
-      call describe(unit, "network.json", &
-                    "The fractures, their tips and joints. `[]` stands for each item"//nl// &
+      call put_file(json, "network.json", &
+                    "The fractures, their tips and joints. `[]` stands for each item "// &
                     "of a list.", network_keys)
-      call describe_words(unit, "joints[].kind", joint_words)
-      call describe(unit, "matrix.vtu", &
-                    "Fields of the rock in the states of fractures.csv, unless the"//nl// &
-                    "scene disables VTU files. The number of states of growth is"//nl// &
-                    "limited by `growth_states` of `&output`; run.json has a warning"//nl// &
-                    "if it is exceeded. There are values of the triangles, and the"//nl// &
-                    "displacement of their nodes. Without a fluid the triangles have"//nl// &
-                    "six nodes. Every array has its unit as VTK's key `UNITS_LABEL`."//nl// &
-                    "The field data `TimeValue` of each file is its time_s or"//nl// &
-                    "load_factor, and `history_row` the number of the row of"//nl// &
-                    "history.csv. In the .pvd files times increase from file to file,"//nl// &
-                    "as ParaView requires: states with the same load factor differ in"//nl// &
-                    "the last digit, and those of a decreasing load are in the order"//nl// &
-                    "of their load factor; with `factors` of `&load` the time is"//nl// &
+      call put_file(json, "matrix.vtu", &
+                    "Fields of the rock in the states of fractures.csv, unless the "// &
+                    "scene disables VTU files. The number of states of growth is "// &
+                    "limited by `growth_states` of `&output`; run.json has a warning "// &
+                    "if it is exceeded. There are values of the triangles, and the "// &
+                    "displacement of their nodes. Without a fluid the triangles have "// &
+                    "six nodes. Every array has its unit as VTK's key `UNITS_LABEL`. "// &
+                    "The field data `TimeValue` of each file is its time_s or "// &
+                    "load_factor, and `history_row` the number of the row of "// &
+                    "history.csv. In the .pvd files times increase from file to file, "// &
+                    "as ParaView requires: states with the same load factor differ in "// &
+                    "the last digit, and those of a decreasing load are in the order "// &
+                    "of their load factor; with `factors` of `&load` the time is "// &
                     "history_row.", &
                     matrix_fields)
-      call describe(unit, "fractures.vtu", &
-                    "Fields of the fracture cells. The names of fractures 1, 2 and so"//nl// &
-                    "on are in network.json: VTU files contain only numbers, for"//nl// &
+      call put_file(json, "fractures.vtu", &
+                    "Fields of the fracture cells. The names of fractures 1, 2 and so "// &
+                    "on are in network.json: VTU files contain only numbers, for "// &
                     "compatibility with simple readers (meshio).", fracture_fields)
-      call describe(unit, "intersections.vtu", &
-                    "Fields of the intersections of fractures; written only with a"//nl// &
+      call put_file(json, "intersections.vtu", &
+                    "Fields of the intersections of fractures; written only with a "// &
                     "fluid and if there are any.", intersection_fields)
-   end subroutine describe_output
+   end subroutine put_files
 
-   !> A section of the page: a file, its rows and its columns, keys or fields.
-   subroutine describe(unit, file, meaning, columns)
-      integer, intent(in) :: unit
+   !> A file, its rows and its columns, keys or fields.
+   subroutine put_file(json, file, meaning, columns)
+      type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: meaning  !< whole sentences
       type(column_t), intent(in) :: columns(:)
       integer :: i
 
-      write (unit, "(a)") "", "## "//file, "", meaning, "", "| name | unit | in runs | meaning |", &
-         "|---|---|---|---|"
+      call json%begin_object("")
+      call json%add("name", file)
+      call json%add("meaning", meaning)
+      call json%begin_array("columns")
       do i = 1, size(columns)
-         write (unit, "(a)") "| `"//trim(columns(i)%name)//"` | "//trim(columns(i)%unit)//" | "// &
-            trim(columns(i)%runs)//" | "//trim(columns(i)%meaning)//" |"
+         call begin_row(json, columns(i)%name, columns(i)%unit)
+         call json%add("runs", trim(columns(i)%runs))
+         call end_row(json, columns(i)%meaning)
       end do
-   end subroutine describe
+      call json%end_array()
+      call json%end_object()
+   end subroutine put_file
 
-   !> The words that the column or key above may hold.
-   subroutine describe_words(unit, name, words)
-      integer, intent(in) :: unit
+   !> The words that a column or key of a file may hold.
+   subroutine put_words(json, file, name, words)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: file
       character(len=*), intent(in) :: name  !< of the column or key
       type(word_t), intent(in) :: words(:)
       integer :: i
 
-      write (unit, "(a)") "", "`"//name//"` is one of these:", ""
+      call json%begin_object("")
+      call json%add("file", file)
+      call json%add("name", name)
+      call json%begin_object("words")
       do i = 1, size(words)
-         write (unit, "(a)") "* `"//trim(words(i)%word)//"`: "//trim(words(i)%meaning)
+         call json%add(trim(words(i)%word), trim(words(i)%meaning))
       end do
-   end subroutine describe_words
+      call json%end_object()
+      call json%end_object()
+   end subroutine put_words
+
+   !> A row of a table is a line of the text.
+   subroutine begin_row(json, name, unit)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: name, unit
+
+      call json%begin_object("")
+      json%one_line = .true.
+      call json%add("name", trim(name))
+      call json%add("unit", trim(unit))
+   end subroutine begin_row
+
+   subroutine end_row(json, meaning)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: meaning
+
+      call json%add("meaning", trim(meaning))
+      call json%end_object()
+      json%one_line = .false.
+   end subroutine end_row
+
+   !> A text, if there is one.
+   subroutine put_text(json, key, text)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: key, text
+
+      if (text /= "") call json%add(key, trim(text))
+   end subroutine put_text
+
+   !> What is false is left out.
+   subroutine put_logical(json, key, value)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: key
+      logical, intent(in) :: value
+
+      if (value) call json%add_raw(key, "true")
+   end subroutine put_logical
+
+   !> Which scenes may have a group or a name, if not all.
+   subroutine put_scenes(json, scenes)
+      type(json_t), intent(inout) :: json
+      integer, intent(in) :: scenes
+
+      if (scenes == in_fluid) call json%add("scenes", "with &fluid")
+      if (scenes == in_mechanics) call json%add("scenes", "without &fluid")
+   end subroutine put_scenes
+
+   !> A limit; null if it is never reached.
+   subroutine put_limit(json, key, value)
+      type(json_t), intent(inout) :: json
+      character(len=*), intent(in) :: key
+      real(rk), intent(in) :: value
+
+      if (value < huge(1.0_rk)) then
+         call json%add(key, value)
+      else
+         call json%add_raw(key, "null")
+      end if
+   end subroutine put_limit
 
 end module report_describe

@@ -1,7 +1,8 @@
 !> The one table of everything a scene file can say: its groups, and the names of
 !> scene_parameter_table.
 !>
-!> Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
+!> Reading, checking of single values, writing of scene.nml, and the table of names
+!> (report_describe), all follow from it.
 !> A new parameter is one entry there and one line in scene_exchange.
 module scene_parameters
    use scene_parameter_table, only: body_parameters, fracture_parameters, group_t, in_all, &

@@ -1,12 +1,9 @@
 !> What the test programs need to look at files.
-!!
-!! Whether a page of docs/ that the program writes is still what the program would write.
 module testing_files
-   use testing_checks, only: checks_t
    implicit none(type, external)
    private
 
-   public :: check_page, file_exists, file_text
+   public :: file_exists, file_text
 
 contains
 
@@ -36,33 +33,5 @@ contains
       end if
       close (unit)
    end function file_text
-
-   !> Compare line by line. CTest hands over the source tree in the environment.
-   subroutine check_page(checks, code, name)
-      type(checks_t), intent(inout) :: checks
-      integer, intent(in) :: code  !< unit of the page from the code, at its beginning
-      character(len=*), intent(in) :: name  !< of the page in the source tree
-      character(len=1024) :: from_code, from_page, source
-      character(len=8) :: number
-      integer :: page, code_status, page_status, line
-
-      call get_environment_variable("WINGCRACK_SOURCE", source)
-      open (newunit=page, file=trim(source)//"/"//name, action="read", status="old", &
-            iostat=page_status)
-      call checks%is_true(page_status == 0, name//" exists")
-      line = 0
-      do while (page_status == 0)
-         read (code, "(a)", iostat=code_status) from_code
-         read (page, "(a)", iostat=page_status) from_page
-         line = line + 1
-         write (number, "(i0)") line
-         call checks%is_true((code_status == 0) .eqv. (page_status == 0), &
-                             name//" is as long as the page from the code; line "//trim(number))
-         if (code_status /= 0 .or. page_status /= 0) exit
-         call checks%is_true(from_code == from_page, name//", line "//trim(number)//": "// &
-                             trim(from_page))
-      end do
-      call checks%is_true(line > 60, "the page is whole")
-   end subroutine check_page
 
 end module testing_files

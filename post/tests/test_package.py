@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,22 +12,18 @@ import pytest
 
 import wingcrack
 from synthetic_run import GROWTH_STEP, HOUR, STEPS, times, well_pressure
+from wingcrack.names import columns
 from wingcrack.units import column_unit, column_words, field_unit
 from wingcrack_view.content import Content
 
 TOP = Path(__file__).resolve().parents[2]
-_ROW = re.compile(r"\| `(\w+)` \| ([^|]+) \| [^|]* \| ([^|]*)")
 
 
 def described() -> list[tuple[str, str, str]]:
     """File, name and unit of every column and field, as the solver describes its output."""
-    found, file = [], ""
-    for line in (TOP / "docs" / "output.md").read_text(encoding="utf-8").splitlines():
-        if line.startswith("## "):
-            file = line[3:]
-        elif row := _ROW.match(line):
-            found.append((file, row[1], row[2].strip()))
-    return found
+    return [
+        (file, name, row["unit"]) for file, rows in columns().items() for name, row in rows.items()
+    ]
 
 
 def test_units_are_those_of_the_solver() -> None:
@@ -36,6 +31,8 @@ def test_units_are_those_of_the_solver() -> None:
     fields = [(name, unit) for file, name, unit in described() if file.endswith(".vtu")]
     assert len(columns) > 80
     assert len(fields) > 10
+    assert field_unit("stress") == "Pa"
+    assert field_unit("state") == "-"
     for file, name, unit in columns:
         assert column_unit(name) == unit, (file, name)
     for name, unit in fields:

@@ -73,7 +73,8 @@ def _try(words: list[str], place: Path, where: str) -> None:
         words = words[1:]
     words = stand_in(words)
     if words[0] == "build/release/fortran/app/wingcrack-solver":
-        assert solver.call(words[1]).returncode == 0, where
+        arguments = [word for word in words[1:] if not word.startswith(">")]
+        assert solver.call(*arguments).returncode == 0, where
     elif words[0] != "./wingcrack":
         understand_other(words)
     else:

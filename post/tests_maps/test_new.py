@@ -8,14 +8,13 @@ from pathlib import Path
 import f90nml
 import pytest
 
-from map_calls import TOP, needs_solver
+from map_calls import needs_solver
 from wingcrack.command_line import main
 from wingcrack.command_line.scene_commands import KINDS
 from wingcrack_scenes.errors import SceneError
 from wingcrack_scenes.namelist import Value, group_text
 from wingcrack_scenes.new import KINDS as FOLDER
 from wingcrack_scenes.new import annotated
-from wingcrack_scenes.parameters import parse
 from wingcrack_scenes.solver import call, check
 
 
@@ -56,17 +55,6 @@ def test_a_name_that_the_solver_does_not_know_is_refused() -> None:
         annotated("&material\n  yung = 1.0\n/\n")
     with pytest.raises(SceneError, match="knows no group &rock"):
         annotated("&rock\n/\n")
-
-
-def test_the_table_of_the_input_is_read_whole() -> None:
-    page = (TOP / "docs" / "input.md").read_text().partition("## With and without")[0]
-    table = parse(page)
-    assert len(table) == page.count("\n## &")
-    assert sum(len(group.parameters) for group in table.values()) == page.count("\n| `")
-    friction = table["fracture"].parameters["friction"]
-    assert (friction.kind, friction.unit) == ("number", "-")
-    assert table["fracture"].is_repeated
-    assert not table["time"].is_repeated
 
 
 def test_groups_read_back_as_they_were(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from small_study import HEAD, LINES, ONSET, OVER, PRESSURE, SOUND, small_study
 from wingcrack_study.study import Study, read_study
-from wingcrack_study.units import column_name, pretty_number, spoken, units_of_input
+from wingcrack_study.units import column_name, pretty_number, spoken, unit_of_path
 from wingcrack_verify.errors import CaseError
 
 TOP = Path(__file__).resolve().parents[2]
@@ -275,11 +275,11 @@ def test_columns_carry_their_unit(name: str, unit: str, column: str) -> None:
     assert column_name(name, unit) == column
 
 
-def test_units_come_from_the_page_of_the_input() -> None:
-    units = units_of_input(TOP / "docs" / "input.md")
-    assert units["injection.rate"] == "m2/s"
-    assert units["material.young"] == "Pa"
-    assert units["fracture.friction"] == "-"
+def test_units_come_from_the_table_of_the_input() -> None:
+    assert unit_of_path("injection.1.rate") == "m2/s"
+    assert unit_of_path("Material.Young") == "Pa"
+    assert unit_of_path("fracture.main.friction") == "-"
+    assert unit_of_path("fracture.colour") is None
 
 
 def test_values_that_differ_are_spoken_differently() -> None:

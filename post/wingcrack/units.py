@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from wingcrack.names import columns
+
 FARTHEST = 1.0e8  # of places and lengths [m]: farther than the earth is wide
 
 # Ends of column names and their units; longer ends come first. A test holds them against
-# docs/output.md, which the solver writes.
+# the table of names.
 _ENDS = (
     ("_pa_sqrtm", "Pa m^1/2"),
     ("_m2_s_pa", "m2/s/Pa"),
@@ -25,19 +27,6 @@ _ENDS = (
 _OF_COLUMNS = {"seismic_moment_nm": "N m/m"}
 
 NONE = "-"
-
-_OF_FIELDS = {
-    "nodal_displacement": "m",
-    "displacement": "m",
-    "pressure": "Pa",
-    "stress": "Pa",
-    "permeability": "m2",
-    "arc_length": "m",
-    "aperture": "m",
-    "jump": "m",
-    "traction": "Pa",
-    "flow": "m2/s",
-}
 
 
 def column_unit(column: str) -> str:
@@ -63,4 +52,5 @@ def column_words(column: str) -> str:
 
 def field_unit(name: str) -> str:
     """Unit of a field of the VTU files, ``-`` for numbers and states."""
-    return _OF_FIELDS.get(name, NONE)
+    fields = (rows for file, rows in columns().items() if file.endswith(".vtu"))
+    return next((rows[name]["unit"] for rows in fields if name in rows), NONE)

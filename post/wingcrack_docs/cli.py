@@ -16,9 +16,11 @@ def docs(given: SimpleNamespace) -> int:
     from wingcrack_docs.errors import PagesError, SiteError
     from wingcrack_docs.fortran import make_fortran_pages
     from wingcrack_docs.site import build_site, serve_site
+    from wingcrack_docs.tables import write_pages
 
     out = given.out or SITE
     begin = time.perf_counter()
+    write_pages()
     try:
         if not given.no_fortran and make_fortran_pages():
             print(f"pages of the Fortran modules: {time.perf_counter() - begin:.0f} s", flush=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from wingcrack.parameter_table import Parameter
 from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.parameters import Group, Parameter, groups
+from wingcrack_scenes.parameters import Group, groups
 
 KINDS = Path(__file__).resolve().parent / "kinds"
 

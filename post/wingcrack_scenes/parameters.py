@@ -1,38 +1,13 @@
-"""The table of groups and names that a scene may hold, read from what the solver says of itself."""
+"""The table of groups and names that a scene may hold, by groups."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from functools import cache
 
-from wingcrack_post.errors import EnvironmentLacksError
-from wingcrack_scenes.solver import description
-
-_GROUP = re.compile(r"## &(\w+)( \(repeated\))?")
-_BAR = re.compile(r"(?<!\\)\|")
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One name of a group.
-
-    Attributes
-    ----------
-    kind : str
-        ``number``, ``whole number``, ``text``, ``logical``, ``list of numbers`` and so on.
-    unit : str
-        As ``Pa``; ``-`` for none.
-    default, allowed, meaning : str
-        In the words of docs/input.md.
-    """
-
-    name: str
-    kind: str
-    unit: str
-    default: str
-    allowed: str
-    meaning: str
+from wingcrack.names import table
+from wingcrack.parameter_table import Parameter
+from wingcrack.parameter_table import parameters as all_parameters
 
 
 @dataclass(frozen=True)
@@ -48,35 +23,15 @@ class Group:
 @cache
 def groups() -> dict[str, Group]:
     """Give all groups by name, in the order of the table."""
-    found = parse(description())
-    if "fracture" not in found:
-        raise EnvironmentLacksError("the solver's description of its input has no group &fracture")
-    return found
-
-
-def parse(page: str) -> dict[str, Group]:
-    """Read the groups from the page docs/input.md.
-
-    Parameters
-    ----------
-    page : str
-        Markdown with a heading ``## &group`` and a table of six columns for each group.
-    """
-    found: dict[str, Group] = {}
-    for section in re.split(r"^(?=## )", page, flags=re.MULTILINE):
-        heading, _, body = section.partition("\n")
-        match = _GROUP.fullmatch(heading.strip())
-        if match is None:
-            continue
-        meaning, _, table = body.strip().partition("\n\n|")
-        rows = [_BAR.split(line.strip("| \n")) for line in table.splitlines()[2:]]
-        parameters = [_parameter([cell.strip() for cell in row]) for row in rows if len(row) == 6]
-        found[match[1]] = Group(
-            match[1], bool(match[2]), meaning.strip(), {p.name: p for p in parameters}
+    return {
+        group["name"]: Group(
+            group["name"],
+            "repeated" in group,
+            group["meaning"] + (f" Only in scenes {group['scenes']}." if "scenes" in group else ""),
+            {
+                row["name"]: all_parameters()[f"{group['name']}.{row['name']}"]
+                for row in group["parameters"]
+            },
         )
-    return found
-
-
-def _parameter(cells: list[str]) -> Parameter:
-    name, kind, unit, default, allowed, meaning = cells
-    return Parameter(name.strip("`"), kind, unit, default.strip("`"), allowed, meaning)
+        for group in table()["groups"]
+    }

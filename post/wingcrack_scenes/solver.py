@@ -1,10 +1,9 @@
-"""The solver as these packages ask it: what a scene may hold, and what it thinks of one."""
+"""The solver as these packages ask it what it thinks of a scene."""
 
 from __future__ import annotations
 
 import os
 import subprocess
-from functools import cache
 from pathlib import Path
 
 from wingcrack_post.errors import EnvironmentLacksError
@@ -36,15 +35,6 @@ def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
         raise EnvironmentLacksError(
             f"the solver {SOLVER} cannot be started ({reason.strerror}); ./wingcrack build makes it"
         ) from None
-
-
-@cache
-def description() -> str:
-    """Give the page that describes the scene file, as the solver writes it."""
-    done = call("--describe-input")
-    if done.returncode != 0:
-        raise EnvironmentLacksError(f"the solver cannot describe its input: {done.stderr.strip()}")
-    return done.stdout
 
 
 def check(scene: Path) -> tuple[bool, str]:

@@ -3,41 +3,30 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Collection, Iterable, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from wingcrack.names import columns
 from wingcrack_post.errors import RunError
 from wingcrack_post.table import read_table
 from wingcrack_post.text_files import read_json
-from wingcrack_study import TOP
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.paths import COLUMNS, NETWORK
 from wingcrack_verify.selection import Selection, Values, names_of, select
-
-OUTPUT_PAGE = TOP / "docs" / "output.md"
-
-_FILE = re.compile(r"## (\S+\.(?:csv|json))")
-_ROW = re.compile(r"\| `([^`]+)` \| [^|]* \| ([^|]*) \|")
 
 
 class UnreadableError(CaseError):
     """A run has not written what a study wants to read of all runs."""
 
 
-@lru_cache(maxsize=4)
-def names_of_output(page: Path) -> Mapping[str, Mapping[str, str]]:
+def names_of_output() -> Mapping[str, Mapping[str, str]]:
     """Columns or keys of each file with the runs that have them, as the program describes them."""
-    files: dict[str, dict[str, str]] = {}
-    names: dict[str, str] = {}
-    for line in page.read_text(encoding="utf-8").splitlines():
-        if line.startswith("## "):
-            heading = _FILE.match(line)
-            names = files.setdefault(heading[1], {}) if heading else {}
-        elif row := _ROW.match(line):
-            names[row[1]] = row[2].strip()
+    files = {
+        file: {name: row["runs"] for name, row in rows.items()}
+        for file, rows in columns().items()
+        if not file.endswith(".vtu")
+    }
     files[NETWORK] = dict.fromkeys(COLUMNS, "always")  # read as a table of vertices
     return files
 
@@ -57,7 +46,7 @@ def judge_selection(selection: Selection, constants: Collection[str], has_fluid:
     CaseError
         With what would be right.
     """
-    files = names_of_output(OUTPUT_PAGE)
+    files = names_of_output()
     if selection.file not in files:
         raise CaseError(
             f"{selection.place}: '{selection.file}' is no file of a run"

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from wingcrack_post.text_files import is_file
-from wingcrack_study import TOP
 from wingcrack_study.cluster import Cluster, read_cluster
 from wingcrack_study.distributions import SAMPLE, read_draws
 from wingcrack_study.outputs import judge_selection
@@ -24,7 +23,6 @@ from wingcrack_verify.scene import scene_text
 from wingcrack_verify.selection import Selection
 from wingcrack_verify.sweep import Table, filled, grid_points
 
-INPUT_PAGE = TOP / "docs" / "input.md"
 MOST_RUNS = 10_000
 
 # Columns that the table of every study has, beside those of its own.
@@ -255,7 +253,7 @@ def _unit(name: str, runs: Sequence[StudyRun], changes: Table, place: str) -> st
     if name == SAMPLE or all(isinstance(value, str | bool) for value in values):
         return NONE
     paths = [name] if "." in name else [path for path, to in changes.items() if to == f"{{{name}}}"]
-    found = {unit for path in paths if (unit := unit_of_path(path, INPUT_PAGE)) is not None}
+    found = {unit for path in paths if (unit := unit_of_path(path)) is not None}
     if len(found) == 1:
         return found.pop()
     if paths and not found:

@@ -3,33 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
+
+from wingcrack.parameter_table import parameters
 
 NONE = "-"  # the unit of a number that has none
 
-_GROUP = re.compile(r"## &(\w+)")
-_ROW = re.compile(r"\| `(\w+)` \| [^|]* \| ([^|]*) \|")
 
-
-@lru_cache(maxsize=4)
-def units_of_input(page: Path) -> Mapping[str, str]:
-    """Unit of each ``group.name``, from the page that the program writes of its input."""
-    units, group = {}, ""
-    for line in page.read_text(encoding="utf-8").splitlines():
-        if heading := _GROUP.match(line):
-            group = heading[1]
-        elif row := _ROW.match(line):
-            units[f"{group}.{row[1]}"] = row[2].strip()
-    return units
-
-
-def unit_of_path(path: str, page: Path) -> str | None:
-    """Unit of a namelist entry by its path; None if the page does not know it."""
+def unit_of_path(path: str) -> str | None:
+    """Unit of a namelist entry by its path; None if no scene has it."""
     group, *_, name = path.lower().split(".")
-    return units_of_input(page).get(f"{group}.{name}")
+    found = parameters().get(f"{group}.{name}")
+    return found.unit if found else None
 
 
 def column_name(name: str, unit: str) -> str:

@@ -20,12 +20,12 @@ import numpy as np
 import numpy.typing as npt
 import pyvista
 
+from wingcrack.names import table as name_table
 from wingcrack_post.text_files import csv_rows, read_json
 
 Numbers: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = dict[str, npt.NDArray[Any]]
 
-TOP = Path(__file__).resolve().parents[2]
 CONTACT = "contact residual"
 MASS = "mass error"
 # A result is not wrong before it is wrong by so much, over what it is compared with.
@@ -39,7 +39,7 @@ TOLERANCE_REMESHED = 1e-5
 
 @dataclass(frozen=True)
 class Limit:
-    """A row of the table in docs/limits.md."""
+    """Values of a quantity that are warned of, and that stop a run."""
 
     warning: float
     stop: float
@@ -80,19 +80,12 @@ class Findings:
             self.wrong.append(f"{name} {value:.3g} {where}")
 
 
-def _bound(cell: str) -> float:
-    """A limit of the table; some never stop a run."""
-    return np.inf if cell == "never" else float(cell)
-
-
 def read_limits() -> dict[str, Limit]:
-    """The table of docs/limits.md."""
-    limits = {}
-    for line in (TOP / "docs" / "limits.md").read_text().splitlines():
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if len(cells) == 7 and cells[3][:1].isdigit():
-            limits[cells[0]] = Limit(_bound(cells[3]), _bound(cells[4]))
-    return limits
+    """The limits of the program by their names; some never stop a run."""
+    return {
+        row["name"]: Limit(row["warning"], np.inf if row["stop"] is None else row["stop"])
+        for row in name_table()["limits"]
+    }
 
 
 def read_table(path: Path) -> Table:

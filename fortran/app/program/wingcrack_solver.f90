@@ -9,10 +9,8 @@ program wingcrack_solver
    use app_size, only: check_size, describe_scene
    use app_version, only: version
    use base_errors, only: error_t
-   use report_describe, only: describe_output
-   use report_limits, only: describe_limits
+   use report_describe, only: description
    use report_simulation, only: simulation_t
-   use scene_describe, only: describe_input
    use scene_namelist, only: read_scene
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
@@ -22,8 +20,7 @@ program wingcrack_solver
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
                                   "ranks SCENE.nml | "// &
-                                  "--describe-input | --describe-output | "// &
-                                  "--describe-limits | --version"
+                                  "--describe json | --version"
    !> Kept to the program's end: gfortran 12 loses parts of what it deallocates by its dynamic type.
    class(simulation_t), allocatable :: simulation
 
@@ -36,12 +33,9 @@ program wingcrack_solver
       call print_name()
    case ("ranks")
       call check_ranks()
-   case ("--describe-input")
-      call describe_input(output_unit)
-   case ("--describe-output")
-      call describe_output(output_unit)
-   case ("--describe-limits")
-      call describe_limits(output_unit)
+   case ("--describe")
+      if (argument(2) /= "json") call leave("--describe json is all there is; "//usage, exit_usage)
+      write (output_unit, "(a)", advance="no") description(version)
    case ("--version")
       write (output_unit, "(2a)") "wingcrack ", version
    case ("--help")

@@ -1,25 +1,27 @@
-!> docs/output.md is what the table of columns says; its words are those that the files have.
+!> post/wingcrack/names.json is the table of names; its words are those that the files have.
 program test_report_describe
    use base_kinds, only: ik
    use base_timers, only: phase_names
    use contact_law, only: state_name
    use report_columns, only: contact_words, event_words, record_keys, status_words
-   use report_describe, only: describe_output
+   use report_describe, only: description
    use report_record, only: status_failed, status_finished, status_stopped
    use report_rows, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &
                           event_joint, event_opening, event_remesh, event_slip_onset, &
                           event_step_cut, event_unstable, event_well, event_window
    use testing_checks, only: checks_t
-   use testing_files, only: check_page
+   use testing_files, only: file_text
    implicit none(type, external)
    type(checks_t) :: checks
    integer(ik) :: i
-   integer :: code
+   character(len=1024) :: source
+   character(len=:), allocatable :: committed, described
 
-   open (newunit=code, status="scratch", action="readwrite")
-   call describe_output(code)
-   rewind (code)
-   call check_page(checks, code, "docs/output.md")
+   call get_environment_variable("WINGCRACK_SOURCE", source)
+   committed = file_text(trim(source)//"/post/wingcrack/names.json")
+   described = description("1.0")
+   call checks%is_true(after_version(committed) == after_version(described), "names.json")
+   call checks%is_true(len(described) > 60000, "the table is whole")
    do i = 1, size(contact_words, kind=ik)
       call checks%is_true(contact_words(i)%word == state_name(i - 1_ik), "the states of contact")
    end do
@@ -35,4 +37,15 @@ program test_report_describe
    call checks%is_true(all(pack(record_keys%name, record_keys%name(1:9) == "timers_s.") &
                            == "timers_s."//phase_names), "the phases of the timers")
    call checks%finish()
+
+contains
+
+   !> What follows the version, which changes with each release.
+   pure function after_version(text) result(rest)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: rest
+
+      rest = text(index(text, """groups"""):)
+   end function after_version
+
 end program test_report_describe

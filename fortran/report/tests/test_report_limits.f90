@@ -1,29 +1,23 @@
 !> Limits of a run: verdicts at, above and below them and for what is no number; what is kept of the
-!> first and the worst value; tips that are doubtful; docs/limits.md is what the tables say.
+!> first and the worst value; tips that are doubtful.
 program test_report_limits
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_texts, only: text_t
    use growth_tip, only: tip_t
-   use report_limits, only: describe_limits, judge, limit_angle, limit_forward_error, limit_mass, &
-                            limit_t, limits, verdict_fine, verdict_stop, verdict_warning
+   use report_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, &
+                            limits, verdict_fine, verdict_stop, verdict_warning
    use report_watch, only: doubtful, stop_on_doubt, uncertainty, watch_t, worst_place
    use testing_checks, only: checks_t
-   use testing_files, only: check_page
    implicit none(type, external)
    type(checks_t) :: checks
-   integer :: code
 
    call test_verdicts()
    call test_watch()
    call test_tips()
    call test_doubt()
    call test_worst()
-   open (newunit=code, status="scratch", action="readwrite")
-   call describe_limits(code)
-   rewind (code)
-   call check_page(checks, code, "docs/limits.md")
    call checks%finish()
 
 contains

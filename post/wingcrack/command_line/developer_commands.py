@@ -116,7 +116,8 @@ def bench(given: SimpleNamespace) -> None:
     Parameter("--out", "DIR", "where the site goes (default: build/site)", Path),
     about="""\
 The site is in build/site; it asks no other machine for anything. Pages of the Fortran modules are
-made by FORD, and made again only when a module has changed.
+made by FORD, and made again only when a module has changed. docs/input.md, output.md and limits.md
+are first written anew from post/wingcrack/names.json.
 
 --pictures runs the scenes of inputs/ and those of the tutorial (minutes; what has run is not run
 again) and writes docs/gallery.md and docs/pictures, which are kept with the sources.

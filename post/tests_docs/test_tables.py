@@ -1,0 +1,19 @@
+"""The pages that list names are those that the table of names gives."""
+
+from __future__ import annotations
+
+from wingcrack.parameter_table import parameters
+from wingcrack_docs.tables import pages
+
+
+def test_the_pages_are_up_to_date() -> None:
+    for page, text in pages().items():
+        assert page.read_text(encoding="utf-8") == text, f"{page}: ./wingcrack docs writes it anew"
+
+
+def test_every_name_is_on_its_page() -> None:
+    texts = {page.name: text for page, text in pages().items()}
+    assert sorted(texts) == ["input.md", "limits.md", "output.md"]
+    assert not any("{{" in text for text in texts.values())
+    rows = [line for line in texts["input.md"].splitlines() if line.count(" | ") == 5]
+    assert len(rows) == len(parameters()) + texts["input.md"].count("\n## &")  # and a head each
