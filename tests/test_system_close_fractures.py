@@ -85,6 +85,6 @@ def test_a_fracture_that_a_well_empties_says_so(tmp_path: Path) -> None:
 def test_an_initial_state_not_found_names_the_way_out(tmp_path: Path) -> None:
     text = close_sweeps.scene_text(66)
     reason = reason_of(tmp_path, text.replace("&coarse ", "&coarse newton_max = 1, "))
-    assert "initial state was not found" in reason
+    assert "no initial equilibrium was found" in reason
     assert ", on fracture 'f" in reason
-    assert "begin with &initial fracture_pressure = 'undrained'" in reason
+    assert "use &initial fracture_pressure = 'undrained'" in reason

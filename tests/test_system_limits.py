@@ -79,7 +79,7 @@ def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:
     told = record(out)
     assert told["status"] == "failed"
     assert reason == f"wingcrack: {told['reason']}"
-    assert reason.startswith("wingcrack: after 3600 s: a limit of the run is passed: ")
+    assert reason.startswith("wingcrack: after 3600 s: a limit of the run is exceeded: ")
     assert "pressure over Young's modulus" in reason
     assert any(warning.startswith("aperture over the body's size") for warning in warnings)
     times = numbers(out / "history.csv", "time_s")

@@ -175,8 +175,8 @@ contains
       else if (bytes <= memory) then
          return
       else if (2.0_rk*size%bytes_of_tables > bytes) then
-         call refuse_steps(steps//"; their tables"//needed//": ask for fewer steps, or write "// &
-                           "fields more seldom (interval of &output)")
+         call refuse_steps(steps//"; their tables"//needed//": use fewer steps, or write "// &
+                           "fields less often (interval of &output)")
       else if (size%bytes_of_contact > size%bytes_of_cells) then
          call refuse_mesh("size_fracture", fracture_cells//", which"//needed// &
                           ": give a larger one")

@@ -319,8 +319,7 @@ contains
       end do
       state%rock_well_control = way
       report%converged = .not. any_changed
-      if (any_changed) report%reason = "no way was found in which the wells in the rock agree "// &
-                                       "with their limits"
+      if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
 
    !> Add values at places of which some may be the same.

@@ -198,8 +198,9 @@ contains
 
       call find_loose(fine, boundary, bonds, place)
       if (.not. allocated(place)) return
-      call raise_error(error, "check_support", "the piece of the body at "//place// &
-                       " can move freely; give more displacements or springs on its boundary")
+      call raise_error(error, "check_support", "the part of the body at "//place// &
+                       " can move as a rigid body; prescribe more displacements or springs on "// &
+                       "its boundary")
    end subroutine check_support
 
    !> Find a piece of the body that the given displacements and springs leave a rigid motion.

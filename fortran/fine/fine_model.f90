@@ -222,7 +222,7 @@ contains
          call eliminate_loose(problem, is_singular)
          if (.not. is_singular) return
          call raise_error(error, "fine_model_t%prepare", "the end of a fracture on a side "// &
-                          "with given displacements is free to move")
+                          "with prescribed displacements can move freely")
       end associate
    end subroutine condense_contact
 
@@ -381,7 +381,7 @@ contains
 
       words = ""
       call find_loose(self%mesh, self%boundary, no_bonds, place)
-      if (allocated(place)) words = " (only contact holds the piece at "//place//")"
+      if (allocated(place)) words = " (only contact holds the part at "//place//")"
    end function loose_place
 
    !> Nodal forces of all loads. Contact tractions that belong to the solution are not among them.

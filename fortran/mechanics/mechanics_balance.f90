@@ -107,7 +107,7 @@ contains
          if (allocated(error)) return
          slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - last%factor)
       end do
-      call raise_error(error, "", "the load that holds the tips was not found")
+      call raise_error(error, "", "no load was found at which the growing tips are in equilibrium")
 
    contains
 

@@ -123,7 +123,8 @@ contains
 
       if (.not. self%is_unstable) return
       call body%chronicle%add_event(body%factor, event_unstable, &
-                                    "unstable growth goes on at the end of the run: "//words(self))
+                                    "unstable growth continues at the end of the run: "// &
+                                    words(self))
       self%is_unstable = .false.
    end subroutine stop_growth
 

@@ -122,8 +122,8 @@ contains
       words = ""
       left = size(self%ends, kind=ik) - self%piece
       if (size(self%ends) <= 2 .or. left < 1) return
-      words = ", and "//integer_text(left)//" of the scene's load factors are not reached"
-      if (left == 1) words = ", and the scene's last load factor is not reached"
+      words = ", and "//integer_text(left)//" of the scene's load factors were not reached"
+      if (left == 1) words = ", and the scene's last load factor was not reached"
    end function not_reached
 
    !> The share of the pieces that a state at a factor has behind it [-].

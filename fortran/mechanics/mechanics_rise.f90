@@ -132,7 +132,7 @@ contains
             return
          end if
       end do
-      call raise_error(error, "", "the load at which the next tip grows was not found")
+      call raise_error(error, "", "the load of the next onset of growth was not found")
    end subroutine find_onset
 
    !> The onset where all loads change in proportion: until contact changes, or locked-in slip is

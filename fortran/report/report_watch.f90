@@ -112,7 +112,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%stopped_by == 0) return
-      call raise_error(error, "", "a limit of the run is passed: "// &
+      call raise_error(error, "", "a limit of the run is exceeded: "// &
                        passed(self%stopped_by, self%records(self%stopped_by)%worst, &
                               limits(self%stopped_by)%stop)// &
                        " "//self%records(self%stopped_by)%worst_at//"; "// &

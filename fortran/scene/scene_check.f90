@@ -143,14 +143,14 @@ contains
       if (scene%growth%enabled) switch = "enabled"
       if (size(scene%fractures) == 0) then
          call refuse(error, sheet, sheet%find("growth"), switch, &
-                     "is .true. but must be .false., for the scene has no fracture")
+                     "is .true. but must be .false., since the scene has no fracture")
          return
       end if
       if (.not. scene%has_fluid()) return
       if (scene%material%radiation_damping > 0.0_rk) then
          call refuse(error, sheet, sheet%find("material"), "radiation_damping", "is "// &
-                    real_text(scene%material%radiation_damping)//" but must be left out beside "// &
-                     "stress intensity factors and growth: windows are at rest")
+                     real_text(scene%material%radiation_damping)//" but must be omitted with "// &
+                     "stress intensity factors or growth: windows are quasi-static")
          return
       end if
       if (scene%discretization%window_is_body) return
@@ -161,8 +161,8 @@ contains
          return
       else if (scene%has_points()) then
          call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
-                     real_text(scene%discretization%window)//" but must be 'body' in a body "// &
-                     "with restraints or point loads, which a square would not know")
+                     real_text(scene%discretization%window)//" but must be 'body' with "// &
+                     "restraints or point loads, which a square window does not include")
          return
       end if
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
@@ -244,8 +244,8 @@ contains
          least = rock%porosity*density
          if (.not. any(abs(gravity) > 0.0_rk)) then
             call refuse(error, sheet, sheet%find("fluid"), "density", "is "//real_text(density)// &
-                        " but nothing gives the fluid weight; give &gravity y, on earth "// &
-                        "-9.81, or leave the density out")
+                        " but there is no gravity; give &gravity y, on earth -9.81, or omit "// &
+                        "the density")
          else if (abs(gravity(1)) > 0.0_rk) then
             call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
                         " but must be 0, for the pressure of a fluid with a density changes "// &
@@ -272,15 +272,15 @@ contains
          associate (rock => scene%regions(i)%material, all => scene%material)
             if (.not. abs(rock%density - all%density) > 0.0_rk) cycle
             if (.not. any(abs(scene%gravity) > 0.0_rk)) then
-               reason = "but nothing gives it weight; give &gravity, or leave the density out"
+               reason = "but there is no gravity; give &gravity, or omit the density"
             else if (any(abs(scene%in_situ%per_y) > 0.0_rk)) then
                reason = "but must be that of &material, "//real_text(all%density)// &
-                        ", beside a stress in situ that changes with y: one gradient does not "// &
-                        "carry two weights; leave sxx_per_y and syy_per_y out, and the body "// &
+                        ", with a stress in situ that varies with y: one gradient does not "// &
+                        "balance two weights; omit sxx_per_y and syy_per_y, so that the body "// &
                         "settles under its weight"
             else if (scene%growth%intensities) then
                reason = "but must be that of &material, "//real_text(all%density)// &
-                        ", beside stress intensity factors and growth: windows have one weight"
+                        ", with stress intensity factors or growth: windows have a single density"
             else if (.not. rock%density >= rock%porosity*scene%fluid%density) then
                reason = "but must be at least that of the fluid in its pores, porosity times "// &
                         "density of &fluid: "//rounded_text(rock%porosity*scene%fluid%density)

@@ -90,19 +90,19 @@ contains
          do axis = 1, 2
             if (record%is_given(axes(axis)//"_displacement") .and. &
                 record%is_given(axes(axis)//"_traction")) then
-               call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
-                           axes(axis)//"_displacement but only one of them can be prescribed")
+               call refuse(error, sheet, i, axes(axis)//"_traction", "is given with "// &
+                           axes(axis)//"_displacement, but only one of them can be prescribed")
                return
             else if (record%is_given(axes(axis)//"_displacement") .and. &
                      record%is_given(axes(axis)//"_spring")) then
-               call refuse(error, sheet, i, axes(axis)//"_spring", "is given beside "// &
-                           axes(axis)//"_displacement but a side that is displaced as "// &
-                           "prescribed must not stand on springs")
+               call refuse(error, sheet, i, axes(axis)//"_spring", "is given with "// &
+                           axes(axis)//"_displacement, but a side with a prescribed "// &
+                           "displacement must not have a spring in the same direction")
                return
             end if
          end do
          if (record%is_given("inflow") .and. record%is_given("pressure")) then
-            call refuse(error, sheet, i, "inflow", "is given beside pressure but only one of "// &
+            call refuse(error, sheet, i, "inflow", "is given with pressure, but only one of "// &
                         "them can be prescribed")
             return
          end if
@@ -111,8 +111,8 @@ contains
          do k = 1, size(by_axis)
             if (.not. record%is_given(trim(by_axis(k)))) cycle
             call refuse(error, sheet, i, given_of(record, "normal_traction", "shear_traction"), &
-                        "is given beside "//trim(by_axis(k))//" but a side has either "// &
-                        "tractions along and across it, or values in x and y")
+                        "is given with "//trim(by_axis(k))//", but a side has either normal "// &
+                        "and shear tractions, or values in x and y")
             return
          end do
       end associate
@@ -266,7 +266,7 @@ contains
          call refuse(error, sheet, record, "closure", "is "//real_text(fracture%closure)// &
                      " m but must be at most "//real_text(largest_closure)//" of the "// &
                      "aperture, "//rounded_text(largest_closure*fracture%aperture)// &
-                     " m, for some of it stays open under any stress")
+                     " m, since a part of it remains open under any stress")
       end if
    end subroutine check_closure
 

@@ -115,7 +115,7 @@ contains
       do k = 1, size(chain)
          if (chain(k)%text /= sheet%path) cycle
          call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
-                          " goes round in a circle: that file includes this one")
+                          " is circular: that file includes this one")
          return
       end do
       if (size(chain) > most_nested) then
@@ -157,8 +157,8 @@ contains
          end if
          associate (token => tokens%items(next))
             if (token%kind /= token_group) then
-               call raise_error(error, "", place(sheet, token%line)//"text stands outside of "// &
-                                "a group, where only comments may stand")
+               call raise_error(error, "", place(sheet, token%line)//"text outside of a "// &
+                                "group, where only comments are allowed")
                return
             end if
             if (lower_case(source(token%first:token%last)) == "define") then

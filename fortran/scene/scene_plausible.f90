@@ -423,11 +423,11 @@ contains
       character(len=:), allocatable :: words
 
       if (dimensionless_toughness > 3.99_rk) then
-         words = "toughness decides about growth"
+         words = "toughness-dominated growth"
       else if (dimensionless_toughness > 1.01_rk) then
-         words = "toughness and viscosity decide about growth"
+         words = "growth depends on toughness and viscosity"
       else
-         words = "viscosity decides about growth"
+         words = "viscosity-dominated growth"
       end if
    end function regime_words
 

@@ -79,8 +79,8 @@ contains
       do k = 1, size(names)
          if (parameter_index(sheet%records(record)%group, trim(names(k))) == 0) cycle
          if (.not. sheet%records(record)%is_given(trim(names(k)))) cycle
-         call refuse(error, sheet, record, trim(names(k)), "is given beside schedule, whose "// &
-                     "table says it, but must be given once")
+         call refuse(error, sheet, record, trim(names(k)), "is given with schedule, whose "// &
+                     "table contains it, but must be given once")
          return
       end do
    end subroutine refuse_both
@@ -156,8 +156,8 @@ contains
 
       reason = "the row has "//integer_text(int(n, ik))//" values but must have "// &
                integer_text(int(wanted, ik))//", one per column"
-      if (mark == "," .and. n > wanted) reason = reason//"; where numbers have a decimal "// &
-                                                 "comma, semicolons or tabs must part the columns"
+      if (mark == "," .and. n > wanted) reason = reason//"; with decimal commas, columns must "// &
+                                                 "be separated by semicolons or tabs"
    end function wrong_count
 
    !> The rows of a file, without line ends.

@@ -146,9 +146,8 @@ contains
                                    cell_area(self%mesh, rock%cell(k)), &
                                    self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
          if (.not. all(rock%index > 0.0_rk)) then
-           call raise_error(error, "", "a well in the rock, whose rate follows from pressures, "// &
-                             "lies in a cell that is not wider than it: give it a smaller "// &
-                             "radius, or larger cells")
+            call raise_error(error, "", "a well in the rock with a pressure control must be "// &
+                             "narrower than its cell: use a smaller radius or larger cells")
             return
          end if
          ! What is lost in the well is another resistance on the way.

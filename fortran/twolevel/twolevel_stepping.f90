@@ -314,11 +314,11 @@ contains
       else if (self%switch < 1.0_rk) then
          words = "a well reaches or leaves its limit in it"
       else if (self%is_late .and. self%gains_all) then
-         words = "a tip gains stop_gain in it"
+         words = "a tip reaches stop_gain in it"
       else if (self%is_late) then
-         words = "a tip comes to a joint in it"
+         words = "a tip reaches a joint in it"
       else
-         words = "its error in time is too large"
+         words = "its time error is too large"
       end if
    end function why_cut
 

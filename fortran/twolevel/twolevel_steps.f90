@@ -60,8 +60,8 @@ contains
       real(rk) :: wanted
 
       if (self%stepper%is_stuck()) then
-        call raise_error(error, "", "time makes no headway: hundreds of steps had to be cut to "// &
-                          brief_text(self%dt, 4)//" s or so, the last because "//self%why_cut)
+         call raise_error(error, "", "no progress in time: hundreds of steps were cut to about "// &
+                          brief_text(self%dt, 4)//" s, the last because "//self%why_cut)
          return
       end if
       associate (time => self%now%coarse%time)

@@ -283,7 +283,7 @@ contains
          end if
          if (allocated(error)) return
          if (any(tips(window%serves)%is_free .and. window%at == 0)) then
-            call raise_error(error, "evaluate", "a window has not the tip that it is for")
+            call raise_error(error, "evaluate", "a window does not contain its tip")
             return
          end if
          window%made%is_projected = .false.

@@ -61,7 +61,7 @@ class Results:
     def status(self) -> str:
         """'finished', 'stopped', 'failed', or 'running' until run.json is there.
 
-        A run that was killed from outside leaves no run.json, and 'running' for good.
+        A run that was killed leaves no run.json, and 'running' for good.
         """
         return str(self.record.get("status", "running"))
 

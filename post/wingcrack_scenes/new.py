@@ -52,7 +52,7 @@ def annotated(text: str) -> str:
             told.add(group.name)
         lines.append(line)
     lines.append("")
-    lines.append("! docs/input.md tells all groups and names. Groups that are not here:")
+    lines.append("! docs/input.md describes all groups and names. Groups that are not here:")
     absent = [f"&{name}" for name in table if name not in told]
     lines.extend(_comment(" ".join(absent), ""))
     return "\n".join(lines) + "\n"

@@ -72,9 +72,9 @@ contains
       call refuse(good, 6, "  normal_stiffness=0.0 closure=5.0e-4", ":6: &fracture: "// &
                   "normal_stiffness is 0.0 but must be a finite number greater than 0.0 "// &
                   "[Pa/m]"//doc)
-      call refuse(good, 6, "  normal_stiffness=1.0e10 closure=1.0e-3", ":6: &fracture: closure "// &
-                  "is 0.001 m but must be at most 0.98 of the aperture, 9.8e-4 m, for some of "// &
-                  "it stays open under any stress"//doc)
+      call refuse(good, 6, "  normal_stiffness=1.0e10 closure=1.0e-3", ":6: &fracture: "// &
+                  "closure is 0.001 m but must be at most 0.98 of the aperture, 9.8e-4 m, "// &
+                  "since a part of it remains open under any stress"//doc)
    end subroutine check_closure
 
    subroutine check_bond()
