@@ -53,7 +53,7 @@ program test_scene_mechanics
                "&restraint either")
    call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "give a &side or a "// &
                "&restraint an x_displacement")
-   call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: holds nothing", &
+   call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: has no component", &
                and_4="&side name='left' x_displacement=0 y_displacement=0 /")
    call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must differ from from, 2.0")
    call accept("a load that falls", 8, "&load from=2 to=-1 /")
