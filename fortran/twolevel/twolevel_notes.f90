@@ -1,5 +1,5 @@
-!> What is noted of tips that grow in equilibrium: when each begins, which exceed their toughness
-!! from the start, how well lengths and pressures are known, and where tips compete.
+!> Event log of tips that grow in equilibrium: onset of growth, tips above their toughness at the
+!! start, errors of length and pressure, and competition of tips.
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text

@@ -1,6 +1,6 @@
-!> The coarse level's equations on one mesh, which stand beside its state: mesh, model with its
-!! factors, and where its wells feed fractures and rock; the whole pressures of a state, of which
-!! that has what is beyond the state in situ.
+!> The equations of the coarse level on one mesh: mesh, model with its factors, and the cells of the
+!! wells in fractures and rock. Also the total pressures of a state, whose pressures are relative to
+!! the state in situ.
 module twolevel_problem
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> A scene with a fluid in progress: time steps, and growth of the tips in each of them.
+!> Simulation of a scene with a fluid: time steps, with growth of the tips in each step.
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -1,5 +1,5 @@
-!> From one accepted state of both levels to the next: a time step is tried, cut as often as it
-!! takes, and accepted.
+!> From one accepted state of both levels to the next: a time step is tried, cut as often as
+!! necessary, and accepted.
 module twolevel_steps
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk

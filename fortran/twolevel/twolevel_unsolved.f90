@@ -1,5 +1,5 @@
-!> What is said of a step that is not solved: the reason, with the fracture and the place, and the
-!! well that has emptied it.
+!> The message of a step that is not solved: the reason, with the fracture and the place, and the
+!! well that has emptied the cell.
 module twolevel_unsolved
    use base_kinds, only: ik, rk
    use base_number, only: brief_text

@@ -1,9 +1,10 @@
-!> The windows of all tips: built where the network has changed, and asked for intensities.
+!> The windows of all tips: built where the network has changed, and evaluated for intensities.
 !!
-!! Each tip has a window of its own, or the body is one window for all of them. Tips whose own
-!! windows would have to be nearly as large as the body share one that is the body.
+!! Each tip has a separate window, or the body is one window for all tips. Tips whose windows would
+!! have to be nearly as large as the body share one window, the body.
 !!
-!! Windows are evaluated side by side on as many threads as there are; each is what it is alone.
+!! Windows are evaluated in parallel on the available threads; the results do not depend on their
+!! number.
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
