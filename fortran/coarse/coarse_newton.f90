@@ -1,5 +1,5 @@
 !> One time step of the fractures: the iteration of contact_newton on the equations of a step, and
-!! what of its outcome is accepted.
+!! the conditions for accepting its result.
 !!
 !! The equations are contact at both ends of every cell, and the fluid (coarse_fracture_flow,
 !! coarse_well_flow, coarse_fluid_law). Their unknowns are those of fracture_layout_t.
