@@ -1,6 +1,7 @@
 !> The load that a network bears: the factor at which the largest K_eq of its tips is K_IC.
 !!
-!! By how much K_eq of tips that grow may miss K_IC, and the load that shares it out.
+!! The difference between K_eq and K_IC that is accepted at growing tips, and the load that
+!! distributes it over them.
 module mechanics_balance
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -1,5 +1,5 @@
-!> A scene without a fluid in progress: the load follows its programme in steps, and from one onset
-!! of growth to the next.
+!> Simulation of a scene without a fluid: the load follows its programme in steps, and from one
+!! onset of growth to the next.
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
