@@ -1,9 +1,9 @@
-!> The one table of everything that the files of a run hold: every column, key and field.
+!> The one table of the contents of a run's files: every column, key and field.
 !!
 !! The tables of a run take the names and the order of their columns from here, and docs/output.md
-!! is written from it (report_describe); tests hold the keys of run.json and network.json and the
-!! fields of the VTU files against it. A new column is one entry here, at the place where it shall
-!! stand, and one line in report_tables that says where its value comes from.
+!! is written from it (report_describe); tests compare the keys of run.json and network.json and the
+!! fields of the VTU files with it. A new column is one entry here, at its place in the order, and
+!! one line in report_tables for the source of its value.
 module report_columns
    use scene_types, only: scene_t
    implicit none(type, external)
