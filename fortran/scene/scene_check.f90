@@ -1,9 +1,9 @@
-!> Checks values against each other: first those that a sheet tells by what it gives and what not,
-!> then those that need the numbers.
+!> Checks values against each other: first those that depend on which names are given, then those
+!! that depend on the numbers.
 !!
-!! Checks what the table of parameters says of the names of one group among each other.
+!! Checks the relations between names of one group that the table of parameters defines.
 !!
-!! Checks the weight of rock and fluid in a scene with a fluid against each other.
+!! Checks the weights of rock and fluid in a scene with a fluid against each other.
 module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk

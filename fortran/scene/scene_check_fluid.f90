@@ -1,6 +1,6 @@
-!> Checks the laws of a fluid whose density or viscosity follows its pressure.
+!> Checks the laws of a fluid whose density or viscosity depends on its pressure.
 !!
-!! Checks what a scene says of its wells.
+!! Checks the wells of a scene.
 module scene_check_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> Checks how the body is held and loaded.
+!> Checks the supports and loads of the body.
 module scene_check_mechanics
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk

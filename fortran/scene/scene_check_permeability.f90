@@ -1,5 +1,5 @@
-!> Checks the permeability of the rock and of regions: isotropic, or a positive definite tensor that
-!! the multi-point fluxes of the coarse level can do with.
+!> Checks the permeability of the rock and of regions: isotropic, or a positive definite tensor
+!! within the range of the multi-point flux approximation of the coarse level.
 module scene_check_permeability
    use base_errors, only: error_t
    use base_kinds, only: rk

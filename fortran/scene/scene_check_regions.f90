@@ -1,4 +1,4 @@
-!> Checks regions: what their shape needs, outlines that are simple, parts of the body within them.
+!> Checks regions: the names that their shape requires, simple outlines, overlap with the body.
 module scene_check_regions
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,7 +1,7 @@
-!> Checks the sides of the body: which they are, and what is prescribed on each.
+!> Checks the sides of the body: their names, and the conditions prescribed on each.
 !!
-!! What the faces of a fracture do must agree: closure with the aperture, the parts of a bond with
-!! each other and with friction, its toughness with that of the rock.
+!! Properties of the faces of a fracture must be consistent: closure with the aperture, the parts of
+!! a bond with each other and with friction, its toughness with that of the rock.
 module scene_check_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk

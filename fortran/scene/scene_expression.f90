@@ -1,7 +1,7 @@
-!> Named values of a scene file, and plain arithmetic with them: numbers, names, + - * / ^ and
-!! brackets. A name must be defined before it is used, so that none can depend on itself.
+!> Named values of a scene file, and simple arithmetic with them: numbers, names, + - * / ^ and
+!! brackets. A name must be defined before it is used, so no name can depend on itself.
 !!
-!! Cuts the text of a scene file into tokens that know their line.
+!! Divides the text of a scene file into tokens with their lines.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.

@@ -1,8 +1,8 @@
-!> The one table of everything a scene file can say: its groups, and the names of
-!> scene_parameter_table.
-!>
-!> Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
-!> A new parameter is one entry there and one line in scene_exchange.
+!> The one table of the parameters of a scene file: its groups, and the names of
+!! scene_parameter_table.
+!!
+!! Reading, checking of single values, writing of scene.nml and docs/input.md all follow from it.
+!! A new parameter is one entry there and one line in scene_exchange.
 module scene_parameters
    use scene_parameter_table, only: body_parameters, fracture_parameters, group_t, in_all, &
                                     in_fluid, in_mechanics, kind_choice, kind_integer, &

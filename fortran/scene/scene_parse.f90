@@ -1,6 +1,6 @@
-!> Reads a scene file into a sheet: syntax, names, kinds and ranges are checked here, one by one.
+!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one.
 !!
-!! Named values: what &define groups give, and expressions of them in the place of numbers.
+!! Named values: those of &define groups, and expressions with them in the place of numbers.
 module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -1,17 +1,17 @@
-!> Tables in CSV files that stand for lists of a scene file: the stages of a well, the course of a
-!! side.
+!> Tables in CSV files that replace lists of a scene file: the stages of a well, the time-dependent
+!! values of a side.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
 !! `pressure_pa`; times may be in min, h or d, pressures and tractions in kPa, MPa or bar instead.
-!! Columns are parted by commas, semicolons or tabs, whichever the first row has; where it is not
-!! commas, numbers may have a decimal comma, as spreadsheets write them in many countries. Rows that
-!! begin with # are comments. What a table says becomes values of the group, so that all that
-!! follows, scene.nml as well, knows of lists alone.
+!! Columns are separated by commas, semicolons or tabs, as in the first row; unless they are
+!! separated by commas, numbers may have a decimal comma, as spreadsheets write them in many
+!! countries. Rows that begin with # are comments. The values of a table become values of the group,
+!! so that all later steps, including scene.nml, use lists alone.
 !!
-!! The bytes of files that a scene names, or is.
+!! The bytes of a scene file and of files that it names.
 !!
-!! A scene may come from anybody, and names any file of this machine. So nothing that a file holds
-!! goes into a message before the file has the form of a scene or of its table.
+!! A scene may have any author, and may name any file of this machine. So no contents of a file are
+!! quoted in a message before the file has the form of a scene or of its table.
 module scene_schedule
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk

@@ -1,4 +1,4 @@
-!> Turns the tokens behind `name =` into a value of the right kind and range.
+!> Converts the tokens after `name =` into a value of the required kind and range.
 module scene_values
    use base_kinds, only: ik, rk
    use base_number, only: integer_text

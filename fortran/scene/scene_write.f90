@@ -1,4 +1,4 @@
-!> Writing of a scene as understood, every default written out.
+!> Writes a scene with all defaults.
 module scene_write
    use base_kinds, only: ik
    use base_number, only: integer_text
