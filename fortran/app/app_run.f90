@@ -1,6 +1,6 @@
-!> Run a scene from start to end, whichever way it is simulated.
+!> Runs a scene from start to end, with or without a fluid.
 !!
-!! What a running scene hands to its files and to the terminal, whichever way it is simulated.
+!! Output of a running scene to its files and to the terminal, with or without a fluid.
 module app_run
    use, intrinsic :: iso_fortran_env, only: output_unit
    use app_interrupts, only: interrupted

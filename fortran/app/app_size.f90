@@ -1,7 +1,7 @@
-!> How large a scene is, before anything is meshed, and whether a machine can hold it. All numbers
-!! are real: a scene that is far too large has more of everything than an integer counts.
+!> The size of a scene before meshing, and whether a machine has enough memory for it. All numbers
+!! are real: the numbers of a scene that is far too large exceed the range of integers.
 !!
-!! What a scene has and leaves out, without running it.
+!! Features of a scene that are used and left out, without running it.
 module app_size
    use app_warnings, only: show_warnings
    use base_errors, only: error_t
