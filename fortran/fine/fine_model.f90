@@ -1,7 +1,7 @@
 !> The fine problem: elasticity on six-node triangles, factorized once and solved for many loads.
 !!
-!! The elements as the solver takes them: which unknowns each one has, and its matrix T' K T, where
-!! T says how the nodes move with the unknowns (fine_faces).
+!! The elements for the solver: the unknowns of each, and its matrix T' K T, where T gives the nodal
+!! displacements from the unknowns (fine_faces).
 module fine_model
    use algebra_multifrontal, only: element_matrices_t, multifrontal_t
    use base_errors, only: error_t, raise_error
