@@ -1,4 +1,4 @@
-"""What a scene can hold: the solver's own table of groups and names."""
+"""The parameters of a scene: the solver's table of groups and names."""
 
 from __future__ import annotations
 

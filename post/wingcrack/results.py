@@ -1,4 +1,4 @@
-"""What is in a run's folder: tables, network and fields."""
+"""The results in a run's folder: tables, network and fields."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Repairs of a network, fault by fault, until nothing is left that can be repaired."""
+"""Repairs of a network, fault by fault, until no fault remains that can be repaired."""
 
 from __future__ import annotations
 

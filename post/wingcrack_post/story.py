@@ -1,4 +1,4 @@
-"""A stimulation on one page: the network at the end, and what the injection did over time."""
+"""A stimulation on one page: the network at the end, and the effects of the injection over time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene to start from: the text of a kind with what the solver's table says of each name."""
+"""A template of a scene: the text of a kind, with the solver's description of each name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of groups and names that a scene may hold, read from what the solver says of itself."""
+"""The table of groups and names of a scene, read from the solver."""
 
 from __future__ import annotations
 

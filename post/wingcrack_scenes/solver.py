@@ -1,4 +1,4 @@
-"""The solver as these packages ask it: what a scene may hold, and what it thinks of one."""
+"""Calls of the solver for these packages: the table of parameters, and the check of a scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is made of runs: plot, view and study."""
+"""Commands that use runs: plot, view and study."""
 
 from __future__ import annotations
 
