@@ -65,7 +65,7 @@ contains
             if (.not. allocated(too_near)) cycle
             call refuse(error, sheet, sheet%find("fracture", int(f)), "", &
                         "fracture '"//network%names(f)%text//"': "//too_near%message// &
-                        "; move it, or leave intensities and growth out")
+                        "; move it, or omit intensities and growth")
             return
          end do
       end do

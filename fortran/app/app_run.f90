@@ -314,7 +314,7 @@ contains
          associate (limit => simulation%scene%output%growth_states)
             if (self%n_growth == limit .and. limit > 0 .and. simulation%scene%output%vtu) then
                words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
-                       "files of further increments of growth are left out"
+                       "files of further increments of growth are omitted"
                call self%files%log(words)
                call simulation%summary%warn(words)
             end if

@@ -248,8 +248,8 @@ contains
                         "the density")
          else if (abs(gravity(1)) > 0.0_rk) then
             call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
-                        " but must be 0, for the pressure of a fluid with a density changes "// &
-                        "with y alone")
+                        " but must be 0, since the pressure of a fluid with a density varies "// &
+                        "only with y")
          else if (.not. rock%density >= least) then
             call refuse(error, sheet, sheet%find("material"), "density", "is "// &
                         real_text(rock%density)//" but must be at least that of the fluid in "// &
@@ -308,8 +308,8 @@ contains
          if (.not. abs(scene%regions(i)%material%biot - scene%material%biot) > 0.0_rk) cycle
          call refuse(error, sheet, sheet%find("region", i), "biot", "is "// &
                      real_text(scene%regions(i)%material%biot)//" but must be that of "// &
-                     "&material, "//real_text(scene%material%biot)//", where a fluid with a "// &
-                     "density has no stress in situ beside it; give &in_situ")
+                     "&material, "//real_text(scene%material%biot)//", since a fluid with a "// &
+                     "density requires a stress in situ here; give &in_situ")
          return
       end do
    end subroutine check_region_weights

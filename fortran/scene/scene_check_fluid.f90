@@ -273,7 +273,7 @@ contains
       if (allocated(error)) return
       do k = 2, n
          if (well%time(k) > well%time(k - 1)) cycle
-         call refuse(error, sheet, record, "time", "goes back: stage "//integer_text(k)// &
+         call refuse(error, sheet, record, "time", "decreases: stage "//integer_text(k)// &
                      " begins at "//real_text(well%time(k))//", but must begin after stage "// &
                      integer_text(k - 1_ik)//", "//real_text(well%time(k - 1)))
          return

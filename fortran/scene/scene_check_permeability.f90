@@ -72,8 +72,8 @@ contains
       associate (m => material)
          if (.not. abs(m%permeability_xy) < sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
             call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &
-                        " but must be smaller than sqrt(permeability_xx permeability_yy), for "// &
-                        "the tensor must be positive definite")
+                        " but must be smaller than sqrt(permeability_xx permeability_yy), "// &
+                        "since the tensor must be positive definite")
          else if (anisotropy(m) > most_anisotropic*(1.0_rk + 1.0e-9_rk)) then
             call refuse(error, sheet, i, "permeability_xx", "and the other components make "// &
              "the rock "//rounded_text(anisotropy(m))//" times more permeable in one direction "// &

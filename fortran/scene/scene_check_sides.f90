@@ -155,9 +155,9 @@ contains
          call refuse(error, sheet, i, "time", "is given, but no value of the side changes with "// &
                      "it; one must have "//integer_text(max(n, 2_ik))//" values, one per time")
       else if (wrong > 0) then
-         call refuse(error, sheet, i, "time", "goes back from "// &
+         call refuse(error, sheet, i, "time", "decreases from "// &
                      real_text(time%reals(wrong - 1))//" to "//real_text(time%reals(wrong))// &
-                     ", but must rise")
+                     ", but must increase")
       else
          do k = 3, n
             if (time%reals(k) > time%reals(k - 2)) cycle
@@ -261,7 +261,8 @@ contains
                      "law 'open' do not touch; give 'friction' or 'frictionless'")
       else if (fracture%held_closed) then
          call refuse(error, sheet, record, "normal_stiffness", "is given, but faces that are "// &
-                     "held closed, held_closed = .true., cannot close further; leave one out")
+                     "held closed, held_closed = .true., cannot close further; omit one of "// &
+                     "them")
       else if (has_fluid .and. fracture%closure > largest_closure*fracture%aperture) then
          call refuse(error, sheet, record, "closure", "is "//real_text(fracture%closure)// &
                      " m but must be at most "//real_text(largest_closure)//" of the "// &
@@ -290,8 +291,8 @@ contains
                      rounded_text(fracture%cohesion/fracture%friction)//" Pa, where the "// &
                      "shear strength is none")
       else if (fracture%cohesion > 0.0_rk .and. fracture%held_closed) then
-         call refuse(error, sheet, record, "cohesion", "is given, but a bond of faces that are "// &
-                     "held closed, held_closed = .true., never breaks; leave one out")
+         call refuse(error, sheet, record, "cohesion", "is given, but a bond of faces that "// &
+                     "are held closed, held_closed = .true., never breaks; omit one of them")
       end if
    end subroutine check_bond
 

@@ -214,7 +214,7 @@ contains
             else if (.not. begins_value(items(next)%kind, items(next + 1)%kind)) then
                call raise_error(error, "", place(sheet, items(next)%line)//"&"// &
                                 trim(groups(record%group)%name)//": '"//shortened(word)// &
-                                "' stands where 'name = value' or the closing '/' must stand")
+                                "' stands where 'name = value' or the closing '/' is expected")
                return
             end if
             item = parameter_index(record%group, lower_case(word))
@@ -521,8 +521,8 @@ contains
          if (any(tokens%items(next)%kind == [token_end, token_group])) then
             fault = "is not ended by '/' as it must be"
          else if (.not. begins_value(tokens%items(next)%kind, tokens%items(next + 1)%kind)) then
-          fault = "'"//shortened(name)//"' stands where 'name = value' or the closing '/' must "// &
-                    "stand"
+            fault = "'"//shortened(name)//"' stands where 'name = value' or the closing '/' is "// &
+                    "expected"
          else if (.not. is_constant_name(name)) then
             fault = "'"//shortened(name)//"' is no name, which has letters, digits and '_', at "// &
                     "most 64, and begins with a letter"

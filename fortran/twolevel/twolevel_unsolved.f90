@@ -38,7 +38,7 @@ contains
          words = name//" has less fluid at "//place//" than flows out of it there"
       else
          words = name//" has less fluid at "//place//" than well '"//trim(wells(w)%name)// &
-                 "' draws: give the well a pressure as its limit, or a smaller rate"
+                 "' extracts: give the well a pressure as its limit, or a smaller rate"
       end if
    end function why_unsolved
 

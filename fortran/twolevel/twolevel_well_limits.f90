@@ -115,7 +115,7 @@ contains
          if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
          self%now%given(w) = 0.0_rk
-         words = " is at its rate again"
+         words = " has returned to its rate"
          if (at_limit(w)) words = " has reached its pressure limit"
          associate (well => self%scene%injections(self%problem%model%wells%number(w)))
             call self%chronicle%add_event(self%now%coarse%time, event_well, trim(well%name)//words)

@@ -119,8 +119,8 @@ contains
                   "earth -9.81, or omit the density"//doc)
       lines(6) = "&gravity x=1 y=-10 /"
       call put_lines(path, lines)
-      call expect(":6: &gravity: x is 1.0 but must be 0, for the pressure of a fluid with a "// &
-                  "density changes with y alone"//doc)
+      call expect(":6: &gravity: x is 1.0 but must be 0, since the pressure of a fluid with a "// &
+                  "density varies only with y"//doc)
    end subroutine check_weightless
 
    subroutine accept(number_1, line_1, number_2, line_2, name)

@@ -75,7 +75,7 @@ contains
       call refuse(26, "&probe name='p' x=0.5 y=0.5", ":26: &probe: is not ended by '/' as it "// &
                   "must be"//doc)
       call refuse(26, "&probe 'p' x=0.5 y=0.5 /", &
-                  ":26: &probe: ''p'' stands where 'name = value' or the closing '/' must stand")
+                  ":26: &probe: ''p'' stands where 'name = value' or the closing '/' is expected")
       call refuse(1, "onset &scene /", &
                   ": is no scene file, which begins with a group, as &domain, or with include")
       call refuse(7, "/ onset", &
@@ -186,7 +186,7 @@ contains
                   "must be given with the other components of the tensor"//doc)
       call refuse(6, "  permeability_xx=4e-20 permeability_yy=1e-20 permeability_xy=2.1e-20", &
                   ":6: &material: permeability_xy is 2.1e-20 but must be smaller than "// &
-                  "sqrt(permeability_xx permeability_yy), for the tensor must be positive "// &
+                  "sqrt(permeability_xx permeability_yy), since the tensor must be positive "// &
                   "definite"//doc)
       call refuse(21, "  step=7200.0 /", ":21: &time: step is 7200.0 but must be at most "// &
                   "end, 3600.0"//doc)

@@ -149,9 +149,9 @@ contains
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 /", ":6: &region: permeability_yy is "// &
                   "missing but must be given with the other components of the tensor"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-14 "// &
-               "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must be "// &
-                  "smaller than sqrt(permeability_xx permeability_yy), for the tensor must be "// &
-                  "positive definite"//doc)
+                  "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must "// &
+                  "be smaller than sqrt(permeability_xx permeability_yy), since the tensor "// &
+                  "must be positive definite"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-18 /", &
                   ":7: &region: permeability_xx and the other components make the rock "// &
                   "10000.0 times more permeable in one direction than across it, but the flux "// &

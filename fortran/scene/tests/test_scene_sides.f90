@@ -118,7 +118,7 @@ contains
                   "one, unless time says when they hold")
       call expect("time=0,10 x_traction=-1e6", ":9: &side: time is given, but no value of the "// &
                   "side changes with it")
-      call expect("time=0,10,5 x_traction=0,1,2", ":9: &side: time goes back from 10.0 to 5.0")
+      call expect("time=0,10,5 x_traction=0,1,2", ":9: &side: time decreases from 10.0 to 5.0")
       call expect("time=0,5,5,5 x_traction=0,1,2,3", ":9: &side: time has 5.0 three times")
       call expect("pressure=1e6 inflow=1e-9", ":9: &side: inflow is given with pressure")
       call expect("x_displacement=0 x_spring=1e9", ":9: &side: x_spring is given with "// &
