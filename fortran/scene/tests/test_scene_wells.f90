@@ -141,8 +141,8 @@ contains
                   "must have one"//doc)
       call refuse("&injection fracture='f1' rate=1e-7,2e-7 time=0,10,20 /", here//"rate has 2 "// &
                   "values but must have as many as time, 3"//doc)
-      call refuse("&injection fracture='f1' rate=1e-7,2e-7,0 time=0,20,10 /", here//"time goes "// &
-                  "back: stage 3 begins at 10.0, but must begin after stage 2, 20.0"//doc)
+      call refuse("&injection fracture='f1' rate=1e-7,2e-7,0 time=0,20,10 /", here//"time "// &
+                  "decreases: stage 3 begins at 10.0, but must begin after stage 2, 20.0"//doc)
       call refuse("&injection fracture='f1' rate=1e-7,2e-7 time=0,20 end=15 /", here//"end is "// &
                   "15.0 but must be after the beginning of the last stage, 20.0"//doc)
       call refuse("&injection x=0.3 y=1.2 rate=1e-7 /", here//"x and y are (0.3, 1.2) but must "// &
