@@ -79,12 +79,12 @@ def test_a_fracture_that_a_well_empties_says_so(tmp_path: Path) -> None:
     )
     reason = reason_of(tmp_path, text)
     assert "fracture 'f1' has less fluid at (" in reason
-    assert "than well 'a' draws: give the well a pressure as its limit" in reason
+    assert "than well 'a' extracts: give the well a pressure as its limit" in reason
 
 
 def test_an_initial_state_not_found_names_the_way_out(tmp_path: Path) -> None:
     text = close_sweeps.scene_text(66)
     reason = reason_of(tmp_path, text.replace("&coarse ", "&coarse newton_max = 1, "))
-    assert "initial state was not found" in reason
+    assert "no initial equilibrium was found" in reason
     assert ", on fracture 'f" in reason
-    assert "begin with &initial fracture_pressure = 'undrained'" in reason
+    assert "use &initial fracture_pressure = 'undrained'" in reason

@@ -305,9 +305,9 @@ def test_growth_that_does_not_end_is_the_end(tmp_path: Path) -> None:
     assert numbers(out / "history.csv", "load_factor")[:2] == [0.05, -0.05]
     events = [row for row in rows(out / "events.csv") if row["kind"] == "unstable_growth"]
     assert events[0]["detail"] == "unstable growth begins"
-    assert events[-1]["detail"].startswith("unstable growth goes on at the end of the run: ")
+    assert events[-1]["detail"].startswith("unstable growth continues at the end of the run: ")
     assert record(out)["reason"] == (
-        "a piece of the body has come loose, and 2 of the scene's load factors are not reached"
+        "a part of the body has separated, and 2 of the scene's load factors were not reached"
     )
 
 
@@ -358,7 +358,7 @@ def test_a_mesh_that_follows_the_error_keeps_the_slip(tmp_path: Path) -> None:
     ("given", "words"),
     [
         ("factors = 1.0, 0.5, control = 'length'", "control is 'length' but must be 'dead' with"),
-        ("factors = 1.0, 0.5, to = 2.0", "to is given beside factors, whose last it would be"),
+        ("factors = 1.0, 0.5, to = 2.0", "to is given with factors, which determine it"),
         ("factors = 1.0, 1.0", "factors has 1.0 twice in a row"),
         ("factors = 0.0", "factors is 0.0 but must differ from from"),
         ("factors = ", "factors"),

@@ -41,7 +41,7 @@ FAULTS = {
         "&side name = 'left', x_displacement = 0.0 /",
         "",
         "&side",
-        "nothing holds the body against moving in x; give a &side or a &restraint an",
+        "the body can move in x; give a &side or a &restraint an",
     ),
     "fracture outside": ("y = 0.96", "y = -0.96", "&fracture", "leaves the domain at (0.964645, -"),
     "unequal lists": ("y = 0.9646446609406726,", "y =", "&fracture", "must have as many as x, 2"),

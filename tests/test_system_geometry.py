@@ -130,4 +130,4 @@ def test_what_check_accepts_is_meshed(tmp_path: Path, seed: int) -> None:
         text=True,
         check=False,
     )
-    assert done.returncode == 0 or "a limit of the run is passed" in done.stderr, done.stderr
+    assert done.returncode == 0 or "a limit of the run is exceeded" in done.stderr, done.stderr

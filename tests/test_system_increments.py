@@ -80,7 +80,7 @@ def test_fields_of_as_many_increments_as_the_scene_wants(tmp_path: Path, most: i
     assert sorted(set(numbers(out / "fractures.csv", "history_row"))) == [1, 2, 3, 4, 5, 6]
     assert history_rows(out / "matrix.pvd") == [*range(1, most + 1), 6]
     words = "growth_states = 2 of &output is reached: VTU files of further increments of growth"
-    assert record(out)["warnings"] == ([f"{words} are left out"] if most else [])
+    assert record(out)["warnings"] == ([f"{words} are omitted"] if most else [])
     assert (out / "run.log").read_text().count("growth_states") == min(most, 1)
 
 

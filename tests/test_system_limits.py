@@ -79,7 +79,7 @@ def test_what_no_rock_has_stops_the_run(tmp_path: Path) -> None:
     told = record(out)
     assert told["status"] == "failed"
     assert reason == f"wingcrack: {told['reason']}"
-    assert reason.startswith("wingcrack: after 3600 s: a limit of the run is passed: ")
+    assert reason.startswith("wingcrack: after 3600 s: a limit of the run is exceeded: ")
     assert "pressure over Young's modulus" in reason
     assert any(warning.startswith("aperture over the body's size") for warning in warnings)
     times = numbers(out / "history.csv", "time_s")
@@ -131,7 +131,7 @@ def test_check_tells_what_is_doubted(tmp_path: Path) -> None:
         "  &material: permeability is 0.05 m2: rock has 1e-22 to 1e-11 m2, "
         "and a millidarcy is 1e-15 m2",
         "  &fracture 'f1': friction is 1.6: rock has 0.3 to 1",
-        "  &injection: start is 36000.0 s: the well never runs",
+        "  &injection: start is 36000.0 s: the well is never active",
     ]
 
 

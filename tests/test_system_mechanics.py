@@ -436,7 +436,7 @@ def test_a_crack_crosses_a_polygon(tmp_path: Path) -> None:
         ("stop_gain = 0.2", "stop_gain = 2.0"),
         ("to = 4.0", "to = 40.0"),
     )
-    assert record(out)["reason"] == "a piece of the body has come loose"
+    assert record(out)["reason"] == "a part of the body has separated"
     (joint,) = [row for row in rows(out / "events.csv") if row["kind"] == "joint"]
     assert joint["detail"] == "joins the outer boundary"
     assert float(joint["x_m"]) == 0.0

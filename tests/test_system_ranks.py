@@ -81,7 +81,7 @@ def test_a_scene_without_a_fluid_is_refused(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         f"wingcrack: ranks share the matrices of a body with a fluid, and {scene} has none:"
-        " leave --ranks out\n"
+        " omit --ranks\n"
     )
     assert list(tmp_path.iterdir()) == []
 

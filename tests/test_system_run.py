@@ -398,9 +398,9 @@ def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
         text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
         (tmp_path / f"{name}.nml").write_text(text)
         told[name] = call(tmp_path, "check", f"{name}.nml").stdout
-    assert "toughness decides about growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
-    assert "toughness and viscosity decide about growth, K_m = 2.000E+00" in told["between"]
-    assert "viscosity decides about growth, K_m = 4.000E-01" in told["viscous"]
+    assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
+    assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in told["between"]
+    assert "viscosity-dominated growth, K_m = 4.000E-01" in told["viscous"]
     warning = "&injection 'well_1': K_m is 0.4: growth is then viscosity-dominated"
     assert [warning in told[name] for name in told] == [False, False, True]
 

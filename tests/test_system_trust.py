@@ -150,8 +150,8 @@ def test_where_no_window_helps_the_run_stops(tmp_path: Path) -> None:
     status, reason = run(tmp_path, poisson=0.49999999999, ratio=1.0)
     assert status == 1
     assert reason.startswith(
-        "wingcrack: after 0 s: a limit of the run is passed: error of K over K_IC where a tip would"
-        " grow "
+        "wingcrack: after 0 s: a limit of the run is exceeded: error of K over K_IC where a tip"
+        " would grow "
     )
     assert " % above 5 at 0 s, fracture f1, end " in reason
     assert "reduce size_fracture, with a fluid use a larger window" in reason

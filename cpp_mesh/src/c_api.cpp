@@ -66,7 +66,7 @@ template <typename Action> int guarded(Action&& action) {
     } catch (const std::exception& error) {
         return fail(error.what());
     } catch (...) {
-        return fail("an unknown error happened in the mesh library");
+        return fail("an unknown error occurred in the mesh library");
     }
 }
 

@@ -51,7 +51,7 @@ void check_faces(const SplitMesh& mesh) {
         const bool is_inner = face.cell[1] >= 0;
         require(uses[f] == (is_inner ? 2 : 1), "a face has the wrong number of cells");
         require(is_inner != (face.side != 0 || face.fracture_cell >= 0),
-                "a face has neither two cells nor a boundary nor a fracture");
+                "a face must have two cells, or lie on the boundary or on a fracture");
     }
 }
 
@@ -73,9 +73,9 @@ void require_cuts(const SplitMesh& mesh, const Domain& domain) {
             continue;
         fault.reason = fault.culprits.size() == 1
                            ? "{1} could not be cut open in the mesh {at}; move it away from what "
-                             "it nearly touches there, or make them one"
-                           : "{1} and {2} could not be cut open in the mesh {at}; move them apart, "
-                             "or make them one";
+                             "it nearly touches there, or merge the two"
+                           : "{1} and {2} could not be cut open in the mesh {at}; separate or "
+                             "merge them";
         throw MeshError(fault);
     }
 }
@@ -94,10 +94,10 @@ void check_euler(const SplitMesh& mesh, const Domain& domain) {
         return;
     require_cuts(mesh, domain);
     require(false, "it has " + std::to_string(std::abs(found - expected)) +
-                       " cuts more or less than the fractures make (its Euler characteristic is " +
+                       " cuts more or fewer than the fractures make (its Euler characteristic is " +
                        std::to_string(found) + ", not " + std::to_string(expected) +
-                       "); fractures that nearly touch are the usual cause: move them apart, or "
-                       "make them one");
+                       "); the usual cause is fractures that nearly touch: separate or merge "
+                       "them");
 }
 
 // Side + is on the right of the fracture, side - on its left.
@@ -112,7 +112,7 @@ void check_sides(const SplitMesh& mesh) {
             const Vec2 centre =
                 (1.0 / 3.0) * (mesh.xy[cell[0]] + mesh.xy[cell[1]] + mesh.xy[cell[2]]);
             require((twice_area(a, b, centre) > 0.0) == (side == 1),
-                    "the sides of a fracture cell are confused");
+                    "a fracture cell has its sides exchanged");
         }
     }
     for (const Tip& tip : mesh.tips)

@@ -135,7 +135,7 @@ Mesh create_mesh_sized(const Specification& specification, const Network& networ
     const Domain& old_domain = old_mesh.specification.domain;
     if (domain.is_rectangle() != old_domain.is_rectangle() ||
         domain.corners() != old_domain.corners())
-        throw MeshError("the old mesh is one of another body");
+        throw MeshError("the old mesh belongs to another body");
     return make_mesh(
         specification, network,
         std::make_shared<const NodalSizes>(old_mesh.plane, cell_size, specification.size_boundary));

@@ -102,7 +102,7 @@ public:
 
 private:
     static constexpr const char* no_end =
-        "gmsh was stopped: it tried far more nodes than the wanted sizes ask for";
+        "gmsh was stopped: it tried far more nodes than the cell sizes require";
 
     double scaled_area() const {
         double twice = 0.0;

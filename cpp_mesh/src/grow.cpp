@@ -94,7 +94,7 @@ Mesh grow_within(double margin_in_cells, const Mesh& old_mesh, const Network& ne
     const auto n_cells = static_cast<double>(patch.is_made_anew.size());
     if (static_cast<double>(std::count(patch.is_made_anew.begin(), patch.is_made_anew.end(), 1)) >
         largest_share * n_cells)
-        throw MeshError("most of the mesh would have to be made anew");
+        throw MeshError("most of the mesh would have to be remeshed");
     const PatchStyle style = {kept_cells(old_mesh.plane, patch, task.edges), true, true, false};
     Mesh mesh = mesh_patch(style, task, patch);
     check_shapes(old_mesh.plane, patch, mesh.plane);

@@ -170,7 +170,7 @@ private:
             }
         }
         if (!any_left)
-            throw MeshError("the mesh has not all of a piece");
+            throw MeshError("the mesh lacks a part of a path segment");
     }
 
     // Arc length where a piece begins [m].

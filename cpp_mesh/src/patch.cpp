@@ -172,7 +172,7 @@ int part_around(const PlaneMesh& mesh, const std::vector<PatchPart>& parts, Vec2
         }
     }
     if (!(depth >= -1e-6))
-        throw MeshError("growth reaches beyond the patch that is meshed anew");
+        throw MeshError("growth reaches beyond the patch that is remeshed");
     return best;
 }
 

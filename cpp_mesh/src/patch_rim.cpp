@@ -78,7 +78,7 @@ void divide_rims(PatchTask& task, Patch& patch) {
         for (std::vector<int>& loop : part.loops)
             loop = divider.divided(loop);
     if (!divider.is_complete())
-        throw MeshError("a fracture reaches the boundary outside the patch that is meshed anew");
+        throw MeshError("a fracture reaches the boundary outside the patch that is remeshed");
 }
 
 } // namespace cpp_mesh

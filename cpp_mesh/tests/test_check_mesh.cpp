@@ -81,6 +81,6 @@ int main() {
     // Node 58 of 11 in a row: x = 3 * 0.2 m, y = 5 * 0.2 m.
     checks.says(fault_of_cuts(true), "fracture 2 could not be cut open in the mesh at (0.6, 1)",
                 "a point with a node too many");
-    checks.says(fault_of_cuts(false), "1 cuts more or less", "a node too many");
+    checks.says(fault_of_cuts(false), "1 cuts more or fewer", "a node too many");
     return checks.finish();
 }

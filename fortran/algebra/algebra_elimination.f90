@@ -1,8 +1,8 @@
-!> The fronts of a matrix eliminated one after another, subtrees of them side by side on threads:
+!> Elimination of the fronts of a matrix one after another, with subtrees in parallel on threads:
 !! the numerical part of the multifrontal method (`algebra_multifrontal`).
 !!
-!! A front is a small dense matrix: its elements and what its children have left are added up, its
-!! pivots eliminated, and what is left waits on a stack for its parent.
+!! A front is a small dense matrix: the sum of its elements and the Schur complements of its
+!! children. Its pivots are eliminated, and its Schur complement is kept on a stack for its parent.
 module algebra_elimination
    use, intrinsic :: iso_fortran_env, only: int64
    use algebra_front_kernels, only: add_matrix, add_triangle, clear, eliminate, eliminate_signed, &

@@ -1,5 +1,5 @@
-!> What is done with the numbers of one front: matrices and triangles added at their places, what is
-!! left put on a stack, and the front's part of the substitutions.
+!> Operations on the numbers of one front: assembly of matrices and triangles, storage of Schur
+!! complements on a stack, and the front's part of the substitutions.
 !!
 !! Cholesky elimination of the first unknowns of a dense symmetric matrix that is positive definite
 !! or, with a sign for each pivot, quasi-definite (Vanderbei 1995): A = L S L^T, S the signs.

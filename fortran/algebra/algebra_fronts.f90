@@ -1,13 +1,13 @@
 !> Which unknowns of a sum of small dense matrices, such as those of finite elements, are eliminated
 !! together, and in which order: the fronts of the multifrontal method (Duff and Reid 1983).
 !!
-!! Unknowns come in blocks that occur in the same elements (those of a node). A front takes up its
-!! elements and what other fronts, its children, have left. Of these unknowns those that occur
-!! nowhere else are its pivots; what is left of the others goes to its parent. Some unknowns may be
-!! kept: they are never pivots, and what is left of them at the end is their Schur complement.
+!! Unknowns come in blocks that occur in the same elements (those of a node). A front assembles its
+!! elements and the Schur complements of other fronts, its children. Of these unknowns those that
+!! occur nowhere else are its pivots; the Schur complement of the others goes to its parent. Some
+!! unknowns may be retained: they are never pivots, and their Schur complement remains at the end.
 !!
-!! Which fronts may be eliminated side by side: subtrees that share nothing, chosen by the work in
-!! them and not by the number of threads, so that sums are formed in the same order for any number.
+!! Fronts that may be eliminated in parallel: subtrees without common unknowns, chosen by their work
+!! and not by the number of threads, so that sums are formed in the same order for any number.
 module algebra_fronts
    use algebra_ordering, only: minimum_degree
    use base_errors, only: error_t

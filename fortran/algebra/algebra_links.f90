@@ -1,12 +1,12 @@
-!> Unknowns that leave a full matrix: each is linked to a few others by an equation that holds no
-!! more than these,
+!> Unknowns that are eliminated from a full matrix: each is linked to a few others by an equation
+!! that contains only these,
 !!   step(unknown) = rest + sum_k share_k step(partner_k)
-!! and leaves together with its equation. In networks most unknowns are linked: where faces stick
-!! the jumps do not change, those that slip open with their slip alone, in rock that conducts far
-!! less than the fractures the pressures of the faces are those of the fluid, and along a fracture
-!! each pressure of the fluid follows from the one before and the flow between.
+!! and is eliminated together with its equation. In networks most unknowns are linked: where faces
+!! stick the jumps do not change, those that slip open with their slip alone, in rock that conducts
+!! far less than the fractures the pressures of the faces are those of the fluid, and along a
+!! fracture each pressure of the fluid follows from the one before and the flow between.
 !!
-!! The links are in the order in which their unknowns leave: partners leave later, or stay.
+!! The links are in the order of elimination: partners are eliminated later, or remain.
 module algebra_links
    use base_kinds, only: ik, rk
    implicit none(type, external)

@@ -2,13 +2,13 @@
 !! finite elements, by the multifrontal method (Duff and Reid 1983): the matrix as a whole is never
 !! formed.
 !! With a sign given for each unknown also quasi-definite ones, [K B; B^T -C] with definite K and C:
-!! they have factors A = L S L^T, S the signs, in any order without exchange (Vanderbei 1995). How
-!! far rounding grows the caller has to judge.
+!! they have factors A = L S L^T, S the signs, in any order without exchange (Vanderbei 1995). The
+!! caller has to check the growth of rounding errors.
 !! On request condensed onto a few unknowns, which need not be definite.
 !!
-!! Nothing is shared between systems, so that several can be factorized at the same time; in a
-!! large one subtrees of fronts are eliminated side by side (`algebra_elimination`), with the same
-!! bits for any number of threads.
+!! Systems have no common data, so that several can be factorized at the same time; in a large one
+!! subtrees of fronts are eliminated in parallel (`algebra_elimination`), with the same bits for any
+!! number of threads.
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
    use algebra_elimination, only: element_matrices_t, eliminate_fronts, factors_t, pivots_of, &

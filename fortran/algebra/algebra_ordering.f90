@@ -1,7 +1,6 @@
-!> In which order the unknowns of a sparse system are eliminated: nested dissection by METIS
-!! (Karypis and Kumar 1998), or approximate minimum degree by CAMD of SuiteSparse (Amestoy, Davis
-!! and Duff 2004). The former leaves fewer entries in the factors of large meshes, and takes longer
-!! to find.
+!> The order of elimination of the unknowns of a sparse system: nested dissection by METIS (Karypis
+!! and Kumar 1998), or approximate minimum degree by CAMD of SuiteSparse (Amestoy, Davis and Duff
+!! 2004). Nested dissection gives fewer entries in the factors of large meshes, and takes longer.
 module algebra_ordering
    use, intrinsic :: iso_c_binding, only: c_int32_t, c_null_ptr, c_ptr
    use base_errors, only: error_t, raise_error

@@ -1,5 +1,5 @@
-!> Whether the geometry of a scene can be simulated, before anything is meshed or written. The mesh
-!! library judges; here its verdict becomes a sentence about the scene file.
+!> Whether the geometry of a scene can be simulated, before meshing and output. The mesh library
+!! checks it; here its result becomes a sentence about the scene file.
 module app_geometry
    use app_simulations, only: first_mesh
    use base_errors, only: error_t
@@ -65,7 +65,7 @@ contains
             if (.not. allocated(too_near)) cycle
             call refuse(error, sheet, sheet%find("fracture", int(f)), "", &
                         "fracture '"//network%names(f)%text//"': "//too_near%message// &
-                        "; move it, or leave intensities and growth out")
+                        "; move it, or omit intensities and growth")
             return
          end do
       end do

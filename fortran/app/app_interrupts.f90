@@ -1,7 +1,7 @@
-!> Signals that ask the program to end.
+!> Signals that request the end of the program.
 !!
-!! Memory of the process and of the machine. Where a request for memory fails, the program ends with
-!! a sentence.
+!! Memory of the process and of the machine. If an allocation fails, the program ends with a
+!! message.
 module app_interrupts
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    implicit none(type, external)

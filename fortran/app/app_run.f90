@@ -1,6 +1,6 @@
-!> Run a scene from start to end, whichever way it is simulated.
+!> Runs a scene from start to end, with or without a fluid.
 !!
-!! What a running scene hands to its files and to the terminal, whichever way it is simulated.
+!! Output of a running scene to its files and to the terminal, with or without a fluid.
 module app_run
    use, intrinsic :: iso_fortran_env, only: output_unit
    use app_interrupts, only: interrupted
@@ -314,7 +314,7 @@ contains
          associate (limit => simulation%scene%output%growth_states)
             if (self%n_growth == limit .and. limit > 0 .and. simulation%scene%output%vtu) then
                words = "growth_states = "//integer_text(limit)//" of &output is reached: VTU "// &
-                       "files of further increments of growth are left out"
+                       "files of further increments of growth are omitted"
                call self%files%log(words)
                call simulation%summary%warn(words)
             end if

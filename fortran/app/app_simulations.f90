@@ -1,5 +1,5 @@
-!> The ways in which a program simulates scenes. Which of them it has is chosen when it is linked:
-!! one of the submodules in `simulations` belongs to each program.
+!> The kinds of simulations of a program. They are chosen when the program is linked: one of the
+!! submodules in `simulations` belongs to each program.
 module app_simulations
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: network_t

@@ -1,7 +1,7 @@
-!> How large a scene is, before anything is meshed, and whether a machine can hold it. All numbers
-!! are real: a scene that is far too large has more of everything than an integer counts.
+!> The size of a scene before meshing, and whether a machine has enough memory for it. All numbers
+!! are real: the numbers of a scene that is far too large exceed the range of integers.
 !!
-!! What a scene has and leaves out, without running it.
+!! Features of a scene that are used and left out, without running it.
 module app_size
    use app_warnings, only: show_warnings
    use base_errors, only: error_t
@@ -175,8 +175,8 @@ contains
       else if (bytes <= memory) then
          return
       else if (2.0_rk*size%bytes_of_tables > bytes) then
-         call refuse_steps(steps//"; their tables"//needed//": ask for fewer steps, or write "// &
-                           "fields more seldom (interval of &output)")
+         call refuse_steps(steps//"; their tables"//needed//": use fewer steps, or write "// &
+                           "fields less often (interval of &output)")
       else if (size%bytes_of_contact > size%bytes_of_cells) then
          call refuse_mesh("size_fracture", fracture_cells//", which"//needed// &
                           ": give a larger one")

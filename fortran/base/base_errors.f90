@@ -1,4 +1,4 @@
-!> Errors travel to the caller as an allocated value; only the program stops.
+!> Errors as an allocated value that is returned to the caller; only the program stops.
 module base_errors
    implicit none(type, external)
    private

@@ -1,8 +1,8 @@
-!> Where the CPU time goes, by phase. Phases nest: starting one pauses the one around it, so that
-!! the seconds of all phases add up to no more than those of the process.
+!> CPU time by phase. Phases nest: starting one pauses the enclosing one, so that the sum of all
+!! phases does not exceed the time of the process.
 !!
-!! They go wherever much is computed, and so does with them whom that has to ask now and then
-!! whether to go on.
+!! They are passed to all procedures with long computations, together with the check for requests to
+!! end the program.
 module base_timers
    use base_errors, only: error_t, raise_error
    use base_kinds, only: lk, rk

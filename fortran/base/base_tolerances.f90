@@ -1,7 +1,7 @@
-!> How far apart two numbers may be that are the same but for rounding.
+!> Largest difference of two numbers that are equal except for rounding.
 !!
-!! Only what rounding decides is here. A tolerance that belongs to a method (a pivot, a residual, a
-!! share of a step) stays with it.
+!! Only tolerances of rounding are here. A tolerance of a method (a pivot, a residual, a share of a
+!! step) is defined in its module.
 module base_tolerances
    use base_kinds, only: rk
    implicit none(type, external)

@@ -1,24 +1,24 @@
 !> The matrix equations condensed onto the fractures.
 !!
 !! Between two changes of the mesh or of the time step the rock is linear with constant
-!! coefficients: it is factorized once and condensed onto the jumps and the pressures of the
-!! fracture cells; what is left of it is a dense relation between jumps, pressures, tractions and
-!! fluxes on the fractures:
+!! coefficients. It is factorized once and condensed onto the jumps and the pressures of the
+!! fracture cells. The result is a dense relation between jumps, pressures, tractions and fluxes on
+!! the fractures:
 !!   S q - g = ( -l/2 (f_n - p_F), -l/2 f_tau at the start, dt l lambda+,
 !!               -l/2 (f_n - p_F), -l/2 f_tau at the end,   dt l lambda- )
 !!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
 !! six of each per fracture cell (condensed_layout_t), jumps and forces in n, tau of the cell.
 !!
-!! Where there are many of them S is not formed: it grows with their square, and its elimination
-!! with their cube. The rock is then factorized without its fractures, and S q costs one solution
-!! with its factors.
+!! For many fracture cells S is not formed: its size grows with the square of their number, and the
+!! cost of its elimination with the cube. The rock is then factorized without its fractures, and S q
+!! costs one solution with these factors.
 !!
 !! The equations of the fracture cells in the matrix of the coarse level as sparse rows, in the
-!! fractures' own directions: the forces and volumes on the fractures, those that the rest of the
-!! body adds not eliminated,
+!! directions n and tau of the fractures: the forces and volumes on the fractures, without
+!! elimination of the rest of the body,
 !!   force = C b + D q
 !! with b the unknowns of the cells and q those on the fractures (coarse_layout); C' is the
-!! fractures' share in the equations of the cells.
+!! contribution of the fractures to the equations of the cells.
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

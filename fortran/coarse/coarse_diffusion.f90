@@ -1,12 +1,12 @@
 !> The flow of a quantity that follows the gradient of a scalar: multi-point flux stencil around one
-!! vertex, and what follows from the fluxes. For the fluid the scalar is the pressure p [Pa] and the
-!! flux the Darcy velocity q = -(K/mu) grad p [m/s]; nothing here knows of fluids, and the
-!! comments give the units of that case.
+!! vertex, and quantities that follow from the fluxes. For the fluid the scalar is the pressure p
+!! [Pa] and the flux the Darcy velocity q = -(K/mu) grad p [m/s]. The module does not depend on the
+!! fluid; the comments give the units of that case.
 !!
 !! Mixed form, as for the stress (coarse_matrix): each face has a normal flux at each of its two
 !! ends; around a vertex these couple only to each other and to the scalars of the cells there. The
-!! scalar is continuous at a third of each face. On both sides of a fracture it has a value of its
-!! own, an unknown, at which the flux leaves the rock. Local system (coarse_elimination):
+!! scalar is continuous at a third of each face. On both sides of a fracture it has a separate
+!! value, an unknown, at which the flux leaves the rock. Local system (coarse_elimination):
 !!   B q = H p - given scalars on the boundary.
 module coarse_diffusion
    use base_kinds, only: ik, rk

@@ -1,13 +1,14 @@
-!> What happens around one vertex, whether stress or flow: its own unknowns (tractions, fluxes) are
-!! eliminated, and leave a share of the global matrix and their responses to the global unknowns.
+!> Elimination around one vertex, for stress and for flow: the local unknowns (tractions, fluxes)
+!! are eliminated, which gives a contribution to the global matrix and the response of the local
+!! unknowns to the global ones.
 !!
 !! The system of a vertex is M y = R d + b, with unknowns y and the global ones d around it; C' y
 !! enters the balances of d. `eliminate` finds y = response (d, 1) and -C' response. M is symmetric,
 !! though not definite: rows are exchanged for the largest pivots.
 !!
 !! There are as many of these systems as vertices, each of some ten unknowns: too few for LAPACK,
-!! whose calls cost more than its arithmetic there. All arrays hold an equation per column, so that
-!! a row operation runs along memory, and a system is used for one vertex after another.
+!! whose calls cost more than its arithmetic there. All arrays contain one equation per column, so
+!! that a row operation is contiguous in memory, and a system is used for one vertex after another.
 module coarse_elimination
    use base_kinds, only: ik, rk
    implicit none(type, external)

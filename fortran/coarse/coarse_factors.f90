@@ -1,15 +1,16 @@
-!> Factors of the coarse level's matrix, all of it condensed onto the unknowns of the fractures, or
-!! that of the cells alone, for one time step.
+!> Factors of the matrix of the coarse level for one time step: of the matrix condensed onto the
+!! unknowns of the fractures, or of the cells alone.
 !!
-!! The matrix is quasi-definite: the rock's stiffness, minus what its pressures store and pass on.
-!! So it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
-!! `algebra_multifrontal`. How far rounding grows is judged on a solution that is known; where that
-!! is too far (a fluid or rock that hardly stores), MUMPS, which exchanges pivots, takes over for
-!! good. It also has the cells alone, whose entries it keeps, and what ranks share.
+!! The matrix is quasi-definite: the rock's stiffness, minus the storage and conductance of its
+!! pressures. So it has factors L S L^T with a sign for each unknown and no exchange of pivots, by
+!! `algebra_multifrontal`. The growth of rounding errors is measured on a known solution; where it
+!! is too large (a fluid or rock with hardly any storage), MUMPS, which exchanges pivots, is used
+!! from then on. MUMPS also factorizes the cells alone, whose entries it keeps, and matrices shared
+!! by ranks.
 !!
 !! The matrix equations as a sum of small dense matrices, for elimination by fronts: each block of
-!! unknowns with what is eliminated after it. Such an element leaves no more than the elimination of
-!! its block does, so that the fronts are those of the matrix.
+!! unknowns with the unknowns eliminated after it. Such an element has no more entries than the
+!! elimination of its block produces, so that the fronts are those of the matrix.
 module coarse_factors
    use algebra_multifrontal, only: element_matrices_t, multifrontal_t
    use algebra_mumps, only: are_shared, mumps_indefinite, mumps_t

@@ -1,4 +1,4 @@
-!> Fields that follow from the unknowns: fluid content, stress, strain.
+!> Fields derived from the unknowns: fluid content, stress, strain.
 module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: matrix_t

@@ -1,14 +1,14 @@
-!> The fluid in the fractures where its density or viscosity follows its pressure: what that adds to
-!! equations that are filled already as if neither did (coarse_fracture_flow, coarse_fracture_flow).
+!> Fluid in the fractures whose density or viscosity depends on its pressure: the terms that this
+!! adds to the equations of a fluid with constant density and viscosity (coarse_fracture_flow).
 !!
 !! With r, m and mu_0 of scene_fluid_law, all volumes at the density of the reference pressure:
 !!   balance of a cell   l (r a - r_before a_before) in place of l (a - a_before)
 !!   flow                12 mu_0 L/a^3 q = m(p_1) - m(p_2) in place of p_1 - p_2
-!! Pressures of the equations are those beyond the ones in situ, the law takes the whole ones. A
-!! fluid at rest has one pressure beyond that in situ, so that the potentials of two places are
-!! compared with one in situ, the mean of theirs: the weight of the fluid is that of its density at
-!! the reference pressure. What crosses the faces of a fracture, half an aperture, keeps mu_0: it
-!! meets next to no resistance there.
+!! Pressures of the equations are relative to those in situ; the fluid law takes the total ones. A
+!! fluid at rest has one pressure relative to that in situ, so the potentials of two places are
+!! compared at one pressure in situ, the mean of the two: the weight of the fluid is that of its
+!! density at the reference pressure. Flow across the faces of a fracture, over half an aperture,
+!! keeps mu_0, since its resistance there is negligible.
 module coarse_fluid_law
    use base_kinds, only: ik, rk
    use coarse_fractures, only: cell_fluid_t, fracture_system_t

@@ -1,29 +1,28 @@
-!> The fluid in the fractures: each fills the rows of its equations in the system of one time step.
+!> The equations of the fluid in the fractures, in the system of one time step.
 !!
 !! Fluid mass of a cell of length l, with the volumes V of fluid that left the rock within the step
 !! (theory.md):
 !!   l (m - m_before + m c_p (p_F - p_F,before)) - V+ - V- - dt Q + flows out - flows in = 0
-!! with m the aperture less the void that vapour fills. Flow between neighbours by the cubic
-!! law, exchange with the rock through half the aperture. The flow is a separate unknown because the
+!! with m the aperture less the void filled by vapour. Flow between neighbours by the cubic law,
+!! exchange with the rock through half the aperture. The flow is a separate unknown because the
 !! pressure difference that drives it along an open fracture is far below the rounding of the
 !! pressures.
 !!
-!! Flow into a closed crack opens it as it goes. The aperture that conducts between two cells is
-!! therefore that between their middles, where the crack is as open as in the mean: that of the cell
-!! ahead alone would let nothing in, and the aperture of each cell by itself delays the front by a
-!! share of a cell.
+!! Flow into a closed crack opens it. The conducting aperture between two cells is therefore that
+!! between their middles, where the crack has its mean opening: with the aperture of the cell ahead
+!! alone there would be no inflow, and the aperture of each single cell delays the front by a
+!! fraction of a cell.
 !!
-!! The fluid at the joints of fractures: fills the rows of its equations in the system of one time
-!! step.
+!! The equations of the fluid at the joints of fractures, in the system of one time step.
 !!
 !! The flow of each branch, from the middle of its last cell to the joint, follows the cubic law
-!! with the aperture of that cell, or where the fracture goes on beyond the joint with the opening
-!! between the two middles, as inside a fracture (coarse_fracture_flow): a fracture that another one
-!! crosses conducts as it does alone. The flows into a joint and what a well feeds there add up to
-!! nothing, for a joint has no volume (coarse_joints):
+!! with the aperture of that cell. Where the fracture continues beyond the joint, the opening is
+!! that between the two middles, as inside a fracture: a fracture that another one crosses conducts
+!! as it does alone. The flows into a joint and the rate of a well there add up to zero, since a
+!! joint has no volume (coarse_joints):
 !!   q = a^3/(12 mu) (p_F - p_J)/(l/2),   sum q + Q = 0   or, at an outlet,   p_J = p of the side
-!! A branch is shut, q = 0, as long as its crack has not come to the joint. Where all are, the joint
-!! has the pressure of the first.
+!! A branch is shut, q = 0, before its crack reaches the joint. Where all are shut, the joint has
+!! the pressure of the first.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
    use coarse_fractures, only: cell_fluid_t, fracture_system_t, most_of_rock

@@ -1,6 +1,6 @@
-!> What the equations of one time step on the fractures are made of: the unknowns and their units,
-!! the condensed body and its forces, the state before. The equations themselves are those of
-!! contact (coarse_newton) and of the fluid (coarse_fracture_flow).
+!> Data of the equations of one time step on the fractures: the unknowns and their units, the
+!! condensed body and its forces, the state before. The equations are those of contact
+!! (coarse_newton) and of the fluid (coarse_fracture_flow).
 !!
 !! All unknowns x and equations are scaled to Pa: jumps by a stiffness, flows and volumes by a unit.
 module coarse_fractures

@@ -1,11 +1,12 @@
 !> The linear step of the fractures' equations where the body is condensed onto them as a full
 !! matrix.
 !!
-!! As many unknowns as can be leave that matrix first (algebra_links), so that it is small even
-!! where there are many fracture cells. All but one kind of links are exact. Pressures of the faces
-!! differ from that of the fluid by what the volume that leaves through them, which all unknowns
-!! have a part in, takes in the fracture: next to nothing where the rock conducts far less. It is
-!! left out of their links, and the step improved until it fulfils the equations as they are.
+!! As many unknowns as possible are eliminated from that matrix first (algebra_links), so that it is
+!! small even for many fracture cells. All but one kind of links are exact. The pressure of a face
+!! differs from that of the fluid by the resistance of the fracture to the volume that leaves
+!! through the face. This volume depends on all unknowns, and the difference is negligible where the
+!! rock conducts far less. It is omitted from the links, and the step is improved until it satisfies
+!! the complete equations.
 module coarse_full_step
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk

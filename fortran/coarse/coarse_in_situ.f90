@@ -1,17 +1,17 @@
-!> The state from which a scene with a stress in situ or with a fluid that has weight counts.
+!> The reference state of a scene with a stress in situ or with a fluid that has weight.
 !!
-!! All pressures of the coarse level are those beyond this state: p' = p - p_0(y) with
+!! All pressures of the coarse level are relative to this state: p' = p - p_0(y) with
 !!   p_0 = p_initial + rho_f g (y - y_datum),
-!! so that Darcy's and the cubic law need no gravity; and its stresses are those beyond
-!! sigma_0(y), linear in y:
+!! so that Darcy's and the cubic law need no gravity. Its stresses are relative to sigma_0(y),
+!! linear in y:
 !!   sigma = sigma_0 + sigma',   sigma' = C : eps(u) - alpha p' I,   div sigma' + b = 0
-!! with b the weight that sigma_0 does not carry. A body at rest is zero then, to the last bit.
-!! On the fractures the contact traction is that of the whole stress and pressure,
+!! with b the weight that sigma_0 does not balance. A body at rest is then exactly zero. On the
+!! fractures the contact traction is that of the total stress and pressure,
 !!   f = f' + sigma_0 n + p_0 n,   f' = sigma' n + p' n.
 !!
-!! A stress in situ is the total stress at the initial pressure, which tractions on the sides hold;
-!! those of the scene count beside them. Without one the initial pressure acts on rock without
-!! strain, sigma_0 = -alpha p_0 I, and the tractions of the scene are the total ones.
+!! A stress in situ is the total stress at the initial pressure, which tractions on the sides
+!! balance; those of the scene are added to them. Without one the initial pressure acts on rock
+!! without strain, sigma_0 = -alpha p_0 I, and the tractions of the scene are the total ones.
 module coarse_in_situ
    use base_kinds, only: ik, rk
    use coarse_layout, only: condensed_layout_t

@@ -1,18 +1,19 @@
-!> Where fluid goes from one fracture into others, or out of the body: the joints of a mesh.
+!> The joints of a mesh: points where fluid flows from one fracture into others, or out of the body.
 !!
 !! A joint is a fracture point at which cells meet otherwise than one after the other along a
 !! fracture: T, X, V, several fractures through one point, the ends of several on one place of the
-!! boundary. An outlet is an end on a side whose pressure is given. Each has a pressure of its own,
+!! boundary. An outlet is an end on a side with a prescribed pressure. Each has a separate pressure,
 !! and each cell that reaches it a flow into it (coarse_fracture_flow).
 !!
-!! A joint holds no fluid: the cells around it reach to the point itself, so their volumes, aperture
-!! times length, count the few square millimetres there already, and a volume a*a would count them
-!! twice.
+!! A joint has no fluid volume: the cells around it reach to the point itself, so their volumes,
+!! aperture times length, contain the few square millimetres there already; a volume a*a would count
+!! them twice.
 !!
-!! Flows round loops of fractures. What goes out at one end of an edge comes in at the other, so
-!! balances say nothing of it: the pressures' differences along the loop do, and in wide fractures
-!! these are below the rounding of the pressures. Such a flow changes no balance and hardly a
-!! pressure; it is only not known itself. (The condition of the equations leaves flows out.)
+!! Flows round loops of fractures. The outflow at one end of an edge is the inflow at the other, so
+!! the balances do not determine it: the pressure differences along the loop do, and in wide
+!! fractures these are below the rounding of the pressures. Such a flow changes no balance and
+!! hardly a pressure; only the flow itself is uncertain. (The condition of the equations does not
+!! include flows.)
 module coarse_joints
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk

@@ -1,5 +1,5 @@
-!> Where the unknowns of the coarse level stand. Equations are numbered as the unknowns are: each
-!! has the number of the one that it is there for.
+!> Numbering of the unknowns of the coarse level. Equations have the numbers of the unknowns that
+!! they determine.
 !!
 !! The whole body has blocks of three numbers: (u_x, u_y, p) per cell, then two blocks per fracture
 !! cell, (jump x, y at its start, p on side +) and (jump x, y at its end, p on side -).

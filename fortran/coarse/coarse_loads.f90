@@ -1,7 +1,8 @@
-!> The weight of the cells that no stress in situ carries: of the rock with what fills its pores,
-!! less what the rise of the stress with depth holds, and of regions what their density adds.
+!> The weight of the cells that no stress in situ balances: of the rock with the fluid in its pores,
+!! less the weight balanced by the increase of the stress with depth, plus the weight that the
+!! density of regions adds.
 !!
-!! Points of the body that are loaded or held: the cells around them share it.
+!! Points of the body with loads or restraints, distributed over the cells around them.
 module coarse_loads
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric

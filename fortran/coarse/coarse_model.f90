@@ -1,8 +1,8 @@
 !> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step
 !! at a time.
 !!
-!! For one mesh the discretization is made once; for one time step on it the matrix is factorized
-!! once. A time step then costs one substitution in the factors and a few small dense Newton steps
+!! The discretization is made once per mesh; the matrix is factorized once per length of the time
+!! step. A time step then costs one substitution in the factors and a few small dense Newton steps
 !! on the fractures.
 module coarse_model
    use base_errors, only: error_t, raise_error
@@ -319,8 +319,7 @@ contains
       end do
       state%rock_well_control = way
       report%converged = .not. any_changed
-      if (any_changed) report%reason = "no way was found in which the wells in the rock agree "// &
-                                       "with their limits"
+      if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
 
    !> Add values at places of which some may be the same.

@@ -1,5 +1,5 @@
 !> One time step of the fractures: the iteration of contact_newton on the equations of a step, and
-!! what of its outcome is accepted.
+!! the conditions for accepting its result.
 !!
 !! The equations are contact at both ends of every cell, and the fluid (coarse_fracture_flow,
 !! coarse_well_flow, coarse_fluid_law). Their unknowns are those of fracture_layout_t.
@@ -88,9 +88,9 @@ contains
       case (outcome_converged)
          report%converged = .true.
       case (outcome_not_a_number)
-         report%reason = "contact and flow on the fractures met a value that is not a number"
+         report%reason = "NaN in contact or flow of the fractures"
       case (outcome_singular)
-         report%reason = "contact and flow on the fractures do not follow from the loads"
+         report%reason = "the equations of contact and flow on the fractures are singular"
          report%cell = worst_cell(eq, x)
       case default
          report%reason = "the iteration on contact and flow of the fractures did not converge"
@@ -177,14 +177,14 @@ contains
       end do
       if (any(fluid%void > aperture - cells%roughness)) then
          report%converged = .false.
-         report%reason = "a fracture cell has less fluid than is drawn from it"
+         report%reason = "more fluid is extracted from a fracture cell than it contains"
          report%cell = maxloc(fluid%void - aperture + cells%roughness, dim=1, kind=ik)
          report%is_drained = .true.
          return
       end if
       if (is_overdrawn(eq, x)) then
          report%converged = .false.
-         report%reason = "more fluid is drawn from where fractures meet than flows there"
+         report%reason = "more fluid is extracted from an intersection than flows into it"
          return
       end if
       do i = 1, condensed%n
@@ -198,7 +198,7 @@ contains
       end do
       if (.not. report%contact_residual <= contact_residual_max) then
          report%converged = .false.
-         report%reason = "the law of contact is not fulfilled on some fracture cell"
+         report%reason = "the contact law is violated in a fracture cell"
          report%cell = worst
          return
       end if

@@ -1,4 +1,4 @@
-!> Values at the nodes of the mesh, from those of the cells around them.
+!> Values at the nodes of the mesh, from those of the cells around each node.
 module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes

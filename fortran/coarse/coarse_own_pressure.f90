@@ -1,10 +1,10 @@
 !> The rock's own pressure at the nodes of the mesh, for windows.
 !!
-!! Beside a fracture the pressure may fall from the fluid's to the rock's within a layer that is
-!! thinner than a cell. A gradient that ends at the fluid's pressure spreads such a layer over the
-!! cell: with fluid and rock 7 MPa apart, the back stress of that closed a crack of 100 m. Here the
-!! pressure follows from the means of the cells alone, on each side of a fracture for itself, so
-!! that it jumps at the face as far as the layer is thinner than a cell.
+!! Next to a fracture the pressure may change from that of the fluid to that of the rock within a
+!! layer that is thinner than a cell. A gradient that ends at the fluid's pressure distributes such
+!! a layer over the cell: with fluid and rock 7 MPa apart, the resulting back stress closed a crack
+!! of 100 m. Here the pressure follows from the means of the cells alone, on each side of a fracture
+!! separately, so that it jumps at the face if the layer is thinner than a cell.
 module coarse_own_pressure
    use base_kinds, only: ik, rk
    use mesh_geometry, only: cell_centre

@@ -1,15 +1,15 @@
-!> Another start for the iteration on the fractures where that finds no initial state: contact by
-!! complementary pivoting (contact_pivoting), the pressure of the fluid held, which is then let free
-!! bit by bit.
+!> An alternative initial guess for the iteration on the fractures where it finds no initial state:
+!! contact by complementary pivoting (contact_pivoting) at a fixed fluid pressure, which is then
+!! released gradually.
 !!
 !! In the initial state the fluid has the rock's pressure. Rock between faces that are close to each
-!! other answers to their jumps with so much pressure that pivoting is without a guarantee, and that
-!! turns of pivoting and pressure diverge. With the pressure of the fluid held pivoting has its
-!! guarantee, as the stiffness of a body that neither gains nor loses fluid is symmetric and
-!! positive definite. From there the share that the rock has in the fluid's pressure rises to one,
-!! and Newton's method follows the state; a rise that fails is halved. Where this way turns back
-!! (rock between faces gives way at once), the fluid is held at the pressure that it has got there,
-!! and its share rises from none again: what gives way then does so without drawing on all the rest.
+!! other responds to their jumps with so much pressure that pivoting is not guaranteed to end, and
+!! that alternating between pivoting and pressure diverges. With a fixed fluid pressure pivoting is
+!! guaranteed to end, since the undrained stiffness of the body is symmetric and positive definite.
+!! From there the share of the rock in the fluid's pressure rises to one, and Newton's method
+!! follows the state; a rise that fails is halved. Where this path turns back (rock between faces
+!! yields abruptly), the fluid pressure is fixed at its present value, and the share rises from zero
+!! again: the rock that yields then does not draw fluid from the whole body.
 module coarse_pivoting
    use algebra_lapack, only: dgetrf, dgetrs
    use base_kinds, only: ik, rk

@@ -1,11 +1,11 @@
-!> Interaction regions: which cells, faces and unknowns meet around each vertex of the mesh.
+!> Interaction regions: the cells, faces and unknowns around each vertex of the mesh.
 !!
-!! A region is a vertex of the unsplit mesh: it joins all nodes that lie there, one for each sector
+!! A region is a vertex of the unsplit mesh: it joins all nodes at this point, one for each sector
 !! between fractures. Across a fracture the traction is continuous and the displacement jumps; the
 !! jump is an unknown at each end of a fracture cell (at the third points of the face), so that it
-!! varies linearly along the cell. Each node has its own rotation; one at which rocks of several
-!! stiffnesses meet has one for each of them, for on their interface the shear strain jumps, and
-!! with it the rotation, where the displacement does not.
+!! varies linearly along the cell. Each node has a separate rotation. A node at which rocks of
+!! several stiffnesses meet has one rotation for each of them: on their interface the shear strain
+!! jumps, and with it the rotation, while the displacement is continuous.
 !!
 !! Poroelastic constants of the rock in the form that the discretization uses.
 module coarse_regions

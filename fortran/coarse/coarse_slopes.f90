@@ -1,9 +1,9 @@
-!> The derivatives of the equations on the fractures, in the two parts that they consist of: each
-!! equation holds a few of its neighbours' unknowns, and at most two of the forces or volumes that
-!! the condensed body answers with, which hold all jumps and face pressures:
+!> The derivatives of the equations on the fractures, in two parts: each equation contains a few
+!! unknowns of its neighbours, and at most two of the forces or volumes with which the condensed
+!! body responds, which depend on all jumps and face pressures:
 !!   d residual_k = sum_j local_kj dx_j + sum_m weight_km d force_m
-!! So they are short lists, whatever becomes of them: a full matrix (coarse_full_step) or rows of a
-!! sparse one (coarse_sparse_step).
+!! They are stored as short lists, for a full matrix (coarse_full_step) or rows of a sparse one
+!! (coarse_sparse_step).
 module coarse_slopes
    use base_kinds, only: ik, rk
    implicit none(type, external)

@@ -1,14 +1,14 @@
 !> The stiffness and storage of cells in a body with regions.
 !!
-!! A cell within one region has its constants. In one that outlines cut, stress and pressure are
-!! taken for uniform, as the mixed scheme has them, and what they make of strain and fluid content
-!! is the mean over the cell's area:
+!! A cell within one region has the constants of the region. In a cell cut by outlines, stress and
+!! pressure are assumed uniform, as in the mixed scheme, and the resulting strain and fluid content
+!! are means over the cell's area:
 !!   eps = <A> sigma + <b> p I,  content = <b> tr sigma + <s> p,
-!! with the compliance A = (sigma - nu tr sigma I)/(2 G), b = alpha/(2 (lambda + G)) and
-!! s = S + alpha^2/(lambda + G). This is what exact integration of the scheme gives: the
-!! complementary energy of the true body for a stress that is uniform in each cell. It is positive
-!! definite as those of the rocks are. Layers in series are exact in it; in parallel the cells that
-!! are cut are too soft.
+!! with the compliance A = (sigma - nu tr sigma I)/(2 G), b = alpha/(2 (lambda + G)) and s = S +
+!! alpha^2/(lambda + G). This is the result of exact integration of the scheme: the complementary
+!! energy of the true body for a stress that is uniform in each cell. It is positive definite as
+!! those of the rocks are. Layers in series are exact; layers in parallel are too soft in the cut
+!! cells.
 module coarse_solid
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value

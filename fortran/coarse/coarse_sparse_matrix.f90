@@ -1,6 +1,6 @@
 !> Cells and fractures together as one sparse matrix, for coarse_sparse_step: the equations of the
-!! cells, which do not change as long as the time step does not, and those of the fractures, with
-!! each force as the sum over the cells around (coarse_condensed).
+!! cells, which are constant for one length of the time step, and those of the fractures, with each
+!! force as the sum over the cells around it (coarse_condensed).
 module coarse_sparse_matrix
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t

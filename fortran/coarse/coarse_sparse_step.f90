@@ -2,21 +2,20 @@
 !! fractures together as one sparse system,
 !!   ( A    C'Q           ) (b)   (  0)
 !!   ( W C  W D Q + local ) (x) = ( -r),   Q: q per x, W: weights of the forces (coarse_slopes)
-!! that is not symmetric. A is constant as long as the time step is, and what changes from one
-!! iteration to the next are the fractures' rows alone, often few of them. So the system is
-!! factorized once, and its factors M serve the following iterations and steps as a preconditioner:
-!! p = M^-1 (0, r) fulfils the equations of the cells exactly, and conjugate residuals over such p
-!! (Eisenstat, Elman and Schultz 1983; equivalent to GMRES) make the fractures' residuals as small
-!! as is asked, in about as many solutions as there are contact points that have changed their
-!! state. Directions p that were found are kept along with the factors: what the rows of now make of
-!! them costs no solution. Where too many points have changed, or it takes too many directions, the
-!! factors are made anew from the rows of now.
+!! that is not symmetric. A is constant for one length of the time step; only the rows of the
+!! fractures change between iterations, often few of them. So the system is factorized once, and its
+!! factors M are a preconditioner for the following iterations and steps: p = M^-1 (0, r) satisfies
+!! the equations of the cells exactly, and conjugate residuals over such p (Eisenstat, Elman and
+!! Schultz 1983; equivalent to GMRES) reduce the fractures' residuals to the tolerance, in about as
+!! many solutions as there are contact points that have changed their state. Directions p are kept
+!! with the factors: their products with the current rows cost no solution. Where too many points
+!! have changed, or too many directions are needed, the current rows are factorized again.
 !!
-!! What is known of the error: the residual that is left (`rest` of step_quality_t), and the
-!! condition of the condensed matrix with its equations scaled, estimated from products and
-!! solutions (Higham 1988). It costs as much as a dozen solutions, and
-!! is found for the first matrix of a time step and then at every tenth factorization: in between,
-!! and where old factors serve, it is that of a matrix some states away.
+!! Error measures: the remaining residual (`rest` of step_quality_t), and the condition of the
+!! condensed matrix with its equations scaled, estimated from products and solutions (Higham 1988).
+!! It costs as much as a dozen solutions, and is found for the first matrix of a time step and then
+!! at every tenth factorization: in between, and where old factors are used, it is that of an
+!! earlier matrix.
 module coarse_sparse_step
    use algebra_lapack, only: dlacn2
    use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric

@@ -1,11 +1,11 @@
 !> The state of the coarse level at one time, and the properties of its fracture cells.
 !!
-!! Where the iteration of a time step begins: from the state before, all unknowns going on as they
-!! did in the last step that was solved. That is the step before, or a try of the same step with
-!! other tips or another length.
+!! The initial guess of the iteration of a time step: the state before, with all unknowns
+!! extrapolated with their change in the last step that was solved. That is the step before, or a
+!! try of the same step with other tips or another length.
 !!
-!! A point that slips lies on the bound of friction when a step begins, and rounding would decide
-!! whether it goes on: with a guess it does.
+!! A point that slips lies on the bound of friction when a step begins, and rounding would determine
+!! whether it continues to slip: with the guess it does.
 module coarse_state
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t

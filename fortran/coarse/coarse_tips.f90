@@ -1,31 +1,32 @@
 !> Fracture cells at a tip, whose jumps the finite volumes do not resolve.
 !!
-!! Toward a tip the jump falls with the square root of the distance; it is linear in a fracture cell
-!! here. A crack then slips and opens as if it were longer or shorter by a share of its tip cells
-!! that does not fall with their size, and the error is of first order. That share depends on the
-!! mode and on Poisson's ratio nu, hardly on the mesh: -0.19 + 0.42 nu for opening and 0.11 + 0.42
-!! nu for slip, each within 0.03. Springs between the faces of the tip cells make it vanish; they
-!! also let a tip lie anywhere in its cell, so that the mesh need not follow each small advance: the
-!! softer the springs, the farther the tip is along.
+!! Toward a tip the jump falls with the square root of the distance; in a fracture cell it is
+!! linear. A crack then slips and opens as if it were longer or shorter by a share of its tip cells
+!! that does not decrease with their size, and the error is of first order. That share depends on
+!! the mode and on Poisson's ratio nu, hardly on the mesh: -0.19 + 0.42 nu for opening and 0.11 +
+!! 0.42 nu for slip, each within 0.03. Springs between the faces of the tip cells remove it. They
+!! also let a tip lie anywhere in its cell, so that the mesh is not changed for each small advance:
+!! the softer the springs, the farther the tip.
 !!
 !! Their stiffness follows from the closed form of one crack in an infinite body under uniform
 !! pressure, and under uniform shear without friction: means over cracks of 20 cells at 20, 45 and
 !! 70 degrees, for nu from 0 to 0.48 (docs/theory.md; verification/tip_cells has other sizes, angles
-!! and loads). At an opening tip at the end of its cell it is negative, a quarter of what would make
-!! the body unstable. Rock between a tip and another fracture gives way more easily, and a quarter
-!! may be all it takes: where they share a triangle, or the nodes of one, no spring is negative.
+!! and loads). At an opening tip at the end of its cell it is negative, a quarter of the stiffness
+!! that would make the body unstable. Rock between a tip and another fracture is more compliant, and
+!! a quarter may be enough for instability: where they share a triangle, or the nodes of one, no
+!! spring is negative.
 !!
-!! Fluid leaks off in the same way: its flux rises toward a tip with one over the square root of the
-!! distance, is uniform in a cell here, and a crack leaks as if it were shorter by 0.22 of a cell at
-!! each end. A resistance between the tip cells' fluid and the rock, a negative one where the tip is
-!! at the end of its cell, makes that vanish within 0.02, or 0.05 where the tip is within its cell
+!! The same holds for leak-off: its flux rises toward a tip with one over the square root of the
+!! distance, is uniform in a cell, and a crack leaks as if it were shorter by 0.22 of a cell at each
+!! end. A resistance between the tip cells' fluid and the rock, a negative one where the tip is at
+!! the end of its cell, reduces this to 0.02, or 0.05 where the tip is within its cell
 !! (verification/strip_leak_off).
 !!
-!! Radiation damping (Rice 1993): faces that slip at the velocity V send off shear waves, which take
-!! eta V from the shear traction, eta = G/(2 c_s) with the velocity of shear waves c_s. So slip that
-!! no quasi-static equilibrium holds has a velocity, and an end.
+!! Radiation damping (Rice 1993): faces that slip at the velocity V radiate shear waves, which
+!! reduce the shear traction by eta V, eta = G/(2 c_s) with the velocity of shear waves c_s. So slip
+!! without a quasi-static equilibrium has a velocity, and an end.
 !!
-!! In a step of length dt it is a spring of eta/dt on the slip, from where that was before.
+!! In a step of length dt it is a spring of eta/dt on the slip, relative to the slip before.
 module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t

@@ -1,19 +1,19 @@
 !> The equations of wells whose rate depends on pressures (coarse_wells), one per well, for its flow
-!! q into the fracture. With r = q + C (p_w - p_w,before)/dt, what goes into the well at its head,
+!! q into the fracture. With r = q + C (p_w - p_w,before)/dt, the rate into the well at its head,
 !!   at a rate Q          r = Q
 !!   at a pressure P      p_w = P
 !!   at Q as far as P     0 <= r <= Q, p_w <= P where r > 0, p_w >= P where r < Q: in one equation
 !!                        max(r - Q, min(p_w - P, r)) = 0; in extraction with all signs changed
 !!   shut                 q = 0
 !! with the storage C and the pressure at the head p_w = p + (R + R2 |q|) q. p is that of the cells
-!! or the joint that the well feeds, by their shares; a well between two cells is half a cell away
-!! from their middles. All terms rise with q, so that Newton's method on the active one ends.
+!! or the joint that the well supplies, by their shares; a well between two cells is half a cell
+!! away from their middles. All terms rise with q, so that Newton's method on the active one ends.
 !!
 !! Under a limit the terms are compared as shares, of the rate and of the pressure, the latter much
-!! reduced: so a well that exceeds its limit at its rate is tried at the limit next, one that would
-!! flow backwards there is tried without flow, and back the same way. Compared as they are, the size
-!! of r depends on the step, and in short steps wells changed from their rate to no flow and back
-!! for ever.
+!! reduced: a well that exceeds its limit at its rate is tried at the limit next, one that would
+!! flow backwards there is tried without flow, and the other way in the same order. Without this
+!! scaling the size of r depends on the step, and in short steps wells alternated between their rate
+!! and no flow without end.
 module coarse_well_flow
    use base_kinds, only: ik, rk
    use coarse_fluid_law, only: flow_thickness

@@ -1,18 +1,18 @@
-!> Wells whose rate depends on pressures: a pressure is given, or bounds a rate, or the well itself
-!! holds fluid. Those in fractures have their flow into these as an unknown of the step
-!! (coarse_well_flow), those in the rock stand in its matrix (coarse_wells). Wells that inject
-!! at a given rate are none of these, but sources of their cells.
+!> Wells whose rate depends on pressures: a pressure is prescribed, or limits a rate, or the well
+!! itself stores fluid. Those in fractures have their flow into these as an unknown of the step
+!! (coarse_well_flow), those in the rock are part of its matrix. Wells that inject at a prescribed
+!! rate are not among them, but are sources of their cells.
 !!
-!! The well's pressure is that at its head, without the weight of its fluid: what fracture or rock
-!! have at the well, and what the flow to there loses.
+!! The well's pressure is that at its head, without the weight of its fluid: the pressure of
+!! fracture or rock at the well, plus the pressure loss of the flow to this point.
 !!
 !! Wells in the rock whose rate depends on pressures. A well at p_w in a cell of the pressure p_c
-!! gives it q = w (p_w - p_c), with a well index w (Peaceman 1978) that holds what the flow loses
-!! in the well too. In each of its ways to be controlled that is a source less a conductance times
-!! p_c, so it stands in the matrix of the rock and is no unknown:
+!! supplies it with q = w (p_w - p_c), with a well index w (Peaceman 1978) that includes the
+!! pressure loss in the well. Under each control this is a source less a conductance times p_c, so
+!! it is part of the matrix of the rock and no unknown:
 !!   at a pressure P    q = w (P - p_c)
 !!   at a rate Q        q + C (p_w - p_w,before)/dt = Q with the storage C of the well
-!! Which one holds under a limit is tried: a step whose outcome contradicts it is repeated.
+!! The control under a limit is tried: a step whose result contradicts it is repeated.
 module coarse_wells
    use base_kinds, only: ik, pi, rk
    use base_tolerances, only: same_value

@@ -1,6 +1,6 @@
-!> The linear step of contact systems whose derivatives are a full matrix, as they are for a body
-!! that is condensed onto its fractures: by Gauss elimination, or where most equations are those of
-!! an elastic body, by Cholesky's, which takes half as long.
+!> The linear step of contact systems whose derivatives are a full matrix, as for a body condensed
+!! onto its fractures: by Gaussian elimination, or by Cholesky elimination if most equations are
+!! those of an elastic body, which takes half as long.
 module contact_dense
    use algebra_lapack, only: dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
    use base_kinds, only: ik, rk

@@ -1,28 +1,29 @@
-!> Semismooth Newton iteration on equations that hold the law of contact: one iteration for bodies
+!> Semismooth Newton iteration on equations that contain the contact law: one iteration for bodies
 !! condensed onto their fractures on both levels.
 !!
-!! A system knows its residuals and the contact state of each point, and solves its linearized
-!! equations for a step; how it keeps their derivatives is its own affair (contact_dense: as a full
+!! A system provides its residuals and the contact state of each point, and solves its linearized
+!! equations for a step; the storage of the derivatives depends on the system (contact_dense: a full
 !! matrix). All unknowns and residuals are scaled to stresses. The iteration has converged when the
 !! residuals are small and no point has changed its state.
 !!
-!! Such an iteration may cycle between states (the primal-dual active set is monotone for
-!! M-matrices only, and the condensed stiffness of a body is none; Hintermueller, Ito and Kunisch
-!! 2003). A cycle, a singular matrix or too many iterations make it ask the system for another
-!! start, once; a system may know a slower way that always leads to a solution (contact_pairs). If
-!! that is one of many, as for a piece that floats, the system counts as singular.
+!! Such an iteration may cycle between states (the primal-dual active set is monotone for M-matrices
+!! only, and the condensed stiffness of a body is none; Hintermueller, Ito and Kunisch 2003). After
+!! a cycle, a singular matrix or too many iterations the system may provide another initial guess,
+!! once; some systems have a slower method that always leads to a solution (contact_pairs). If that
+!! is one of many, as for a part that floats, the system counts as singular.
 !!
 !! Friction that weakens and bonds that break (contact_law) allow several solutions: faces within
-!! their strength stick, but had they slipped they would be too weak to. The one that counts is that
-!! which a rising load reaches from the last accepted state. So such a system holds its strength as
-!! it was before the step and is solved; if no face has slipped or opened, that is the solution.
-!! Else the strength is let fall by what they have slipped and opened, for good, again and again
-!! until none falls further, or until Newton's method finds the rest of the way. Where the strength
-!! falls faster than the body unloads, that leads to the next solution that is stable.
+!! their strength stick, but after slip they would be too weak to stick. The required solution is
+!! the one that a rising load reaches from the last accepted state. So such a system is first solved
+!! with its strength before the step; if no face has slipped or opened, that is the solution.
+!! Otherwise the strength is reduced permanently by the slip and opening found, repeatedly until it
+!! is constant, or until Newton's method converges from there. Where the strength falls faster than
+!! the body unloads, that leads to the next stable solution.
 !!
-!! What still cycles is iterated with shortened steps. Where states change the residuals keep their
-!! sizes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their norm is a
-!! continuous function, and a step is halved until it falls; at last from where the iteration began.
+!! If the iteration still cycles, its steps are shortened. Where states change the residuals keep
+!! their magnitudes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their
+!! norm is a continuous function, and a step is halved until it falls; at last from the initial
+!! guess.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value

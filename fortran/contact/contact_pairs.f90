@@ -1,10 +1,11 @@
 !> Pairs of nodes in contact on an elastic body that is condensed onto their jumps.
 !!
-!! What is left of the equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair),
-!! g the load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The law of
-!! contact at every pair closes the system.
+!! The condensed equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair), g the
+!! load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The contact law at
+!! every pair closes the system.
 !!
-!! Strength that is held within a step, and falls from one solution to the next: see contact_newton.
+!! Strength that is constant within a step, and falls from one solution to the next: see
+!! contact_newton.
 module contact_pairs
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk

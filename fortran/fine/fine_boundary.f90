@@ -1,9 +1,9 @@
-!> The outer boundary: which displacements are given there, and the forces of given tractions.
+!> The outer boundary: prescribed displacements, and the forces of prescribed tractions.
 !!
-!! Every displacement component of every node is either given or free. Where it is free, the nodal
-!! force is given: nothing, unless a traction or a point force has been added.
+!! Every displacement component of every node is either prescribed or free. Where it is free, the
+!! nodal force is prescribed: zero, unless a traction or a point force has been added.
 !!
-!! Sides of the body that stand on springs, as part of the stiffness of the elements there.
+!! Sides of the body on springs, as part of the stiffness of the elements there.
 module fine_boundary
    use base_errors, only: error_t, raise_error
    use base_groups, only: groups_t, single_groups
@@ -198,8 +198,9 @@ contains
 
       call find_loose(fine, boundary, bonds, place)
       if (.not. allocated(place)) return
-      call raise_error(error, "check_support", "the piece of the body at "//place// &
-                       " can move freely; give more displacements or springs on its boundary")
+      call raise_error(error, "check_support", "the part of the body at "//place// &
+                       " can move as a rigid body; prescribe more displacements or springs on "// &
+                       "its boundary")
    end subroutine check_support
 
    !> Find a piece of the body that the given displacements and springs leave a rigid motion.

@@ -319,12 +319,12 @@ contains
       case (outcome_converged)
          continue
       case (outcome_not_a_number)
-         reason = "the iteration met a value that is not a number"
+         reason = "NaN in the contact iteration"
       case (outcome_singular)
-         reason = "a part of the body that only contact holds is free to move"
+         reason = "a part of the body that is held only by contact can move as a rigid body"
       case default
-         reason = "no state of the faces was found that obeys friction; fractures that nearly "// &
-                  "touch, and friction above 1, make that hard"
+         reason = "contact with friction did not converge; usual causes are fractures that "// &
+                  "nearly touch and friction above 1"
          cell = worst_cell(problem, x)
       end select
       if (allocated(reason)) return

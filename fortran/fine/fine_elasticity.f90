@@ -1,4 +1,4 @@
-!> Isotropic linear elasticity in the plane, with the constants that cracks need.
+!> Isotropic linear elasticity in the plane, with the constants of crack tip fields.
 module fine_elasticity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

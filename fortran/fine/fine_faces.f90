@@ -1,16 +1,16 @@
-!> Conditions on the fracture faces, and how they tie the displacements of both sides together.
+!> Conditions on the fracture faces, and the relations between the displacements of both sides.
 !!
 !! Where two nodes face each other across a fracture, u(+) = m - [u]/2 and u(-) = m + [u]/2 with
-!! their mean m and jump [u] = u(-) - u(+). A given jump leaves m as unknown; a slipping pair
+!! their mean m and jump [u] = u(-) - u(+). A prescribed jump leaves m as unknown; a slipping pair
 !! keeps m and the amount of slip d, with [u] = d*(tau + dilation*n); a pair in contact keeps m and
-!! both components of the jump, which the law of contact then decides (fine_contact). Every
-!! displacement is linear in these unknowns, u = T q + c, and the stiffness becomes T' K T:
-!! definite, without penalty or multipliers.
+!! both components of the jump, which follow from the contact law (fine_contact). Every displacement
+!! is linear in these unknowns, u = T q + c, and the stiffness becomes T' K T: definite, without
+!! penalty or multipliers.
 !!
-!! Where more than two nodes meet (T and X joints) the copies at the joint itself stay free,
-!! whatever the conditions of the cells around, unless these are in contact (fine_joints). A pair of
-!! which a displacement is given stays free, too; in contact it has the traction of the middle of
-!! its cell.
+!! Where more than two nodes meet (T and X joints) the copies at the joint itself remain free, for
+!! all conditions of the cells around, unless these are in contact (fine_joints). A pair with a
+!! prescribed displacement remains free, too; in contact it has the traction of the middle of its
+!! cell.
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

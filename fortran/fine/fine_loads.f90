@@ -1,6 +1,6 @@
-!> Loads of the fine problem and the nodal forces that they give.
+!> Loads of the fine problem and their nodal forces.
 !!
-!! The stress that the rock has before it is displaced, linear in y, as loads of the fine problem.
+!! The stress of the rock before displacement, linear in y, as loads of the fine problem.
 module fine_loads
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

@@ -1,7 +1,7 @@
 !> The fine problem: elasticity on six-node triangles, factorized once and solved for many loads.
 !!
-!! The elements as the solver takes them: which unknowns each one has, and its matrix T' K T, where
-!! T says how the nodes move with the unknowns (fine_faces).
+!! The elements for the solver: the unknowns of each, and its matrix T' K T, where T gives the nodal
+!! displacements from the unknowns (fine_faces).
 module fine_model
    use algebra_multifrontal, only: element_matrices_t, multifrontal_t
    use base_errors, only: error_t, raise_error
@@ -222,7 +222,7 @@ contains
          call eliminate_loose(problem, is_singular)
          if (.not. is_singular) return
          call raise_error(error, "fine_model_t%prepare", "the end of a fracture on a side "// &
-                          "with given displacements is free to move")
+                          "with prescribed displacements can move freely")
       end associate
    end subroutine condense_contact
 
@@ -381,7 +381,7 @@ contains
 
       words = ""
       call find_loose(self%mesh, self%boundary, no_bonds, place)
-      if (allocated(place)) words = " (only contact holds the piece at "//place//")"
+      if (allocated(place)) words = " (only contact holds the part at "//place//")"
    end function loose_place
 
    !> Nodal forces of all loads. Contact tractions that belong to the solution are not among them.

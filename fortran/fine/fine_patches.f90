@@ -1,5 +1,5 @@
-!> Stress samples in the elements, and polynomials fitted to those around a node. Where rocks meet
-!! at a node each has samples of its own there, for stresses jump across an interface.
+!> Stress samples in the elements, and polynomials fitted to those around a node. A node at which
+!! rocks meet has separate samples for each rock, since stresses jump across an interface.
 module fine_patches
    use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk

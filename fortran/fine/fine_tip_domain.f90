@@ -1,7 +1,8 @@
-!> The domain of an integral about a tip. It ends before anything that the integral could not pass:
-!! a kink, another fracture, the far end of the straight piece, the outer boundary, other rock.
+!> The domain of an integral around a tip. It ends before any feature that would make the integral
+!! depend on the path: a kink, another fracture, the far end of the straight segment, the outer
+!! boundary, other rock.
 !!
-!! The traction that the fracture faces carry, as the interaction integral needs it.
+!! The traction on the fracture faces, for the interaction integral.
 module fine_tip_domain
    use base_kinds, only: ik, rk
    use base_plane, only: point_distance

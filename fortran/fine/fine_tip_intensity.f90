@@ -1,4 +1,4 @@
-!> Stress intensity factors of a free tip by three methods, and how far they agree.
+!> Stress intensity factors of a free tip by three methods, and the differences between them.
 module fine_tip_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, pi, rk

@@ -1,4 +1,4 @@
-!> What a tip is to the procedures of this room, and what they find there.
+!> Input and results of the procedures for a tip in this component.
 module fine_tip_types
    use base_kinds, only: ik, rk
    use fine_elasticity, only: elasticity_t

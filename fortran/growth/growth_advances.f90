@@ -5,15 +5,15 @@
 !!    excess_i <= 0 where a_i = lower_i,   = 0 between the bounds,   >= 0 where a_i = upper_i.
 !!
 !! The caller evaluates the tips at `place`, passes their excess to `improve`, and evaluates them at
-!! the new `place` until that has not moved. Each proposal solves the linear complementarity problem
-!! of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates improve
-!! the matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei and Pang,
-!! Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003, sections 1.5 and
-!! 8.3); otherwise the trust region shrinks. Where this makes no headway, as at jumps of K_eq, each
-!! tip advances from its lower bound until it does not exceed its toughness, and its place is found
-!! by bisection. The farthest place at which it exceeded its toughness never falls, so that this
-!! search ends. It may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or
-!! where others have grown past it.
+!! the new `place` until `place` is constant. Each proposal solves the linear complementarity
+!! problem of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates
+!! improve the matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei
+!! and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003,
+!! sections 1.5 and 8.3); otherwise the trust region shrinks. Where this does not converge, as at
+!! jumps of K_eq, each tip advances from its lower bound until it does not exceed its toughness, and
+!! its place is found by bisection. The farthest place at which it exceeded its toughness never
+!! falls, so that this search ends. The search may leave a tip between its bounds with K_eq < K_IC:
+!! beyond a drop of K_eq, or where other tips have grown past it.
 module growth_advances
    use base_kinds, only: rk
    use growth_competition, only: complementary_advances, learn_from_trial

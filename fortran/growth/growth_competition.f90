@@ -1,21 +1,23 @@
-!> Tips that grow together at their toughness: how their advances are put right, and whether one of
+!> Tips that grow together at their toughness: corrections of their advances, and whether one of
 !! them could run ahead.
 !!
 !! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f
-!! (growth_control). Equal growth is stable where M is negative definite on the advances on which
-!! the load does no work, c^T da = 0: else there are others, in which one tip runs ahead and the
-!! load unloads the rest.
+!! (growth_control) and the tip interaction matrix M. Equal growth is stable where M is negative
+!! definite on the advances on which the load does no work, c^T da = 0. Otherwise there are other
+!! solutions, in which one tip runs ahead and the load unloads the rest.
 !!
-!! Where a fluid drives the tips there is no such factor: what is held is its volume, and c = 0.
-!! Then each tip has not advanced and K_i <= K_IC, or has and K_i = K_IC, a linear complementarity
-!! problem. It has one solution where M is negative definite, else others too: here the tips that
-!! exceed their toughness most grow first, and others with them only as far as they must.
+!! Where a fluid drives the tips there is no load factor: the fluid volume is fixed, and c = 0. Then
+!! each tip has not advanced and K_i <= K_IC, or has advanced and K_i = K_IC, a linear
+!! complementarity problem. It has one solution where M is negative definite, otherwise several:
+!! here the tips that exceed their toughness most grow first, and other tips only as far as they
+!! must.
 !!
-!! Kinds of tips: those that are alike grow alike, and count as one.
+!! Tip groups: equal tips advance equally, and count as one.
 !!
-!! Tips that have come equally far, and that the errors of their intensities do not tell from each
-!! other, go equally far as long as that is so: else the errors of their meshes would part them.
-!! What is like something alike is alike too, so the order of the tips does not matter.
+!! Tips that have advanced equally far, and whose intensities differ by less than their errors,
+!! advance equally as long as this holds: otherwise the errors of their meshes would separate them.
+!! A tip equal to a member of a group belongs to the group, so the order of the tips does not
+!! matter.
 module growth_competition
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use algebra_lapack, only: dgesv, dsyev

@@ -1,9 +1,9 @@
-!> Length control: how far the tips of a group go while the load factor follows them. One tip, the
-!! leader, goes to the end of its segment and is at its toughness by the load; the others are in
-!! equilibrium at that load (growth_advances).
+!> Length control: the advances of a tip group while the load factor follows them. One tip, the
+!! leader, advances to the end of its segment, and the load keeps it at its toughness; the others
+!! are in equilibrium at that load (growth_advances).
 !!
 !! With K_i + sum_j M_ij da_j + c_i df for small changes, the leader L eliminates the load factor:
-!! the others answer with M_ij - c_i/c_L M_Lj, and exceed their toughness at the leader's load by
+!! the others respond with M_ij - c_i/c_L M_Lj, and exceed their toughness at the leader's load by
 !! excess_i - c_i/c_L excess_L.
 module growth_control
    use base_kinds, only: ik, rk

@@ -1,11 +1,10 @@
-!> The free tips of a network and how they grow together: the one loop that both levels use.
+!> The free tips of a network and their common growth: one loop for both levels.
 !!
-!! Each increment is one step of the growth law (growth_law), taken in the direction in which the
-!! path goes on straight: the tips advance where they will probably have to (growth_tip), are
-!! evaluated there, and turn until the criterion holds at the end of the increment.
+!! Each increment is one step of the growth law (growth_law), in the direction in which the path
+!! continues straight: the tips advance to predicted positions (growth_tip), are evaluated there,
+!! and turn until the criterion holds at the end of the increment.
 !!
-!! One increment of growth of many tips, on whichever level they were evaluated: which of them grow,
-!! and how far each.
+!! One increment of growth of many tips, on either level: which tips grow, and how far.
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

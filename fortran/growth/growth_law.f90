@@ -1,4 +1,4 @@
-!> Whether, where to and how far a tip grows.
+!> The growth law of a tip: whether it grows, in which direction, and how far.
 module growth_law
    use base_kinds, only: rk
    implicit none(type, external)

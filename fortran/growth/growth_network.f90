@@ -1,4 +1,4 @@
-!> The fracture network as it grows: polylines that get vertices at their ends.
+!> The growing fracture network: polylines that gain vertices at their ends.
 module growth_network
    use base_kinds, only: ik, rk
    use mesh_types, only: network_t

@@ -1,10 +1,10 @@
-!> How the intensities of tips depend on the places of all of them, where nothing but their places
-!! changes: what a fluid gives in a time step is held. Measured tip by tip, learnt on with each try,
-!! and used to say whether tips that grow together could part, and where they are at rest together.
+!> The tip interaction matrix: the derivatives of the intensities with respect to the positions of
+!! all tips, with the fluid volume of the time step fixed. It is measured tip by tip and improved by
+!! Broyden updates in each try. It shows whether tips that grow together could separate, and gives
+!! their equilibrium positions.
 !!
-!! Which tips grow as one: those that have come equally far, and that nothing but the errors of
-!! their meshes tells from each other. Else the last bits of the meshes would decide which of them
-!! runs ahead where nothing else does.
+!! Tip groups: tips that have advanced equally far and differ only by the errors of their meshes.
+!! Without groups, rounding in the meshes would determine which of them runs ahead.
 module growth_rivals
    use base_kinds, only: ik, rk
    use growth_competition, only: learn_from_trial, likes, matrix_of_kinds, numbered, preference

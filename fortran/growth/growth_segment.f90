@@ -1,4 +1,4 @@
-!> The straight piece that the path of a tip ends with, and how far along it the tip is.
+!> The last straight segment of the path of a tip, and the position of the tip along it.
 module growth_segment
    use base_kinds, only: rk
    implicit none(type, external)

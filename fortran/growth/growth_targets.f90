@@ -1,4 +1,4 @@
-!> Where a growing tip meets another fracture or the outer boundary.
+!> Targets of a growing tip: points where its path meets another fracture or the outer boundary.
 module growth_targets
    use base_kinds, only: ik, pi, rk
    use base_plane, only: crosses, meeting, nearest_place, nearest_share, point_distance

@@ -1,11 +1,11 @@
-!> A free tip as a growing scene knows it, whichever level evaluates it.
+!> A free tip of a growing network, for both levels.
 !!
-!! The end of a fracture as it grows, and the direction in which it goes on straight.
+!! The end of a fracture that grows, and the direction in which its path continues straight.
 !!
 !! A tip kinks by the angle of the largest tangential stress. Under a strong stress along the crack
 !! this angle is right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the
-!! crack less the one across it; Cotterell and Rice 1980): longer explicit steps overshoot to and
-!! fro, and the path meanders more and more. So each step but the first kink of a fracture's end is
+!! crack less the one across it; Cotterell and Rice 1980): longer explicit steps overshoot to both
+!! sides, with increasing amplitude. So each step except the first kink of a fracture's end is
 !! corrected until the kink angle at the new tip vanishes, that is, until the criterion holds at
 !! the end of the step (backward Euler for the path; local symmetry).
 module growth_tip

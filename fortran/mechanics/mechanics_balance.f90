@@ -1,6 +1,7 @@
 !> The load that a network bears: the factor at which the largest K_eq of its tips is K_IC.
 !!
-!! By how much K_eq of tips that grow may miss K_IC, and the load that shares it out.
+!! The difference between K_eq and K_IC that is accepted at growing tips, and the load that
+!! distributes it over them.
 module mechanics_balance
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -107,7 +108,7 @@ contains
          if (allocated(error)) return
          slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - last%factor)
       end do
-      call raise_error(error, "", "the load that holds the tips was not found")
+      call raise_error(error, "", "no load was found at which the growing tips are in equilibrium")
 
    contains
 

@@ -1,4 +1,4 @@
-!> The whole body as one mesh of finite elements: how it is held and loaded, and how it answers.
+!> The whole body as one mesh of finite elements: its supports, its loads, and its response.
 module mechanics_body
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,6 +1,6 @@
-!> Unstable growth: under a load that never falls by itself where the longer network would bear
-!! less, and under any where no load factor holds the tips. It goes through networks in equilibrium
-!! but at the load where it began, until they bear that again.
+!> Unstable growth: under a dead load where the longer network would bear less, and under any load
+!! where no load factor keeps the tips in equilibrium. The path consists of networks in equilibrium,
+!! all at the load at which the growth began, until they bear that load again.
 module mechanics_dead_load
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -123,7 +123,8 @@ contains
 
       if (.not. self%is_unstable) return
       call body%chronicle%add_event(body%factor, event_unstable, &
-                                    "unstable growth goes on at the end of the run: "//words(self))
+                                    "unstable growth continues at the end of the run: "// &
+                                    words(self))
       self%is_unstable = .false.
    end subroutine stop_growth
 

@@ -1,10 +1,10 @@
 !> Growth as equilibrium in a body without a fluid (model.md section 5): from one accepted state to
 !! the next, each tip has either not advanced and K_eq <= K_IC, or advanced so far that K_eq = K_IC.
 !!
-!! Length is controlled: one tip of those at their toughness goes to the end of its piece, the load
-!! factor is that which the longer network bears (mechanics_balance), and the other tips go as far
-!! as they have to for K_eq = K_IC at that load (growth_competition). The load may fall on the way:
-!! a load that rises again gets to the same networks.
+!! Length is controlled: one of the tips at their toughness advances to the end of its segment, the
+!! load factor is the one that the longer network bears (mechanics_balance), and the other tips
+!! advance as far as K_eq = K_IC requires at that load (growth_competition). The load may fall on
+!! the way: a load that rises again leads to the same networks.
 module mechanics_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

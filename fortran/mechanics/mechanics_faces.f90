@@ -1,11 +1,12 @@
-!> What holds on the fracture faces of the body: the law of each cell, and the slip that is given.
+!> Conditions on the fracture faces of the body: the contact law of each cell, and the prescribed
+!! slip.
 !!
-!! New faces, which growth has made, have the law of their fracture; but next to a given slip, which
-!! belongs to the fracture as it was at the start, they touch without friction, and they may part
-!! though the fracture is held closed. A pressure on the faces acts on all of them.
+!! New faces, which growth has made, have the contact law of their fracture. Next to a prescribed
+!! slip, which is defined for the initial fracture, they touch without friction, and they may open
+!! even if the fracture is held closed. A pressure on the faces acts on all of them.
 !!
-!! How the scene holds and loads the body: displacements that are given, tractions, forces, gravity
-!! and the stress in situ.
+!! Supports and loads of the body from the scene: prescribed displacements, tractions, forces,
+!! gravity and the stress in situ.
 module mechanics_faces
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place

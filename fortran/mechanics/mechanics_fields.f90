@@ -1,4 +1,4 @@
-!> Values of the finite-element state as files show them: of elements, fracture cells and points.
+!> Output values of the finite-element state: of elements, fracture cells and points.
 module mechanics_fields
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, turned_left

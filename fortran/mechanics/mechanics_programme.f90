@@ -1,10 +1,10 @@
-!> The programme of the load: the factors through which it is led, one piece after the other, each
-!! in equal steps. A load that goes straight from one factor to another one has a single piece.
+!> The load programme: the load factors of the scene, with one part between each two of them, in
+!! equal steps. A load that changes monotonically from one factor to another has a single part.
 !!
-!! The load at which the next tip grows, foreseen from the intensities at two loads.
+!! The predicted load of the next onset of growth, from the intensities at two loads.
 !!
-!! Between changes of contact the intensities are linear in the load factor. The onset on the
-!! straight lines through two states is then the onset itself; across such changes it is a guess.
+!! Between changes of contact the intensities are linear in the load factor. Linear extrapolation
+!! from two states then gives the exact onset; across such changes it gives an initial guess.
 module mechanics_programme
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
@@ -122,8 +122,8 @@ contains
       words = ""
       left = size(self%ends, kind=ik) - self%piece
       if (size(self%ends) <= 2 .or. left < 1) return
-      words = ", and "//integer_text(left)//" of the scene's load factors are not reached"
-      if (left == 1) words = ", and the scene's last load factor is not reached"
+      words = ", and "//integer_text(left)//" of the scene's load factors were not reached"
+      if (left == 1) words = ", and the scene's last load factor was not reached"
    end function not_reached
 
    !> The share of the pieces that a state at a factor has behind it [-].

@@ -1,6 +1,6 @@
-!> The state of a loaded body as files show it: its row of the history, fields, probes.
+!> Output of the state of a loaded body: the row of the history, fields, probes.
 !!
-!! What the limits of a run watch in a body without fluid (report_limits).
+!! Quantities that the limits of a run check in a body without fluid (report_limits).
 module mechanics_results
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk

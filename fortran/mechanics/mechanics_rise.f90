@@ -1,8 +1,8 @@
-!> The load goes up or down to each onset of growth and never past one.
+!> The load changes to each onset of growth, up or down, and never exceeds it.
 !!
-!! Loads that turn round: where slip is locked in, K_eq need not rise all the way to the end of a
-!! piece of the programme. It may fall at first, from the toughness that the tips stood at, and it
-!! may have its largest value on the way, where faces begin to slip back.
+!! Loads that change direction: where slip is locked in, K_eq need not rise over a whole part of the
+!! load programme. It may fall at first, from the toughness that the tips have reached, and it may
+!! have its largest value within the part, where faces begin to slip back.
 module mechanics_rise
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -132,7 +132,7 @@ contains
             return
          end if
       end do
-      call raise_error(error, "", "the load at which the next tip grows was not found")
+      call raise_error(error, "", "the load of the next onset of growth was not found")
    end subroutine find_onset
 
    !> The onset where all loads change in proportion: until contact changes, or locked-in slip is

@@ -1,5 +1,5 @@
-!> A scene without a fluid in progress: the load follows its programme in steps, and from one onset
-!! of growth to the next.
+!> Simulation of a scene without a fluid: the load follows its programme in steps, and from one
+!! onset of growth to the next.
 module mechanics_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -74,9 +74,8 @@ contains
          call summary%note(size(scene%fractures) > 0, "fractures", "no fractures")
          call summary%note(scene%growth%intensities, "stress intensity factors", "intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing: growth off")
-         call summary%note(scene%adaptive%enabled, "meshes that follow the error", &
-                           "error estimates: not asked for")
-         call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
+         call summary%note(scene%adaptive%enabled, "adaptive meshes", "error estimates: off")
+         call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
       end associate
    end subroutine note_features
 
@@ -167,7 +166,7 @@ contains
       if (self%has_onset) then
          call self%grow_tips(any_grew, timers, error)
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
+            self%ending = "a part of the body has separated"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
          end if
          if (allocated(error)) return
@@ -216,7 +215,7 @@ contains
             call self%dead_load%end_increment(self, self%increment, timers, error)
          end if
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
-            self%ending = "a piece of the body has come loose"//self%programme%not_reached()
+            self%ending = "a part of the body has separated"//self%programme%not_reached()
             if (allocated(error)) deallocate (error)
             call self%note_growth()
             call self%note_mesh(self%body%mesh)
@@ -294,8 +293,9 @@ contains
          if (is_bifurcation .and. .not. self%was_bifurcation) then
             call self%chronicle%add_event(self%time(), event_bifurcation, &
                                           integer_text(size(increment%group, kind=ik))// &
-                                          " tips grow alike; a lead of one increment is worth "// &
-                                          brief_text(100.0_rk*increment%preference, 3)//" % of K")
+                                          " tips grow equally; a lead of one increment changes "// &
+                                          "K_eq by "// &
+                                          brief_text(100.0_rk*increment%preference, 3)//" %")
          end if
          self%was_bifurcation = is_bifurcation
          if (increment%misfit > largest_misfit) then
@@ -303,8 +303,8 @@ contains
                                            brief_text(100.0_rk*increment%misfit, 3)// &
                                            " % below K_IC at load factor "// &
                                            brief_text(self%factor, 6))
-            call self%summary%warn("some growing tips are more than 1 % below K_IC (run.log "// &
-                                   "tells where); give a smaller increment")
+            call self%summary%warn("some growing tips are more than 1 % below K_IC (see "// &
+                                   "run.log); reduce increment")
          end if
       end associate
    end subroutine note_competition

@@ -1,6 +1,7 @@
-!> A body under a load factor: its state on a mesh that follows growth and error, and its tips.
+!> A body under a load factor: its state on a mesh that is adapted to growth and to the error
+!! estimate, and its tips.
 !!
-!! Whether fractures have cut the body to pieces.
+!! Whether fractures have cut the body into parts.
 module mechanics_state
    use base_errors, only: error_t
    use base_groups, only: groups_t, single_groups

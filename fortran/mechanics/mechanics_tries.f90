@@ -1,7 +1,8 @@
-!> The tries of one increment of growth: which tips go along which pieces of their paths, and how
-!! far. Each begins from the state before.
+!> The tries of one increment of growth: which tips advance along which path segments, and how far.
+!! Each try begins from the state before.
 !!
-!! Growth that no load factor holds: loads that do not change with it drive the tips on.
+!! Growth without an equilibrium load factor: loads that do not change with the load factor drive
+!! the tips.
 module mechanics_tries
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,6 +1,6 @@
-!> Meshes for the other rooms, made by the C++ library.
+!> Meshes for the other components, made by the C++ library.
 !!
-!! Whether a body and its fractures can be meshed, judged by the C++ library without meshing.
+!! Whether a body and its fractures can be meshed, checked by the C++ library without meshing.
 module mesh_builder
    use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    use base_errors, only: error_t, raise_error

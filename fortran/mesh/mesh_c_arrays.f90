@@ -1,6 +1,6 @@
-!> What goes to the C++ mesh library: specifications and networks, indices from 0.
+!> Input of the C++ mesh library: specifications and networks, with indices from 0.
 !!
-!! What comes from the C++ mesh library: meshes and maps; indices become Fortran's.
+!! Output of the C++ mesh library: meshes and maps, converted to indices from 1.
 module mesh_c_arrays
    use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
    use base_errors, only: error_t, raise_error

@@ -1,5 +1,5 @@
-!> The C++ mesh library as it is (cpp_mesh/c_api.h): indices count from 0. Only this room
-!! uses it.
+!> Interfaces of the C++ mesh library (cpp_mesh/c_api.h): indices count from 0. Only this component
+!! uses them.
 module mesh_c_binding
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_null_ptr, c_ptr, c_size_t
    implicit none(type, external)

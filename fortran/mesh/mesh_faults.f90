@@ -1,4 +1,4 @@
-!> What the C++ mesh library refuses, who is to blame, and the sentence that says so.
+!> Inputs refused by the C++ mesh library: the objects at fault, and the message.
 module mesh_faults
    use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_ptr
    use base_errors, only: error_t, raise_error

@@ -1,4 +1,4 @@
-!> What a mesh is: triangles that conform to the fractures and are split along them.
+!> A mesh: triangles that conform to the fractures and are split along them.
 !!
 !! Orientation: a fracture is a polyline; tau is its direction and n = tau turned by +90 degrees
 !! points from side + (on the right) to side - (on the left). The jump is [u] = u(-) - u(+):

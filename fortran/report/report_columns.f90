@@ -1,4 +1,4 @@
-!> The one table of everything that the files of a run hold: every column, key and field.
+!> The one table of the contents of a run's files: every column, key and field.
 !!
 !! The tables of a run take the names and the order of their columns from here, and so does
 !! the table of names (report_describe); tests hold the keys of run.json and network.json and the

@@ -1,7 +1,7 @@
-!> Directories, and files that appear whole: written aside as NAME.part, then renamed.
+!> Directories, and files that are always complete: written as NAME.part, then renamed.
 !!
-!! The folder of a run. Nothing in it is touched before it is sure that this run may have it, and
-!! what an earlier run has left there stays until this one has something to put in its place.
+!! The folder of a run. It is not changed before it is certain that this run may use it, and files
+!! of an earlier run remain until this run replaces them.
 module report_files
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32, int64, int8, real64

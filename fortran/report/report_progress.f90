@@ -1,5 +1,5 @@
-!> How far a run is: one line on a terminal, renewed in place, and now and then one for the log,
-!! which stderr shows too where it is no terminal.
+!> Progress of a run: one line on a terminal, updated in place, and at intervals a line of the log,
+!! which is also written to stderr if that is no terminal.
 module report_progress
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit

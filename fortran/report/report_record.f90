@@ -1,6 +1,6 @@
-!> run.json: what a run was, how it ended and what it cost. report_columns says what its keys mean.
+!> run.json: the scene, the end and the cost of a run. report_columns defines its keys.
 !!
-!! What a run was, in plain words, when it is over: the last lines on the terminal.
+!! The summary of a run at its end: the last lines on the terminal.
 module report_record
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk

@@ -1,12 +1,12 @@
-!> A state in numbers: the rows of the tables of a run.
+!> A state as numbers: the rows of the tables of a run.
 !!
-!! A state as fields on the three dimensions: what a level hands to the files.
+!! A state as fields on the three dimensions: the data of a level for the files.
 !!
-!! Arrays that are not allocated are left out of the files; a run without fluid has no pressure.
+!! Arrays that are not allocated are omitted from the files; a run without fluid has no pressure.
 !!
-!! What a run was, in numbers and words: what run.json holds but how it ended and what it cost.
+!! A run in numbers and words: the contents of run.json except its end and its cost.
 !!
-!! What has happened in a run since its files were last written.
+!! Events of a run since its files were last written.
 module report_rows
    use base_kinds, only: ik, lk, rk
    use base_texts, only: add_once, add_text, text_t

@@ -1,7 +1,8 @@
-!> All files of one run (docs: the contract's "Files of a run"), each of them always whole.
+!> All files of one run, each of them always complete.
 !!
-!! Tables, collections, network and log gather in memory and are written when `tick` finds it time:
-!! every three seconds, and so seldom that writing takes less than half a percent of the wall time.
+!! Tables, collections, network and log are kept in memory and are written when `tick` decides:
+!! every three seconds, or less often so that writing takes less than half a percent of the wall
+!! time.
 module report_run
    use base_errors, only: error_t, keep_first
    use base_kinds, only: ik, lk, rk

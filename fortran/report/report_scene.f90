@@ -1,12 +1,12 @@
 !> The rocks of a scene with regions on the finite elements of a window or of the whole body.
 !!
-!! An element has the rock in which its centre lies. Meshes follow the outlines of regions where
-!! there is room (mesh_spec_t%guides); an element that an outline cuts all the same is off by the
-!! part of it beyond the outline, an error of first order in its size.
+!! An element has the rock at its centre. Meshes follow the outlines of regions where there is room
+!! (mesh_spec_t%guides). An element that an outline cuts has the wrong rock in its part beyond the
+!! outline, an error of first order in its size.
 !!
-!! What the scene says of a fracture's faces, as the law of contact takes it.
+!! The properties of a fracture's faces in the scene, for the contact law.
 !!
-!! The shape of a scene's body, as the mesher takes it.
+!! The shape of a scene's body, for the mesher.
 module report_scene
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk

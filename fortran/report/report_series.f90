@@ -1,4 +1,4 @@
-!> Tables as CSV (RFC 4180): rows gather in memory, and the file is written whole.
+!> Tables as CSV (RFC 4180): rows are kept in memory, and the file is written completely.
 module report_series
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk

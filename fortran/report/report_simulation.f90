@@ -1,5 +1,5 @@
-!> A scene in progress, as the program sees it whichever way it is simulated: from one accepted
-!! state to the next, with the growth of the tips in between; and what its files shall hold.
+!> A simulation of a scene in progress, independent of its kind: from one accepted state to the
+!! next, with growth of the tips in between; and the data for its files.
 module report_simulation
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk

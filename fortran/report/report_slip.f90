@@ -1,23 +1,23 @@
-!> Slip events: where and when the faces of fractures slide, put together from what each step adds.
+!> Slip events: where and when the faces of fractures slip, composed of the patches of each step.
 !!
-!! In a step, a patch is a row of cells of one fracture whose faces slide. Patches of two steps that
-!! follow each other belong to the same event if they have faces in common; what divides goes on as
-!! one, and events that meet are one from then on. An event is over when nothing of it slides any
-!! more, or when its largest slip rate passes a threshold: what slips faster than that is seismic,
-!! from its nucleation, the step in which the rate passes it, to its arrest, when it no longer does;
-!! what slips before and afterwards are aseismic events of their own. Rates are means of a step.
-!! Without radiation damping the simulation is quasi-static: events last as long as their load
-!! drives them, and what jumps does so within one step.
+!! In a step, a patch is a row of cells of one fracture whose faces slip. Patches of two consecutive
+!! steps belong to the same event if they have faces in common; an event that divides continues as
+!! one, and events that meet are merged. An event is over when none of its faces slips any more, or
+!! when its largest slip rate passes a threshold: faster slip is seismic, from its nucleation, the
+!! step in which the rate exceeds the threshold, to its arrest, when it falls below; slip before and
+!! afterwards forms separate aseismic events. Rates are means of a step. Without radiation damping
+!! the simulation is quasi-static: events last as long as their load drives them, and slip jumps
+!! occur within one step.
 !!
 !! The static stress drop is the mean over the event's patch of the fall of the shear traction, from
 !! the state before its first step to that after its last one.
 !!
-!! Seismic moment M0 = sum of G times slip times area (Aki 1966), with the G of the rock beside each
+!! Seismic moment M0 = sum of G times slip times area (Aki 1966), with the G of the rock at each
 !! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
-!! (Hanks and Kanamori 1979, in SI units as the IASPEI standard of 2005 has it).
+!! (Hanks and Kanamori 1979, in SI units as in the IASPEI standard of 2005).
 !!
-!! Shear tractions of fracture cells at one time, kept by arc length, so that they can be compared
-!! with later ones on another mesh: by how much they have fallen where slip has been.
+!! Shear tractions of fracture cells at one time, stored by arc length, so that they can be compared
+!! with later ones on another mesh: their fall where faces have slipped.
 module report_slip
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_stick

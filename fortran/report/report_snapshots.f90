@@ -1,12 +1,13 @@
-!> Fields at written times: a VTU file for each dimension, gathered in PVD collections.
-!! report_columns says what the fields mean.
+!> Fields at written times: a VTU file for each dimension, collected in PVD files. report_columns
+!! defines the fields.
 !!
-!! Vectors and tensors of a plane state with the components that ParaView wants.
+!! Vectors and tensors of a plane state with the components that ParaView expects.
 !!
-!! ParaView collections (.pvd): which file holds which time.
+!! ParaView collections (.pvd): the file of each time.
 !!
-!! ParaView wants times in rising order, and shows files of equal time on top of one another. So
-!! states of equal time have neighbouring numbers, and those of a falling load stand last first.
+!! ParaView expects times in increasing order, and shows files of equal time on top of one another.
+!! So states of equal time have consecutive numbers, and those of a falling load have the last state
+!! first.
 module report_snapshots
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> The CSV tables of a run: where the value of each column of report_columns comes from.
+!> The CSV tables of a run: the source of the value of each column of report_columns.
 module report_tables
    use base_errors, only: error_t, keep_first
    use base_kinds, only: degrees, ik, rk

@@ -1,7 +1,7 @@
-!> Text that grows: a buffer with room to spare.
+!> Text that grows: a buffer with spare capacity.
 !!
-!! JSON (RFC 8259), built member by member. A number that JSON cannot hold (NaN, infinity) becomes
-!! null.
+!! JSON (RFC 8259), built member by member. A number that JSON cannot represent (NaN, infinity)
+!! becomes null.
 module report_text
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk

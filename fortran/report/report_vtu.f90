@@ -2,8 +2,9 @@
 !! them.
 !!
 !! Layout: VTK User's Guide, "VTK XML Formats". Every array is preceded by its size in bytes as
-!! UInt64, and its offset counts from the byte after the underscore. Reals are Float64: what is read
-!! back is what was computed. There are no arrays of strings, which plain readers do not know.
+!! UInt64, and its offset counts from the byte after the underscore. Reals are Float64: the values
+!! read are exactly those computed. There are no arrays of strings, which simple readers do not
+!! support.
 module report_vtu
    use, intrinsic :: iso_fortran_env, only: int64, int8
    use base_errors, only: error_t

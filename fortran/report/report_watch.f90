@@ -1,9 +1,9 @@
-!> Keeps watch over the limits of a run: which were passed, when and where first, and how far.
+!> Monitors the limits of a run: which were exceeded, when and where first, and by how much.
 !!
-!! Tips whose intensities are not known well enough to grow on them.
+!! Tips whose intensities are not accurate enough for growth.
 !!
-!! Growth in equilibrium asks whether K_eq reaches K_IC. A tip of which that may be so, within what
-!! its intensities may be off, has to know them to a share of K_IC (report_limits).
+!! Growth in equilibrium depends on whether K_eq reaches K_IC. A tip that may reach it, within the
+!! error of its intensities, must have an error below a share of K_IC (report_limits).
 module report_watch
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -112,7 +112,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%stopped_by == 0) return
-      call raise_error(error, "", "a limit of the run is passed: "// &
+      call raise_error(error, "", "a limit of the run is exceeded: "// &
                        passed(self%stopped_by, self%records(self%stopped_by)%worst, &
                               limits(self%stopped_by)%stop)// &
                        " "//self%records(self%stopped_by)%worst_at//"; "// &

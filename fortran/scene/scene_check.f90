@@ -1,9 +1,9 @@
-!> Checks values against each other: first those that a sheet tells by what it gives and what not,
-!> then those that need the numbers.
+!> Checks values against each other: first those that depend on which names are given, then those
+!! that depend on the numbers.
 !!
-!! Checks what the table of parameters says of the names of one group among each other.
+!! Checks the relations between names of one group that the table of parameters defines.
 !!
-!! Checks the weight of rock and fluid in a scene with a fluid against each other.
+!! Checks the weights of rock and fluid in a scene with a fluid against each other.
 module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -143,14 +143,14 @@ contains
       if (scene%growth%enabled) switch = "enabled"
       if (size(scene%fractures) == 0) then
          call refuse(error, sheet, sheet%find("growth"), switch, &
-                     "is .true. but must be .false., for the scene has no fracture")
+                     "is .true. but must be .false., since the scene has no fracture")
          return
       end if
       if (.not. scene%has_fluid()) return
       if (scene%material%radiation_damping > 0.0_rk) then
          call refuse(error, sheet, sheet%find("material"), "radiation_damping", "is "// &
-                    real_text(scene%material%radiation_damping)//" but must be left out beside "// &
-                     "stress intensity factors and growth: windows are at rest")
+                     real_text(scene%material%radiation_damping)//" but must be omitted with "// &
+                     "stress intensity factors or growth: windows are quasi-static")
          return
       end if
       if (scene%discretization%window_is_body) return
@@ -161,8 +161,8 @@ contains
          return
       else if (scene%has_points()) then
          call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
-                     real_text(scene%discretization%window)//" but must be 'body' in a body "// &
-                     "with restraints or point loads, which a square would not know")
+                     real_text(scene%discretization%window)//" but must be 'body' with "// &
+                     "restraints or point loads, which a square window does not include")
          return
       end if
       fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
@@ -244,12 +244,12 @@ contains
          least = rock%porosity*density
          if (.not. any(abs(gravity) > 0.0_rk)) then
             call refuse(error, sheet, sheet%find("fluid"), "density", "is "//real_text(density)// &
-                        " but nothing gives the fluid weight; give &gravity y, on earth "// &
-                        "-9.81, or leave the density out")
+                        " but there is no gravity; give &gravity y, on earth -9.81, or omit "// &
+                        "the density")
          else if (abs(gravity(1)) > 0.0_rk) then
             call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
-                        " but must be 0, for the pressure of a fluid with a density changes "// &
-                        "with y alone")
+                        " but must be 0, since the pressure of a fluid with a density varies "// &
+                        "only with y")
          else if (.not. rock%density >= least) then
             call refuse(error, sheet, sheet%find("material"), "density", "is "// &
                         real_text(rock%density)//" but must be at least that of the fluid in "// &
@@ -272,15 +272,15 @@ contains
          associate (rock => scene%regions(i)%material, all => scene%material)
             if (.not. abs(rock%density - all%density) > 0.0_rk) cycle
             if (.not. any(abs(scene%gravity) > 0.0_rk)) then
-               reason = "but nothing gives it weight; give &gravity, or leave the density out"
+               reason = "but there is no gravity; give &gravity, or omit the density"
             else if (any(abs(scene%in_situ%per_y) > 0.0_rk)) then
                reason = "but must be that of &material, "//real_text(all%density)// &
-                        ", beside a stress in situ that changes with y: one gradient does not "// &
-                        "carry two weights; leave sxx_per_y and syy_per_y out, and the body "// &
+                        ", with a stress in situ that varies with y: one gradient does not "// &
+                        "balance two weights; omit sxx_per_y and syy_per_y, so that the body "// &
                         "settles under its weight"
             else if (scene%growth%intensities) then
                reason = "but must be that of &material, "//real_text(all%density)// &
-                        ", beside stress intensity factors and growth: windows have one weight"
+                        ", with stress intensity factors or growth: windows have a single density"
             else if (.not. rock%density >= rock%porosity*scene%fluid%density) then
                reason = "but must be at least that of the fluid in its pores, porosity times "// &
                         "density of &fluid: "//rounded_text(rock%porosity*scene%fluid%density)
@@ -308,8 +308,8 @@ contains
          if (.not. abs(scene%regions(i)%material%biot - scene%material%biot) > 0.0_rk) cycle
          call refuse(error, sheet, sheet%find("region", i), "biot", "is "// &
                      real_text(scene%regions(i)%material%biot)//" but must be that of "// &
-                     "&material, "//real_text(scene%material%biot)//", where a fluid with a "// &
-                     "density has no stress in situ beside it; give &in_situ")
+                     "&material, "//real_text(scene%material%biot)//", since a fluid with a "// &
+                     "density requires a stress in situ here; give &in_situ")
          return
       end do
    end subroutine check_region_weights

@@ -1,6 +1,6 @@
-!> Checks the laws of a fluid whose density or viscosity follows its pressure.
+!> Checks the laws of a fluid whose density or viscosity depends on its pressure.
 !!
-!! Checks what a scene says of its wells.
+!! Checks the wells of a scene.
 module scene_check_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -45,7 +45,7 @@ contains
       else if (density%text == "linear" .and. viscosity%text == "constant" .and. &
                record%is_set("reference_pressure")) then
          call refuse(error, sheet, i, "reference_pressure", "is given, but neither "// &
-                     "viscosity_law nor density_law depends on it; leave it out")
+                     "viscosity_law nor density_law depends on it; omit it")
       end if
    end subroutine check_given_fluid
 
@@ -88,11 +88,11 @@ contains
          if (n < 2) then
             call refuse(error, sheet, i, "table_pressure", "has 1 value but must have at least two")
          else if (.not. all(p(2:) > p(:n - 1))) then
-            call refuse(error, sheet, i, "table_pressure", "must rise, and does not from "// &
+            call refuse(error, sheet, i, "table_pressure", "must increase, but does not from "// &
                         real_text(p(falls(p)))//" to "//real_text(p(falls(p) + 1)))
          else if (reference < p(1) .or. reference > p(n)) then
             call refuse(error, sheet, i, "table_pressure", "reaches from "//real_text(p(1))// &
-                        " to "//real_text(p(n))//" but must hold the reference_pressure, "// &
+                        " to "//real_text(p(n))//" but must contain the reference_pressure, "// &
                         real_text(reference))
          end if
       end associate
@@ -130,7 +130,7 @@ contains
       associate (density => fluid%table_density)
          do k = 1, size(density) - 1
             if (density(k + 1) >= density(k)) cycle
-            call refuse(error, sheet, i, "table_density", "must not fall, and does from "// &
+            call refuse(error, sheet, i, "table_density", "must not decrease, but does from "// &
                         real_text(density(k))//" to "//real_text(density(k + 1)))
             return
          end do
@@ -196,8 +196,8 @@ contains
                call refuse(error, sheet, i, "rate", "is missing: a well needs a rate, a "// &
                            "pressure, or both")
             else if (record%is_given("time") .and. record%is_given("start")) then
-               call refuse(error, sheet, i, "start", "is given beside time, whose first value "// &
-                           "it would be, but must not be")
+               call refuse(error, sheet, i, "start", "is given with time, whose first value "// &
+                           "determines it, but must not be")
             end if
             if (allocated(error)) return
          end associate
@@ -273,7 +273,7 @@ contains
       if (allocated(error)) return
       do k = 2, n
          if (well%time(k) > well%time(k - 1)) cycle
-         call refuse(error, sheet, record, "time", "goes back: stage "//integer_text(k)// &
+         call refuse(error, sheet, record, "time", "decreases: stage "//integer_text(k)// &
                      " begins at "//real_text(well%time(k))//", but must begin after stage "// &
                      integer_text(k - 1_ik)//", "//real_text(well%time(k - 1)))
          return
@@ -361,12 +361,12 @@ contains
       size = scene%discretization%size_boundary
       if (scene%has_fractures()) size = scene%discretization%size_fracture
       if (well%turbulence > 0.0_rk) then
-       call refuse(error, sheet, record, "turbulence", "is given, but a well in the rock whose "// &
-                     "rate follows from pressures must not have it")
+        call refuse(error, sheet, record, "turbulence", "is given, but a well in the rock with "// &
+                     "a pressure control must not have it")
       else if (well%radius > share*size) then
       call refuse(error, sheet, record, "radius", "is "//real_text(well%radius)//" but must be "// &
                      "at most a twentieth of the smallest cells, "//rounded_text(share*size)// &
-                     ", where the rate follows from pressures")
+                     ", for a well with a pressure control")
       end if
    end subroutine check_radius
 

@@ -1,8 +1,8 @@
-!> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates;
-!! and where wells and probes are. Whether body and fractures can be meshed is for the mesh library
-!! to judge.
+!> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates, and
+!! positions of wells and probes. Whether body and fractures can be meshed is checked by the mesh
+!! library.
 !!
-!! Whether a polygon, given by its corners, holds a point.
+!! Whether a polygon, given by its corners, contains a point.
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> Checks how the body is held and loaded.
+!> Checks the supports and loads of the body.
 module scene_check_mechanics
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
@@ -28,12 +28,12 @@ contains
       held = held_motions(scene, .true.)
       holder = "&side or a &restraint"
       if (.not. held(1, 1) > 0.0_rk) then
-        call raise_error(error, "", sheet%path//": nothing holds the body against moving in x; "// &
-                          "give a "//holder//" an x_displacement (see docs/input.md)")
+         call raise_error(error, "", sheet%path//": the body can move in x; give a "//holder// &
+                          " an x_displacement (see docs/input.md)")
          return
       else if (.not. held(2, 2) > 0.0_rk) then
-        call raise_error(error, "", sheet%path//": nothing holds the body against moving in y; "// &
-                          "give a "//holder//" a y_displacement (see docs/input.md)")
+         call raise_error(error, "", sheet%path//": the body can move in y; give a "//holder// &
+                          " a y_displacement (see docs/input.md)")
          return
       end if
       rest = held(3, 3) - held(1, 3)**2/held(1, 1) - held(2, 3)**2/held(2, 2)
@@ -42,7 +42,7 @@ contains
             holder = "&side, left or right, an x_displacement, or bottom or top a "// &
                      "y_displacement, or a &restraint either"
          else
-            holder = holder//" that keeps it from turning a displacement too"
+            holder = holder//" that prevents its rotation a displacement too"
          end if
          call raise_error(error, "", sheet%path//": the body can rotate; give a "//holder// &
                           " (see docs/input.md)")
@@ -189,11 +189,11 @@ contains
 
       record = sheet%find("load")
       if (sheet%records(record)%is_given("to")) then
-         call refuse(error, sheet, record, "to", "is given beside factors, whose last it would "// &
-                     "be, but must not be")
+         call refuse(error, sheet, record, "to", "is given with factors, which determine it, "// &
+                     "but must not be")
       else if (load%control == "length") then
          call refuse(error, sheet, record, "control", "is 'length' but must be 'dead' with "// &
-                     "factors, between which growth would take the load elsewhere")
+                     "factors, since growth under length control changes the load")
       else if (size(load%factors) == 1 .and. .not. abs(load%factors(1) - load%from) > 0.0_rk) then
          call refuse(error, sheet, record, "factors", "is "//real_text(load%from)//" but must "// &
                      "differ from from, or the load would not change")
@@ -225,12 +225,12 @@ contains
          weight = scene%material%density*gravity(2)
          if (abs(gravity(1)) > 0.0_rk) then
             call refuse(error, sheet, sheet%find("gravity"), "x", "is "//real_text(gravity(1))// &
-                        " but must be 0, for an in-situ stress that changes with y alone "// &
-                        "carries no weight in x")
+                        " but must be 0, since an in-situ stress that varies only with y "// &
+                        "balances no weight in x")
          else if (.not. abs(per_y(2) + weight) <= balance*abs(weight)) then
             call refuse(error, sheet, sheet%find("in_situ"), "syy_per_y", "is "// &
-                        real_text(per_y(2))//" but must carry the weight: density times "// &
-                        "gravity asks for "//rounded_text(0.0_rk - weight)//" Pa/m")
+                        real_text(per_y(2))//" but must balance the weight: density times "// &
+                        "gravity requires "//rounded_text(0.0_rk - weight)//" Pa/m")
          end if
       end associate
    end subroutine check_weight
@@ -244,7 +244,7 @@ contains
 
       do i = 1, size(scene%restraints)
          if (any(scene%restraints(i)%displacement_given)) cycle
-         call refuse(error, sheet, sheet%find("restraint", i), "", "holds nothing, but "// &
+         call refuse(error, sheet, sheet%find("restraint", i), "", "has no component, but "// &
                      "x_displacement or y_displacement must be given")
          return
       end do

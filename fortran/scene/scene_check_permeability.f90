@@ -1,5 +1,5 @@
-!> Checks the permeability of the rock and of regions: isotropic, or a positive definite tensor that
-!! the multi-point fluxes of the coarse level can do with.
+!> Checks the permeability of the rock and of regions: isotropic, or a positive definite tensor
+!! within the range of the multi-point flux approximation of the coarse level.
 module scene_check_permeability
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -52,8 +52,8 @@ contains
       yy = sheet%records(i)%is_given("permeability_yy")
       xy = sheet%records(i)%is_given("permeability_xy")
       if (scalar .and. (xx .or. yy .or. xy)) then
-         call refuse(error, sheet, i, "permeability", "is given beside components of the "// &
-                     "tensor but must be given alone or not at all")
+         call refuse(error, sheet, i, "permeability", "is given with components of the "// &
+                     "tensor, but only one of the two may be given")
       else if ((xx .neqv. yy) .or. (xy .and. .not. xx)) then
          call refuse(error, sheet, i, merge("permeability_yy", "permeability_xx", xx), &
                      "is missing but must be given with the other components of the tensor")
@@ -72,13 +72,13 @@ contains
       associate (m => material)
          if (.not. abs(m%permeability_xy) < sqrt(m%permeability_xx)*sqrt(m%permeability_yy)) then
             call refuse(error, sheet, i, "permeability_xy", "is "//real_text(m%permeability_xy)// &
-                        " but must be smaller than sqrt(permeability_xx permeability_yy), for "// &
-                        "the tensor must be positive definite")
+                        " but must be smaller than sqrt(permeability_xx permeability_yy), "// &
+                        "since the tensor must be positive definite")
          else if (anisotropy(m) > most_anisotropic*(1.0_rk + 1.0e-9_rk)) then
-            call refuse(error, sheet, i, "permeability_xx", "and its companions make the rock "// &
-                        rounded_text(anisotropy(m))//" times more permeable one way than "// &
-                        "across it, but the fluxes between cells hold for a ratio of at most "// &
-                        rounded_text(most_anisotropic))
+            call refuse(error, sheet, i, "permeability_xx", "and the other components make "// &
+             "the rock "//rounded_text(anisotropy(m))//" times more permeable in one direction "// &
+                        "than across it, but the flux approximation is valid for a ratio of "// &
+                        "at most "//rounded_text(most_anisotropic))
          end if
       end associate
    end subroutine check_tensor

@@ -1,4 +1,4 @@
-!> Checks regions: what their shape needs, outlines that are simple, parts of the body within them.
+!> Checks regions: the names that their shape requires, simple outlines, overlap with the body.
 module scene_check_regions
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -41,9 +41,9 @@ contains
          if (groups(sheet%records(i)%group)%name /= "region") cycle
          shape = sheet%records(i)%value("shape")
          if (.not. any([(sheet%records(i)%is_given(trim(of_rock(k))), k=1, size(of_rock))])) then
-            call refuse(error, sheet, i, "name", "is given, but the region has no rock of its "// &
-                        "own: it must give at least one of young, poisson, biot, porosity, "// &
-                        "permeability, density, toughness")
+            call refuse(error, sheet, i, "name", "is given, but the region has no rock "// &
+                        "properties: it must have at least one of young, poisson, biot, "// &
+                        "porosity, permeability, density, toughness")
             return
          end if
          do axis = 1, 2
@@ -304,8 +304,8 @@ contains
          end if
          area = polygon_area(body_part(region, body))
          if (.not. area > same_place*(body%x_max - body%x_min)*(body%y_max - body%y_min)) then
-            call refuse(error, sheet, record, name, "and the rest "//whose//"give a region "// &
-                        "without any part of the body but must give one that holds some of it")
+            call refuse(error, sheet, record, name, "and the rest "//whose//"define a region "// &
+                        "outside the body, but it must contain a part of the body")
          end if
       end associate
    end subroutine check_outline

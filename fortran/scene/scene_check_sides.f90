@@ -1,7 +1,7 @@
-!> Checks the sides of the body: which they are, and what is prescribed on each.
+!> Checks the sides of the body: their names, and the conditions prescribed on each.
 !!
-!! What the faces of a fracture do must agree: closure with the aperture, the parts of a bond with
-!! each other and with friction, its toughness with that of the rock.
+!! Properties of the faces of a fracture must be consistent: closure with the aperture, the parts of
+!! a bond with each other and with friction, its toughness with that of the rock.
 module scene_check_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
@@ -90,19 +90,19 @@ contains
          do axis = 1, 2
             if (record%is_given(axes(axis)//"_displacement") .and. &
                 record%is_given(axes(axis)//"_traction")) then
-               call refuse(error, sheet, i, axes(axis)//"_traction", "is given beside "// &
-                           axes(axis)//"_displacement but only one of them can be prescribed")
+               call refuse(error, sheet, i, axes(axis)//"_traction", "is given with "// &
+                           axes(axis)//"_displacement, but only one of them can be prescribed")
                return
             else if (record%is_given(axes(axis)//"_displacement") .and. &
                      record%is_given(axes(axis)//"_spring")) then
-               call refuse(error, sheet, i, axes(axis)//"_spring", "is given beside "// &
-                           axes(axis)//"_displacement but a side that is displaced as "// &
-                           "prescribed must not stand on springs")
+               call refuse(error, sheet, i, axes(axis)//"_spring", "is given with "// &
+                           axes(axis)//"_displacement, but a side with a prescribed "// &
+                           "displacement must not have a spring in the same direction")
                return
             end if
          end do
          if (record%is_given("inflow") .and. record%is_given("pressure")) then
-            call refuse(error, sheet, i, "inflow", "is given beside pressure but only one of "// &
+            call refuse(error, sheet, i, "inflow", "is given with pressure, but only one of "// &
                         "them can be prescribed")
             return
          end if
@@ -111,8 +111,8 @@ contains
          do k = 1, size(by_axis)
             if (.not. record%is_given(trim(by_axis(k)))) cycle
             call refuse(error, sheet, i, given_of(record, "normal_traction", "shear_traction"), &
-                        "is given beside "//trim(by_axis(k))//" but a side has either "// &
-                        "tractions along and across it, or values in x and y")
+                        "is given with "//trim(by_axis(k))//", but a side has either normal "// &
+                        "and shear tractions, or values in x and y")
             return
          end do
       end associate
@@ -155,9 +155,9 @@ contains
          call refuse(error, sheet, i, "time", "is given, but no value of the side changes with "// &
                      "it; one must have "//integer_text(max(n, 2_ik))//" values, one per time")
       else if (wrong > 0) then
-         call refuse(error, sheet, i, "time", "goes back from "// &
+         call refuse(error, sheet, i, "time", "decreases from "// &
                      real_text(time%reals(wrong - 1))//" to "//real_text(time%reals(wrong))// &
-                     ", but must rise")
+                     ", but must increase")
       else
          do k = 3, n
             if (time%reals(k) > time%reals(k - 2)) cycle
@@ -261,12 +261,13 @@ contains
                      "law 'open' do not touch; give 'friction' or 'frictionless'")
       else if (fracture%held_closed) then
          call refuse(error, sheet, record, "normal_stiffness", "is given, but faces that are "// &
-                     "held closed, held_closed = .true., cannot close further; leave one out")
+                     "held closed, held_closed = .true., cannot close further; omit one of "// &
+                     "them")
       else if (has_fluid .and. fracture%closure > largest_closure*fracture%aperture) then
          call refuse(error, sheet, record, "closure", "is "//real_text(fracture%closure)// &
                      " m but must be at most "//real_text(largest_closure)//" of the "// &
                      "aperture, "//rounded_text(largest_closure*fracture%aperture)// &
-                     " m, for some of it stays open under any stress")
+                     " m, since a part of it remains open under any stress")
       end if
    end subroutine check_closure
 
@@ -290,8 +291,8 @@ contains
                      rounded_text(fracture%cohesion/fracture%friction)//" Pa, where the "// &
                      "shear strength is none")
       else if (fracture%cohesion > 0.0_rk .and. fracture%held_closed) then
-         call refuse(error, sheet, record, "cohesion", "is given, but a bond of faces that are "// &
-                     "held closed, held_closed = .true., never breaks; leave one out")
+         call refuse(error, sheet, record, "cohesion", "is given, but a bond of faces that "// &
+                     "are held closed, held_closed = .true., never breaks; omit one of them")
       end if
    end subroutine check_bond
 

@@ -1,6 +1,6 @@
-!> Carries values between a sheet, which is what a file says, and a scene, which the program uses.
-!>
-!> One list serves both directions, so that what is read and what is written cannot drift apart.
+!> Transfers values between a sheet, the contents of a file, and a scene, which the program uses.
+!!
+!! One list serves both directions, so that reading and writing are always consistent.
 module scene_exchange
    use base_kinds, only: ik, radians, rk
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &

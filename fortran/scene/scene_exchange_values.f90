@@ -1,9 +1,11 @@
-!> Carries single values between a group of a sheet and the components of a scene, either way.
+!> Transfers single values between a group of a sheet and the components of a scene, in both
+!! directions.
 !!
-!! Carries the rock, that of the whole body and that of regions, between the groups of a sheet and a
-!! scene, either way.
+!! Transfers the rock, of the whole body and of regions, between the groups of a sheet and a scene,
+!! in both directions.
 !!
-!! Carries what holds and loads a body between the groups of a sheet and a scene, either way.
+!! Transfers supports and loads of a body between the groups of a sheet and a scene, in both
+!! directions.
 module scene_exchange_values
    use base_kinds, only: ik, lk, radians, rk
    use scene_sheet, only: parameter_index, record_t

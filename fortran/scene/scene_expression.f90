@@ -1,7 +1,7 @@
-!> Named values of a scene file, and plain arithmetic with them: numbers, names, + - * / ^ and
-!! brackets. A name must be defined before it is used, so that none can depend on itself.
+!> Named values of a scene file, and simple arithmetic with them: numbers, names, + - * / ^ and
+!! brackets. A name must be defined before it is used, so no name can depend on itself.
 !!
-!! Cuts the text of a scene file into tokens that know their line.
+!! Divides the text of a scene file into tokens with their lines.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.
@@ -76,7 +76,7 @@ contains
       reading%text = lower_case(expression)//" "
       call read_sum(reading, constants, value)
       if (.not. allocated(reading%fault) .and. next(reading) /= " ") then
-         reading%fault = "'"//next(reading)//"' stands where an operator or the end must stand"
+         reading%fault = "'"//next(reading)//"' stands where an operator or the end is expected"
       end if
       if (.not. allocated(reading%fault) .and. .not. ieee_is_finite(value)) then
          reading%fault = "the result is no finite number"
@@ -209,9 +209,9 @@ contains
       case ("a":"z")
          call read_name(reading, constants, value)
       case (" ")
-         reading%fault = "it ends where a number or a name must stand"
+         reading%fault = "it ends where a number or a name is expected"
       case default
-         reading%fault = "'"//next(reading)//"' stands where a number or a name must stand"
+         reading%fault = "'"//next(reading)//"' stands where a number or a name is expected"
       end select
    end subroutine read_operand
 
@@ -314,7 +314,7 @@ contains
             if (last < position) then
                fault = "a character with code "//integer_text(ichar(source(position:position), &
                                                                     ik))// &
-                       " stands outside of quotes and comments, where only plain text may stand"
+                       " is outside of quotes and comments, where only plain text is allowed"
                exit
             end if
             call append(tokens, token_t(token_word, position, last, line))

@@ -1,15 +1,17 @@
 !> Density and viscosity of the fluid in fractures as functions of its pressure.
 !!
-!! Between pressures where pieces meet, the logarithms of both are linear: an exponential law is one
-!! piece, a table for each two of its pressures; beyond the last ones both are constant. With
+!! Both are piecewise: between the pressures of adjacent points the logarithms of both are linear.
+!! An exponential law is one such interval, a table has one for each two of its pressures; outside
+!! of them both are constant. With
 !!   r = rho/rho_0,   rho_0 and mu_0 at the reference pressure p_0
-!! a fracture takes up rho_0 a r of mass per length, and conducts, by the cubic law,
+!! a fracture contains the mass rho_0 a r per length, and conducts, by the cubic law,
 !!   rho_0 a^3/12 (r/mu) dp/ds = rho_0 a^3/(12 mu_0) dm/ds,
 !!   m(p) = integral from p_0 of mu_0 r/mu dp,
 !! so that between two places of one aperture the flow follows exactly from the difference of the
-!! potential m (Kirchhoff's transformation), which rises with p whatever the law: without one m = p.
+!! potential m (Kirchhoff's transformation), which increases with p for every law: without one m =
+!! p.
 !!
-!! How much fluid the rock of a scene stores, and what pressure a load makes in it at once.
+!! The storage of the rock of a scene, and its undrained pressure under a load.
 module scene_fluid_law
    use base_kinds, only: ik, rk
    use scene_types, only: fluid_t, material_t

@@ -1,7 +1,7 @@
 !> Reading of a scene file.
 !!
-!! Defaults that follow from other values: resolved here and nowhere else, so that scene.nml shows
-!! the numbers used.
+!! Defaults that depend on other values: resolved only here, so that scene.nml shows the numbers
+!! used.
 module scene_namelist
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

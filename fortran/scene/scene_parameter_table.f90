@@ -1,14 +1,14 @@
-!> What the table of a scene file is made of: groups and the names within them.
+!> The elements of the table of a scene file: groups and the names within them.
 !!
-!! What a scene file can say of the body and what holds and loads it.
+!! Parameters of the body, its supports and its loads.
 !!
-!! What a scene file can say of rock and fluid.
+!! Parameters of rock and fluid.
 !!
-!! What a scene file can say of fractures.
+!! Parameters of fractures.
 !!
-!! What a scene file can say of wells, what was before, time and loads.
+!! Parameters of wells, initial state, time and loads.
 !!
-!! What a scene file can say of meshes, growth and output.
+!! Parameters of meshes, growth and output.
 module scene_parameter_table
    use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
                           exponent_range, interval_t, newton_range, passes_range, poisson_range, &

@@ -1,6 +1,6 @@
-!> Reads a scene file into a sheet: syntax, names, kinds and ranges are checked here, one by one.
+!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one.
 !!
-!! Named values: what &define groups give, and expressions of them in the place of numbers.
+!! Named values: those of &define groups, and expressions with them in the place of numbers.
 module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -115,7 +115,7 @@ contains
       do k = 1, size(chain)
          if (chain(k)%text /= sheet%path) cycle
          call raise_error(error, "", here//":"//integer_text(line)//": include "//quoted// &
-                          " goes round in a circle: that file includes this one")
+                          " is circular: that file includes this one")
          return
       end do
       if (size(chain) > most_nested) then
@@ -157,8 +157,8 @@ contains
          end if
          associate (token => tokens%items(next))
             if (token%kind /= token_group) then
-               call raise_error(error, "", place(sheet, token%line)//"text stands outside of "// &
-                                "a group, where only comments may stand")
+               call raise_error(error, "", place(sheet, token%line)//"text outside of a "// &
+                                "group, where only comments are allowed")
                return
             end if
             if (lower_case(source(token%first:token%last)) == "define") then
@@ -214,7 +214,7 @@ contains
             else if (.not. begins_value(items(next)%kind, items(next + 1)%kind)) then
                call raise_error(error, "", place(sheet, items(next)%line)//"&"// &
                                 trim(groups(record%group)%name)//": '"//shortened(word)// &
-                                "' stands where 'name = value' or the closing '/' must stand")
+                                "' stands where 'name = value' or the closing '/' is expected")
                return
             end if
             item = parameter_index(record%group, lower_case(word))
@@ -521,8 +521,8 @@ contains
          if (any(tokens%items(next)%kind == [token_end, token_group])) then
             fault = "is not ended by '/' as it must be"
          else if (.not. begins_value(tokens%items(next)%kind, tokens%items(next + 1)%kind)) then
-          fault = "'"//shortened(name)//"' stands where 'name = value' or the closing '/' must "// &
-                    "stand"
+            fault = "'"//shortened(name)//"' stands where 'name = value' or the closing '/' is "// &
+                    "expected"
          else if (.not. is_constant_name(name)) then
             fault = "'"//shortened(name)//"' is no name, which has letters, digits and '_', at "// &
                     "most 64, and begins with a letter"

@@ -1,16 +1,16 @@
-!> What a scene says that can be simulated but is hardly meant: values out of the usual range, as
-!> wrong units give, and values that do not go together. These are warnings; what cannot be
-!> simulated is refused (scene_check).
+!> Warnings for scenes that can be simulated but are probably not intended: values out of the usual
+!! range, as wrong units give, and values that are inconsistent. Scenes that cannot be simulated are
+!! refused (scene_check).
 !!
-!! What decides about the growth of a fracture that a well feeds: the toughness of the rock or the
-!! viscosity of the fluid.
+!! The regime of growth of a fracture that a well supplies: dominated by the toughness of the rock
+!! or by the viscosity of the fluid.
 !!
-!! In plane strain, at a constant rate Q and without leak-off, that is the dimensionless toughness
-!! K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu
-!! (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
+!! In plane strain, at a constant rate Q and without leak-off, it is given by the dimensionless
+!! toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12
+!! mu (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
 !!
-!! Ends of fractures that almost touch another fracture or a side of the body, or that lie just past
-!! one that they cross: hardly meant, where fractures grow.
+!! Ends of fractures that almost touch another fracture or a side of the body, or that lie just
+!! beyond a fracture that they cross: probably not intended where fractures grow.
 module scene_plausible
    use base_kinds, only: degrees, ik, pi, rk
    use base_plane, only: meeting, nearest_share, point_distance, polygon_area
@@ -423,11 +423,11 @@ contains
       character(len=:), allocatable :: words
 
       if (dimensionless_toughness > 3.99_rk) then
-         words = "toughness decides about growth"
+         words = "toughness-dominated growth"
       else if (dimensionless_toughness > 1.01_rk) then
-         words = "toughness and viscosity decide about growth"
+         words = "growth depends on toughness and viscosity"
       else
-         words = "viscosity decides about growth"
+         words = "viscosity-dominated growth"
       end if
    end function regime_words
 

@@ -1,10 +1,10 @@
-!> The outlines of regions as polygons, whatever the scene gives them by.
+!> The outlines of regions as polygons, for all shapes of a scene.
 !!
-!! A half-plane and a region bounded by parabolas end some way outside of the body; a parabola is a
-!! polyline of short pieces, off by less than 1e-5 of the body's height for a curvature of one over
-!! that height.
+!! A half-plane and a region bounded by parabolas end at a distance outside of the body; a parabola
+!! is a polyline of short segments, with an error below 1e-5 of the body's height for a curvature of
+!! one over that height.
 !!
-!! Which rock is where: the regions of a scene by place.
+!! The rock at each place: the regions of a scene by place.
 module scene_region_outline
    use base_kinds, only: ik, rk
    use base_plane, only: left_part, point_distance, polygon_area, triangle_area

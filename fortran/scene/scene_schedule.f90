@@ -1,17 +1,17 @@
-!> Tables in CSV files that stand for lists of a scene file: the stages of a well, the course of a
-!! side.
+!> Tables in CSV files that replace lists of a scene file: the stages of a well, the time-dependent
+!! values of a side.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
 !! `pressure_pa`; times may be in min, h or d, pressures and tractions in kPa, MPa or bar instead.
-!! Columns are parted by commas, semicolons or tabs, whichever the first row has; where it is not
-!! commas, numbers may have a decimal comma, as spreadsheets write them in many countries. Rows that
-!! begin with # are comments. What a table says becomes values of the group, so that all that
-!! follows, scene.nml as well, knows of lists alone.
+!! Columns are separated by commas, semicolons or tabs, as in the first row; unless they are
+!! separated by commas, numbers may have a decimal comma, as spreadsheets write them in many
+!! countries. Rows that begin with # are comments. The values of a table become values of the group,
+!! so that all later steps, including scene.nml, use lists alone.
 !!
-!! The bytes of files that a scene names, or is.
+!! The bytes of a scene file and of files that it names.
 !!
-!! A scene may come from anybody, and names any file of this machine. So nothing that a file holds
-!! goes into a message before the file has the form of a scene or of its table.
+!! A scene may have any author, and may name any file of this machine. So no contents of a file are
+!! quoted in a message before the file has the form of a scene or of its table.
 module scene_schedule
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
@@ -79,8 +79,8 @@ contains
       do k = 1, size(names)
          if (parameter_index(sheet%records(record)%group, trim(names(k))) == 0) cycle
          if (.not. sheet%records(record)%is_given(trim(names(k)))) cycle
-         call refuse(error, sheet, record, trim(names(k)), "is given beside schedule, whose "// &
-                     "table says it, but must be given once")
+         call refuse(error, sheet, record, trim(names(k)), "is given with schedule, whose "// &
+                     "table contains it, but must be given once")
          return
       end do
    end subroutine refuse_both
@@ -156,8 +156,8 @@ contains
 
       reason = "the row has "//integer_text(int(n, ik))//" values but must have "// &
                integer_text(int(wanted, ik))//", one per column"
-      if (mark == "," .and. n > wanted) reason = reason//"; where numbers have a decimal "// &
-                                                 "comma, semicolons or tabs must part the columns"
+      if (mark == "," .and. n > wanted) reason = reason//"; with decimal commas, columns must "// &
+                                                 "be separated by semicolons or tabs"
    end function wrong_count
 
    !> The rows of a file, without line ends.

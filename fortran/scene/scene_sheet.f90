@@ -1,4 +1,4 @@
-!> A scene file as it stands: its groups in order, each with its values and lines.
+!> The contents of a scene file: its groups in order, each with its values and lines.
 module scene_sheet
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk

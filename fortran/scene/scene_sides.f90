@@ -1,4 +1,4 @@
-!> What a scene prescribes on the sides of the body, at one time or in the course of time.
+!> Conditions that a scene prescribes on the sides of the body, at one time or as functions of time.
 module scene_sides
    use base_kinds, only: ik, rk
    implicit none(type, external)

@@ -1,4 +1,4 @@
-!> What a scene is: the problem as the user states it, in SI units, after reading and checking.
+!> A scene: the problem as the user states it, in SI units, after reading and checking.
 module scene_types
    use base_kinds, only: ik, rk
    use scene_sides, only: boundary_side_t

@@ -1,4 +1,4 @@
-!> Turns the tokens behind `name =` into a value of the right kind and range.
+!> Converts the tokens after `name =` into a value of the required kind and range.
 module scene_values
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
@@ -148,8 +148,7 @@ contains
          good = .not. is_text
          if (good) call read_real(word, number, good)
          if (good .and. .not. abs(number) < huge(number)) then
-            reason = "is "//shortened(word)//" but must be a smaller number: the largest one "// &
-                     "there is means 'unlimited', which is said by leaving the name out"
+            reason = "is "//shortened(word)//", which is too large; omit the name for 'unlimited'"
             return
          end if
          if (good) good = holds(parameter%range, number)

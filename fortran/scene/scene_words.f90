@@ -1,7 +1,7 @@
-!> Small operations on words: case, likeness, and numbers as people write them in scene files, which
-!> read back exactly.
+!> Small operations on words: case, similarity, and numbers in the form of scene files, which are
+!! read back exactly.
 !!
-!! Ranges of allowed values, and how to say them in words.
+!! Ranges of allowed values, and their description in words.
 module scene_words
    use base_kinds, only: ik, rk
    use base_number, only: decimal_digits, integer_text, most_digits

@@ -1,4 +1,4 @@
-!> Writing of a scene as understood, every default written out.
+!> Writes a scene with all defaults.
 module scene_write
    use base_kinds, only: ik
    use base_number, only: integer_text
@@ -26,9 +26,8 @@ contains
       call scene_to_sheet(scene, sheet)
       allocate (character(len=4096) :: text)
       length = 0
-      call put("! The scene as understood, every default written out: running it again gives "// &
-               "the same run.")
-      call put("! SI units; docs/input.md tells what each name means.")
+      call put("! The scene with all defaults; it reproduces the run.")
+      call put("! SI units; docs/input.md describes each name.")
       do i = 1, sheet%length
          call put("")
          call put("&"//trim(groups(sheet%records(i)%group)%name))

@@ -1,18 +1,18 @@
-!> How well the length of the fractures and the pressure at the wells are known while tips grow in
-!! equilibrium.
+!> Errors of fracture length and well pressure while tips grow in equilibrium.
 !!
-!! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid that it holds: where
-!! K_eq may be off by a share e of K_IC, a tip may be off by e over the slope of K_eq/K_IC along
-!! its path, and the pressure by what it changes with the length. Both slopes are those of the tries
-!! of a step, at the fluid of this step. Errors do not add up from step to step, for each state is
-!! in equilibrium by itself. Before growth the errors of the steps in time add up, with their signs.
+!! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid volume in the crack.
+!! If K_eq has an error e K_IC, the error of the tip position is e divided by the slope of K_eq/K_IC
+!! along the path. The pressure error follows from the derivative of the pressure with respect to
+!! the length. Both slopes are those of the tries of a step, at the fluid volume of this step. These
+!! errors do not accumulate, since each state is in equilibrium. Before growth the time errors of
+!! the steps accumulate with their signs.
 !!
-!! To that comes what the coarse cells leave: at each tip a crack opens, slips and leaks as if it
-!! were longer or shorter by a tenth of its cell at most (coarse_tips: 0.05 in each). Fluid that
-!! leaks off along a length that is wrong by some share makes the pressure wrong by the same share
-!! of what it has risen; and where all of it leaks off, a crack in equilibrium grows until its true
-!! length takes the fluid, so its tips are off by as much once more. Layers of viscous flow at a
-!! tip, which need finer cells, are not in it.
+!! The error of the coarse cells is added: at each tip a crack opens, slips and leaks as if it were
+!! longer or shorter by at most a tenth of its cell (coarse_tips: 0.05 in each). A relative error of
+!! the length along which fluid leaks off causes the same relative error of the pressure rise. Where
+!! all fluid leaks off, a crack in equilibrium grows until its true length takes the fluid, so the
+!! tip positions have the same error again. Layers of viscous flow at a tip need finer cells; their
+!! error is not included.
 module twolevel_certainty
    use base_kinds, only: rk
    use twolevel_course, only: course_t

@@ -1,7 +1,7 @@
-!> The coarse level as if it agreed with the windows: a defect correction (Hackbusch 1984).
+!> Correction of the coarse level by the windows: a defect correction (Hackbusch 1984).
 !!
-!! Inside the windows, on the fractures and in the rock, these know better than the coarse level,
-!! which gets what they found, all windows at once. This costs one substitution in its factors.
+!! Windows are more accurate than the coarse level, on the fractures and in the rock. The coarse
+!! level takes the results of all windows at once. This costs one substitution in the factors.
 module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

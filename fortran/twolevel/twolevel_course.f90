@@ -1,5 +1,5 @@
-!> A number followed through the steps, and what they have made of it: each of them errs as
-!! twolevel_trend tells, and where errors add up they do so with their signs.
+!> Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
+!! their signs.
 module twolevel_course
    use base_kinds, only: rk
    implicit none(type, external)

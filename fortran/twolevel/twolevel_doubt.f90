@@ -1,10 +1,10 @@
-!> A tip whose intensities are not known does not grow on them: its window is improved first, and
-!! where that does not help the run stops.
+!> Tips whose intensities have too large an error estimate: the window is improved first, and if
+!! that does not reduce the error enough, the run stops.
 !!
-!! Which part of the stated error is the larger one decides how: the window's own asks for smaller
-!! elements, the coarse level's, which comes in over the edge, for an edge farther away, and in the
-!! end for none: the body, which tips share. A window stays as good as it was made, and goes along
-!! with its tip.
+!! The larger part of the error estimate determines the improvement. The error of the window
+!! requires smaller elements. The error of the coarse level, which enters over the edge, requires a
+!! larger window, and finally the body as one window for all tips. A window keeps its improved size
+!! and elements, and moves with its tip.
 module twolevel_doubt
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

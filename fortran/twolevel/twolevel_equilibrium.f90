@@ -1,12 +1,12 @@
 !> Growth as equilibrium (model.md section 5): at the end of a time step each tip has either not
 !! advanced and K_eq <= K_IC, or advanced so far that K_eq = K_IC.
 !!
-!! Within a step the coarse level is solved from the state before with the tips where they are
-!! tried to be, the windows give the intensities there, and each tip goes on until its excess
-!! vanishes. A tip lies anywhere along the last straight piece of its path: the coarse mesh has a
-!! cell for all of that piece, and its springs say how much of it is behind the tip (coarse_tips);
-!! so the coarse mesh changes once per piece, and neither its matrix nor the fluid's volume jumps.
-!! A piece begins in the direction in which K_II vanishes at its end (growth_tip).
+!! Within a step the coarse level is solved from the state before, with the tips at trial positions.
+!! The windows give the intensities there, and each tip advances until its excess vanishes. A tip
+!! lies anywhere along the last straight segment of its path. The coarse mesh has a cell for the
+!! whole segment, and tip springs represent the part of the segment behind the tip (coarse_tips).
+!! The coarse mesh therefore changes once per segment, and neither its matrix nor the fluid volume
+!! jumps. A segment begins in the direction in which K_II vanishes at its end (growth_tip).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

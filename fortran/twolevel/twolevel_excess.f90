@@ -1,5 +1,5 @@
-!> How far tips are beyond their toughness in a tried step, and after which share of it they have
-!! come to it, or to what lies before them.
+!> By how much tips exceed their toughness in a tried step, and the share of the step after which
+!! they reach it, or reach a target ahead of them.
 module twolevel_excess
    use base_kinds, only: ik, rk
    use growth_segment, only: segment_t

@@ -1,12 +1,12 @@
-!> Fracture faces of a window as the coarse level has them: their condition, their load, and what
-!! they have slipped before.
+!> Fracture faces of a window: their condition, their load, and their history of slip, from the
+!! coarse level.
 !!
 !! The condition is one of
-!!   "contact"   the law of contact, which the window solves with the coarse level's fluid pressure
+!!   "contact"   the contact law, which the window solves with the coarse level's fluid pressure
 !!               and history of slip, on old and on new faces;
 !!   "jump"      the coarse jump (Paper C);
 !!   "traction"  the coarse contact traction.
-!! With the last two, for comparison only, faces that the coarse level does not know are open.
+!! With the last two, for comparison only, faces without coarse cells are open.
 module twolevel_faces
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t

@@ -1,5 +1,5 @@
-!> What the coarse level learns of growth: each tip's as one straight segment, once it is as long as
-!! the coarse mesh can hold.
+!> Growth passed to the coarse level: one straight segment per tip, once the segment is long enough
+!! for a cell of the coarse mesh.
 module twolevel_handover
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value

@@ -1,5 +1,5 @@
-!> The state of both levels: all that a step changes, in plain values that are copied and compared
-!! as they are. Scene, meshes, models with their factors, and windows stand beside it.
+!> The state of both levels: all quantities that a step changes, as plain values that are copied and
+!! compared. Scene, meshes, models with their factors, and windows are separate.
 module twolevel_levels_state
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, rk

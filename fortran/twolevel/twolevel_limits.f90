@@ -1,4 +1,4 @@
-!> What the limits of a run watch in a scene with a fluid (simulation_limits).
+!> Quantities that the limits of a run check in a scene with a fluid.
 module twolevel_limits
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk

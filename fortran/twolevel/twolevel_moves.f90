@@ -1,5 +1,5 @@
-!> Where tips go from one try of a step to the next: alone, with those of their kind, or all as they
-!! have to together.
+!> Changes of the tip positions from one try of a step to the next: of single tips, of tip groups,
+!! or of all tips together.
 module twolevel_moves
    use base_kinds, only: ik, rk
    use growth_advances, only: advances_t

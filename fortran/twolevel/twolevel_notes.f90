@@ -1,5 +1,5 @@
-!> What is noted of tips that grow in equilibrium: when each begins, which exceed their toughness
-!! from the start, how well lengths and pressures are known, and where tips compete.
+!> Event log of tips that grow in equilibrium: onset of growth, tips above their toughness at the
+!! start, errors of length and pressure, and competition of tips.
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
@@ -60,7 +60,7 @@ contains
                error = approach%uncertainty(tolerance*toughness)
                onset = approach%onset_before(time, toughness)
                how_well = "known to "//brief_text(error, 3)//" s"
-               if (.not. error < huge(1.0_rk)) how_well = "K_eq was not rising: not known when"
+               if (.not. error < huge(1.0_rk)) how_well = "K_eq was not increasing: time unknown"
                call chronicle%add_event(onset, event_growth_onset, how_well, tip%fracture, &
                                         tip%origin)
             else
@@ -110,8 +110,8 @@ contains
       is_bifurcation = lead > could_part
       if (is_bifurcation .and. .not. self%was_bifurcation) then
          call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &
-                                  " tips grow; a lead of one increment is worth "// &
-                                  brief_text(100.0_rk*lead, 3)//" % of K")
+                                  " tips grow; a lead of one increment changes K_eq by "// &
+                                  brief_text(100.0_rk*lead, 3)//" %")
       end if
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition

@@ -1,5 +1,5 @@
-!> A tip on its way to the toughness: how fast its intensity rises, and so how well the time is
-!! known at which it begins to grow.
+!> A tip before its onset of growth: the rate of its intensity, and the error of the onset time that
+!! follows from the rate.
 module twolevel_onset
    use base_kinds, only: rk
    use twolevel_course, only: course_t

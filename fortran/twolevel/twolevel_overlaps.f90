@@ -1,5 +1,5 @@
-!> Which fracture cells of a coarse mesh take the place of which of the one before. A joint divides
-!! a cell, or moves a node between two of them; all others stay as they are.
+!> Fracture cells of a coarse mesh that replace cells of the mesh before. A joint divides a cell, or
+!! moves a node between two cells; all other cells are unchanged.
 module twolevel_overlaps
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place

@@ -1,15 +1,15 @@
-!> The straight pieces that the paths of tips consist of: how new ones begin, and how the last ones
-!! end.
+!> Straight path segments of tips: how new segments begin, and how the last ones end.
 !!
-!! A piece whose way comes to a fracture or to a side of the body ends on it. The coarse mesh has
-!! the joint from then on, but the crack ends at its tip, wherever that is (coarse_tips), and
-!! nothing flows to the joint. A tip has no intensities at the joint itself: a small rest of the
-!! piece, which shrinks with the increments, is left. Where K_eq exceeds the toughness there still,
-!! the rest fails: the crack joins what it has come to, at once, and fluid flows there. So a joint
-!! is made where and when the rock in between has failed, wherever the nodes of the mesh are.
+!! A segment that reaches a fracture or a side of the body ends on it. The coarse mesh contains the
+!! joint from then on, but the crack ends at its tip, anywhere on the segment (coarse_tips), and no
+!! fluid flows to the joint. A tip has no intensities at the joint itself, so a small ligament
+!! remains at the end of the segment; its length decreases with the increments. If K_eq still
+!! exceeds the toughness there, the ligament breaks: the crack joins the fracture or side at once,
+!! and fluid flows to the joint. The place and time of a joint are therefore those at which the rock
+!! in between breaks, independent of the nodes of the mesh.
 !!
-!! A piece that would be no longer than such a rest is nothing but that: the tip stays where it is,
-!! and joins what lies so near ahead of it once it exceeds its toughness.
+!! A segment that would not be longer than such a ligament consists of the ligament alone: the tip
+!! stays, and joins the target once K_eq exceeds the toughness.
 module twolevel_pieces
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

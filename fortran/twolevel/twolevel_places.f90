@@ -1,7 +1,7 @@
-!> Where tips are along the last pieces of their paths, on both levels.
+!> Positions of tips along the last segments of their paths, on both levels.
 !!
-!! The last cell of a fracture ends with its last piece, at a joint if that ends on something. As
-!! long as its tip has not come to it, nothing flows there.
+!! The last cell of a fracture ends with its last segment, at a joint if the segment ends on a
+!! fracture or side. No fluid flows to the joint before the tip reaches it.
 module twolevel_places
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place

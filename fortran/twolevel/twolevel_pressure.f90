@@ -1,12 +1,12 @@
-!> Fluid pressure on the fracture faces of a window, from that of the coarse cells.
+!> Fluid pressure on the fracture faces of a window, from the pressure of the coarse cells.
 !!
-!! The coarse level knows the pressure at the middles of its cells; between them it is linear.
-!! Toward a tip that goes on, a fluid of viscosity mu follows at the tip's speed V through an
+!! The coarse level has the pressure at the middles of its cells; between them it is linear. Toward
+!! a tip that advances at the speed V, a fluid of viscosity mu follows at the same speed through an
 !! opening w that falls with the square root of the distance d: dp/dd = 12 mu V/w^2 goes with 1/d,
-!! so that the pressure is linear in ln d, from the last two middles on. So it is in cells that have
-!! grown; at the tips of others, and beyond the coarse fracture, it is that of the last cell. A face
-!! takes its mean with the weight 1/sqrt(d) with which it enters the stress intensity factor. Of the
-!! cell of the tip, only what is behind the tip counts.
+!! so that the pressure is linear in ln d, from the last two middles on. This holds in cells that
+!! have grown. At the tips of other cells, and beyond the coarse fracture, the pressure is that of
+!! the last cell. A face takes the mean pressure with the weight 1/sqrt(d) with which it enters the
+!! stress intensity factor. Of the cell of the tip, only the part behind the tip counts.
 module twolevel_pressure
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place

@@ -1,10 +1,10 @@
-!> How tips act on each other with a fluid: measured in a tried step by setting back one after the
-!! other, and learnt from the tries that follow.
+!> Interaction of tips with a fluid: measured in a tried step by setting back one tip after the
+!! other, and improved by Broyden updates in the tries that follow.
 !!
-!! The step begins from the state before again, so what is held is the fluid that the wells give in
-!! it. The coarse level keeps mesh and factors, for tips lie anywhere in their cells (coarse_tips):
-!! a tip costs one solution of it, two meshes of the windows that hold the tip, and one solution of
-!! each window.
+!! The step begins from the state before, so the fluid volume supplied by the wells is fixed. The
+!! coarse level keeps mesh and factors, since tips lie anywhere in their cells (coarse_tips). A tip
+!! costs one solution of the coarse level, two meshes of the windows that contain the tip, and one
+!! solution of each window.
 module twolevel_probe
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

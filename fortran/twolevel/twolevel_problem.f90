@@ -1,6 +1,6 @@
-!> The coarse level's equations on one mesh, which stand beside its state: mesh, model with its
-!! factors, and where its wells feed fractures and rock; the whole pressures of a state, of which
-!! that has what is beyond the state in situ.
+!> The equations of the coarse level on one mesh: mesh, model with its factors, and the cells of the
+!! wells in fractures and rock. Also the total pressures of a state, whose pressures are relative to
+!! the state in situ.
 module twolevel_problem
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -146,9 +146,8 @@ contains
                                    cell_area(self%mesh, rock%cell(k)), &
                                    self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
          if (.not. all(rock%index > 0.0_rk)) then
-           call raise_error(error, "", "a well in the rock, whose rate follows from pressures, "// &
-                             "lies in a cell that is not wider than it: give it a smaller "// &
-                             "radius, or larger cells")
+            call raise_error(error, "", "a well in the rock with a pressure control must be "// &
+                             "narrower than its cell: use a smaller radius or larger cells")
             return
          end if
          ! What is lost in the well is another resistance on the way.

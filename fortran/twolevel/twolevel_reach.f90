@@ -1,13 +1,13 @@
-!> What hangs together in a network of fractures: the graph of its cells, which meet in its points.
+!> Connected parts of a network of fractures: the graph of its cells, which meet in its points.
 !!
-!! How well a network is connected is told by the ends of the branches between its points. B
+!! The connectivity of a network follows from the ends of the branches between its points. B
 !! branches have N free ends and, over all points where d >= 3 of them meet, sum(d) connected ones:
 !! 2 B = N + sum(d). The mean number of connected ends of a branch,
 !!   C_B = sum(d)/B,
-!! goes from 0, fractures by themselves, to 2 (Sanderson and Nixon 2015, The use of topology in
-!! fracture network characterization, J. Struct. Geol. 72: C_B, there with d = 3 at Y and 4 at X).
+!! goes from 0, isolated fractures, to 2 (Sanderson and Nixon 2015, The use of topology in fracture
+!! network characterization, J. Struct. Geol. 72: C_B, there with d = 3 at Y and 4 at X).
 !!
-!! Parts of fractures, told by arc lengths: they stay what they are when the mesh changes.
+!! Parts of fractures are given by arc lengths, which do not depend on the mesh.
 module twolevel_reach
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> The state of both levels as files show it: its row of the history, fields, probes, unknowns.
+!> Output of the state of both levels: the row of the history, fields, probes, numbers of unknowns.
 module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

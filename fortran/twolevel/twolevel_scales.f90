@@ -1,4 +1,4 @@
-!> What size the results of a scene with a fluid can be expected to have.
+!> Expected magnitudes of the results of a scene with a fluid.
 module twolevel_scales
    use base_kinds, only: pi, rk
    use coarse_in_situ, only: find_in_situ, in_situ_state_t

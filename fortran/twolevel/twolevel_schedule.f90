@@ -1,5 +1,4 @@
-!> When what acts on the body changes otherwise than gradually, and how the sides follow their
-!! courses in time.
+!> Times at which loads and wells change abruptly, and the time-dependent values of the sides.
 module twolevel_schedule
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_time

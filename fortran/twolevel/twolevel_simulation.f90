@@ -1,4 +1,4 @@
-!> A scene with a fluid in progress: time steps, and growth of the tips in each of them.
+!> Simulation of a scene with a fluid: time steps, with growth of the tips in each step.
 module twolevel_simulation
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -83,7 +83,7 @@ contains
          call summary%note(scene%growth%intensities, "stress intensity factors", &
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
-         call summary%note(scene%output%vtu, "VTU files", "VTU files: not asked for")
+         call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
          call summary%note(self%problem%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
          call summary%note(self%problem%model%joints%n > 0, meeting, not_meeting)
@@ -187,10 +187,10 @@ contains
       self%report%mass_error = 0.0_rk
       call self%follow_trend(at_rest=.true.)
       if (self%report%converged) return
-      call raise_error(error, "", "the initial state was not found: "//self%report%reason// &
-                       "; fractures that nearly touch are the usual cause: move them apart, or "// &
-                       "make them one, or begin with &initial fracture_pressure = 'undrained'; "// &
-                       "so is friction above 1")
+      call raise_error(error, "", "no initial equilibrium was found: "//self%report%reason// &
+                       "; usual causes are fractures that nearly touch (separate or merge "// &
+                       "them, or use &initial fracture_pressure = 'undrained') and friction "// &
+                       "above 1")
    end subroutine find_initial_state
 
    !> What the wells have done.

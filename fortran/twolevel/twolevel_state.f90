@@ -1,5 +1,5 @@
-!> Both levels of a scene with a fluid at one time: their state, and beside it coarse mesh, model
-!! and windows; where a step begins, and where its tries are taken back.
+!> Both levels of a scene with a fluid at one time: their state, and separately coarse mesh, model
+!! and windows. A step begins from this state, and rejected tries restore it.
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

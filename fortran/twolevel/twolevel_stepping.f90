@@ -1,26 +1,27 @@
-!> The length of time steps. A step is tried; what it shows decides whether it is taken, is cut and
-!! tried again, and how long the next one is.
+!> The length of time steps. A step is tried; its result determines whether the step is accepted, or
+!! cut and tried again, and how long the next step is.
 !!
-!! A step is cut where its equations are not solved, where its error in time exceeds the tolerance,
-!! where tips would grow too far in it, and to where a tip begins to grow. With a tolerance steps
-!! are as long as that, and the growth of the tips, allow; without one they are the scene's.
-!! Lengths differ by factors of two where there is a choice: each costs a factorization.
+!! A step is cut if its equations are not solved, if its time error exceeds the tolerance, or if
+!! tips would grow too far. It is also cut to the time at which a tip begins to grow. With a
+!! tolerance, steps are as long as the tolerance and the growth of the tips allow; without one they
+!! are those of the scene. Lengths differ by factors of two where there is a choice, since each
+!! length costs a factorization.
 !!
-!! How fast tips grow is not known before a step that holds it: seconds per segment where the wells
-!! feed it, microseconds where fluid that was held back bursts in, none where growth is unstable. So
-!! each further cut of a step in which tips grow too far squares the share that is left of it: six
-!! cuts instead of thirty to the shortest one.
+!! The speed of growth is not known before a step that contains it: seconds per segment where the
+!! wells supply the fluid, microseconds where fluid that was held back flows in, none where growth
+!! is unstable. So each further cut of a step in which tips grow too far squares the remaining share
+!! of the step: six cuts instead of thirty lead to the shortest step.
 !!
-!! Where a tip begins to grow, or comes to a joint, is found by straight lines between the ends of
-!! the step. An intensity that is another one as soon as the step begins, however short that is,
-!! makes them lead to the same share time and again: after three such cuts of a step the share is
-!! squared with each of them, and the sixth leads to where it does not matter any more.
+!! The onset of growth of a tip, or its arrival at a joint, is found by linear interpolation between
+!! the ends of the step. An intensity that changes as soon as the step begins, however short the
+!! step is, leads to the same share repeatedly: after three such cuts of a step each cut squares the
+!! share, and the sixth leads to a negligible share.
 !!
-!! No step is cut to less than a 64th of the shortest one; there it is taken whatever its error in
-!! time. A run whose time makes no headway, as step after step is cut to next to that, ends.
+!! No step is cut to less than a 64th of the shortest step; a step of this length is accepted with
+!! any time error. A run ends if hundreds of steps in succession are cut to nearly this length.
 !!
-!! With growth by increments at the ends of steps (the thesis' law) steps are short after growth
-!! until the pressure at the new tips has settled.
+!! With growth by increments at the ends of steps (the law of the thesis) steps are short after
+!! growth until the pressure at the new tips has settled.
 module twolevel_stepping
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
@@ -314,11 +315,11 @@ contains
       else if (self%switch < 1.0_rk) then
          words = "a well reaches or leaves its limit in it"
       else if (self%is_late .and. self%gains_all) then
-         words = "a tip gains stop_gain in it"
+         words = "a tip reaches stop_gain in it"
       else if (self%is_late) then
-         words = "a tip comes to a joint in it"
+         words = "a tip reaches a joint in it"
       else
-         words = "its error in time is too large"
+         words = "its time error is too large"
       end if
    end function why_cut
 

@@ -1,5 +1,5 @@
-!> From one accepted state of both levels to the next: a time step is tried, cut as often as it
-!! takes, and accepted.
+!> From one accepted state of both levels to the next: a time step is tried, cut as often as
+!! necessary, and accepted.
 module twolevel_steps
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
@@ -60,8 +60,8 @@ contains
       real(rk) :: wanted
 
       if (self%stepper%is_stuck()) then
-        call raise_error(error, "", "time makes no headway: hundreds of steps had to be cut to "// &
-                          brief_text(self%dt, 4)//" s or so, the last because "//self%why_cut)
+         call raise_error(error, "", "no progress in time: hundreds of steps were cut to about "// &
+                          brief_text(self%dt, 4)//" s, the last because "//self%why_cut)
          return
       end if
       associate (time => self%now%coarse%time)

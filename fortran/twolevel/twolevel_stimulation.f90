@@ -1,13 +1,14 @@
-!> What an injection has made of the fractures: where its fluid is, which faces have moved since the
-!! start, and what hangs together with the wells.
+!> Effects of an injection on the fractures: the distribution of its fluid, the faces that have
+!! moved since the start, and the fractures connected with the wells.
 !!
-!! Faces are stimulated that have slipped or opened since the start by more than a length that the
-!! scene gives (`stimulated_jump`), at any time, and all that are new. Connected are the fractures
-!! that fluid reaches from the wells without leaving them: each conducts at least with its residual
-!! aperture, and a joint lets pass once the crack has come to it. Both are known to a cell.
+!! Faces are stimulated if they have slipped or opened since the start, at any time, by more than a
+!! length of the scene (`stimulated_jump`); new faces are always stimulated. Connected are the
+!! fractures that fluid reaches from the wells without leaving the fractures: each conducts at least
+!! with its residual aperture, and a joint conducts once the crack has reached it. Both are resolved
+!! to one cell.
 !!
-!! Injectivity is the rate of the wells over the rise of their mean pressure above that of the rock
-!! around them at the start, as the injectivity index of a well has it; per metre of thickness.
+!! Injectivity is the rate of the wells divided by the rise of their mean pressure above the initial
+!! pressure of the surrounding rock, as in the injectivity index of a well; per metre of thickness.
 module twolevel_stimulation
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t

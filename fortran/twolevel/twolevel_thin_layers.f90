@@ -1,11 +1,11 @@
-!> What layers of fluid pressure thinner than a coarse cell may change in the stress intensity
+!> Possible effect of layers of fluid pressure thinner than a coarse cell on the stress intensity
 !! factors.
 !!
-!! Windows take the rock's own pressure (coarse_own_pressure). Within sqrt(c t) of the faces it is
-!! that of the fluid, and where this is less than a cell two effects are missing, both known in
-!! closed form for a layer that is thin beside the fracture (docs/theory.md):
-!!   - the tip is drained where the rock around is not: K is (1 - nu_u)/(1 - nu) times that of
-!!     undrained rock, however thin the layer, and what the window finds lies between;
+!! Windows take the rock's own pressure (coarse_own_pressure). Within sqrt(c t) of the faces the
+!! pressure is that of the fluid. Where this distance is less than a cell two effects are missing,
+!! both known in closed form for a layer that is thin compared with the fracture (docs/theory.md):
+!!   - the tip is drained where the surrounding rock is not: K is (1 - nu_u)/(1 - nu) times that of
+!!     undrained rock, however thin the layer is, and the result of the window lies between;
 !!   - the layer presses the faces together. A difference dp between fluid and rock since the time t
 !!     lowers K_I by sqrt(2) eta/Gamma(5/4) dp (c t)^(1/4), eta = alpha G/(lambda + 2 G).
 module twolevel_thin_layers

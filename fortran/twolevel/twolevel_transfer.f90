@@ -1,11 +1,12 @@
-!> From the coarse mesh before growth to the one after it.
+!> Transfer from the coarse mesh before growth to the one after it.
 !!
-!! The fluid content of the rock is carried over by overlapping areas, so that no fluid is made or
-!! lost; old fracture cells keep their state as it is. Where a joint has divided cells or moved a
-!! node between two, jumps are those of the old cells there, linear along each, and the fluid is
-!! that of the parts. A new fracture cell is closed, without slip, at the pressure of the cell that
-!! it grew from. Its residual aperture is the roughness of its faces, which conducts fluid but holds
-!! none that is worth counting ("conserved"), or it is open and comes along filled ("prefilled").
+!! The fluid content of the rock is transferred by overlapping areas, which conserves the fluid. Old
+!! fracture cells keep their state. Where a joint has divided cells or moved a node between two
+!! cells, jumps are those of the old cells there, linear along each cell, and the fluid is that of
+!! the parts. A new fracture cell is closed, without slip, at the pressure of the cell that it grew
+!! from. Its residual aperture is the roughness of its faces, which conducts fluid but has a
+!! negligible volume ("conserved"), or it is open and filled with fluid from the start
+!! ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
    use coarse_layout, only: block_count, end_block

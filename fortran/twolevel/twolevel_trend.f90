@@ -1,11 +1,11 @@
-!> How fast a state changes, and the error that a time step makes.
+!> The rate of change of a state, and the error of a time step.
 !!
-!! Backward Euler with a step h is off by h**2/2 times the second derivative, which follows from
-!! the rate of the step and that of the one before, of length h_b: in each step the error is h/(h +
-!! h_b) (change - h (rate before)). Its mean over the rock, and over the fractures, is judged: of
-!! the pressure against the range that pressure has gone through so far, of slip and opening
-!! likewise. A mean, for each cell that a tip passes, or where contact changes, sees a jump however
-!! short the step is.
+!! Backward Euler with a step h has the error h**2/2 times the second derivative, which follows from
+!! the rate of the step and the rate of the step before, of length h_b: the error of each step is
+!! h/(h + h_b) (change - h (rate before)). Its mean over the rock, and over the fractures, is
+!! compared with the range of the quantity so far: of the pressure, and likewise of slip and
+!! opening. The mean is used because each cell that a tip passes, or where contact changes, has a
+!! jump however short the step is.
 module twolevel_trend
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t

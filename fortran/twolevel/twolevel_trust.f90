@@ -1,28 +1,29 @@
-!> How far the intensities of the windows can be trusted: the coarse level's part of their errors.
+!> Error estimates of the intensities of the windows: the contribution of the coarse level.
 !!
 !! A window takes the displacement on its edge and the rock's pressure from the coarse level.
-!!   - What the edge makes wrong shows beside the whole body as one window for all tips, which takes
-!!     nothing on its edge: the difference of K, and the error of K there, which is that of its
-!!     elements alone. So no factor of safety is needed. It costs about as much as the windows,
-!!     and is done anew once per piece of a path.
-!!   - The rock's pressure is linear in each cell. What K differs by with that of the cells' middles
-!!     counts by a quarter: slip presses and draws on the rock around a tip, and layers that are
-!!     thinner than a cell show there. At a fast well (C2 at 1e-6 m2/s, cells of 10 and 5 mm) the
-!!     errors are 0.4 and 0.1 times that.
+!!   - The error of the edge follows from a comparison with the whole body as one window for all
+!!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
+!!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
+!!     about as much as the windows, and is repeated once per path segment.
+!!   - The rock's pressure is linear in each cell. A quarter of the change of K with the pressures
+!!     of the cells' middles counts as error: slip changes the pressure of the rock around a tip,
+!!     and layers that are thinner than a cell appear there. At a fast well (C2 at 1e-6 m2/s, cells
+!!     of 10 and 5 mm) the errors are 0.4 and 0.1 times that change.
 !!
-!! The fine level's contact is solved as a full system, so a body with very many fracture cells is
-!! too much. There two other comparisons stand for the first:
-!!   - With the edge of a coarse level that has been told what the windows know
-!!     (twolevel_correction). What that changes in K counts as it is.
+!! The fine level's contact is solved as a full system, which is too large for a body with very many
+!! fracture cells. There two other comparisons replace the first:
+!!   - With the edge of a coarse level that is corrected by the windows (twolevel_correction). The
+!!     change of K counts in full.
 !!   - Between the coarse level's cells the displacement is interpolated so that quadratic fields
-!!     are exact (window_t%curved_edge). What K differs by with linear interpolation, one order
-!!     lower, counts by half.
+!!     are exact (window_t%curved_edge). Half of the change of K with linear interpolation, one
+!!     order lower, counts as error.
 !! Their safety factor is the smallest, in tenths, with which 95 % of the stated errors held in 62
 !! arrangements of one or two cracks and windows as large as these; in networks and smaller windows
 !! 54 to 62 % do (verification/windows_of_scenes).
 !!
-!! What passes by itself, and no window could mend, is no reason not to grow (report_watch): it
-!! is stated and warned of. What the coarse level gets wrong in the fractures' pressure is not seen.
+!! An error that no window can reduce and that decreases with time does not prevent growth
+!! (report_watch): it is stated, with a warning. Errors of the coarse level in the pressure of the
+!! fractures are not included.
 module twolevel_trust
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,5 +1,5 @@
-!> What is said of a step that is not solved: the reason, with the fracture and the place, and the
-!! well that has emptied it.
+!> The message of a step that is not solved: the reason, with the fracture and the place, and the
+!! well that has emptied the cell.
 module twolevel_unsolved
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
@@ -38,7 +38,7 @@ contains
          words = name//" has less fluid at "//place//" than flows out of it there"
       else
          words = name//" has less fluid at "//place//" than well '"//trim(wells(w)%name)// &
-                 "' draws: give the well a pressure as its limit, or a smaller rate"
+                 "' extracts: give the well a pressure as its limit, or a smaller rate"
       end if
    end function why_unsolved
 

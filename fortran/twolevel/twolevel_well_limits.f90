@@ -1,9 +1,10 @@
-!> When wells reach the pressure that bounds their rate, or leave it, so that no step straddles
-!! that.
+!> Times at which wells reach or leave the pressure that limits their rate; steps end at these
+!! times.
 !!
-!! Within a step such a well flows at its rate, or at what its pressure limit lets through,
-!! whichever is less (coarse_well_flow). A step in which that changes is tried once more with the
-!! well held as it was before: what passes its bound then says at which share of the step it did.
+!! Within a step such a well flows at its rate, or at the rate that its pressure limit allows,
+!! whichever is less (coarse_well_flow). A step in which this changes is tried once more with the
+!! control of the well fixed as before: the quantity that passes its limit then gives the share of
+!! the step at which the control changes.
 module twolevel_well_limits
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -114,7 +115,7 @@ contains
          if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
          self%now%given(w) = 0.0_rk
-         words = " is at its rate again"
+         words = " has returned to its rate"
          if (at_limit(w)) words = " has reached its pressure limit"
          associate (well => self%scene%injections(self%problem%model%wells%number(w)))
             call self%chronicle%add_event(self%now%coarse%time, event_well, trim(well%name)//words)

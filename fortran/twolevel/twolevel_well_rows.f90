@@ -1,4 +1,4 @@
-!> What wells do, well by well: rows of wells.csv.
+!> Results of the wells, one row of wells.csv per well.
 module twolevel_well_rows
    use base_kinds, only: ik, rk
    use coarse_wells, only: well_index

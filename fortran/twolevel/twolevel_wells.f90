@@ -1,4 +1,5 @@
-!> Wells: which fracture cells they feed, what they are asked for, and when that changes.
+!> Wells: the fracture cells that they supply, their prescribed rates and pressures, and the times
+!! at which these change.
 module twolevel_wells
    use base_kinds, only: ik, rk
    use base_plane, only: nearest_place

@@ -1,9 +1,9 @@
-!> A window: a piece of the network on a fine mesh, loaded by the coarse level. It is a square
-!! around one tip, or the whole body with all tips.
+!> A window: a part of the network on a fine mesh, loaded by the coarse level. It is a square around
+!! one tip, or the whole body with all tips.
 !!
-!! The edge takes the coarse displacement, or, where it lies on a side of the body, what the scene
-!! gives there (so the whole body takes nothing on its edge); the rock takes the coarse pressure as
-!! initial stress, the fracture faces what twolevel_faces says.
+!! The edge takes the coarse displacement, or, where it lies on a side of the body, the conditions
+!! of the scene there (so the whole body takes nothing on its edge). The rock takes the coarse
+!! pressure as initial stress, and the fracture faces take the conditions of twolevel_faces.
 module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,5 +1,6 @@
-!> Where the edges of a window can be: no good elements fit where one passes close to a vertex of a
-!! fracture, or a fracture crosses it at a small angle, beside a corner or beside another one.
+!> Possible edges of a window: elements are of poor quality where an edge passes close to a vertex
+!! of a fracture, or where a fracture crosses it at a small angle, near a corner or near another
+!! fracture.
 module twolevel_window_edges
    use base_kinds, only: ik, pi, rk
    use mesh_types, only: network_t

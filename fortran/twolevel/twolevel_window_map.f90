@@ -1,5 +1,5 @@
-!> Where a window lies in the coarse mesh, and what it takes from there: the pressure at its
-!! vertices, the displacement on its edge.
+!> The position of a window in the coarse mesh, and the coarse values that it takes: the pressure at
+!! its vertices, the displacement on its edge.
 module twolevel_window_map
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

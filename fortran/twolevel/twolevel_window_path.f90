@@ -1,9 +1,9 @@
-!> Fractures as a window meshes them: each vertex of a path is a node of its mesh, and paths that
-!! have grown have one every few millimetres. Far from the tips that the window is for, where its
-!! elements are larger than that, vertices that lie almost on a straight line are left out.
+!> Fractures in the mesh of a window: each vertex of a path is a node of the mesh, and paths that
+!! have grown have a vertex every few millimetres. Far from the tips of the window, where the
+!! elements are larger than that, vertices that lie almost on a straight line are omitted.
 !!
-!! What is left out changes neither joints nor where fractures cross the window's edge, and places
-!! along the fractures keep their arc lengths: the coarse level knows them by these.
+!! This changes neither joints nor the points where fractures cross the window's edge, and positions
+!! along the fractures keep their arc lengths, which the coarse level uses.
 module twolevel_window_path
    use base_kinds, only: ik, rk
    use base_plane, only: crosses, point_distance

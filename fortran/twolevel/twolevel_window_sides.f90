@@ -1,4 +1,4 @@
-!> Where the edge of a window lies on sides of the body: what the scene prescribes there.
+!> Edges of a window on sides of the body: the conditions that the scene prescribes there.
 module twolevel_window_sides
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_point_force, add_side_springs, add_side_stress, &

@@ -1,5 +1,5 @@
-!> What to mesh of a window, and of which rock: elements as small as its tips ask for, larger away
-!! from them.
+!> Mesh sizes and rock of a window: elements as small as its tips require, larger away from the
+!! tips.
 module twolevel_window_spec
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

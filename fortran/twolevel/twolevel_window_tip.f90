@@ -1,4 +1,4 @@
-!> A tip as a window sees it: its intensities, and how far they can be trusted.
+!> A tip in a window: its intensities and their error estimates.
 module twolevel_window_tip
    use base_kinds, only: ik, rk
    use fine_tip_intensity, only: complete_errors

@@ -1,9 +1,10 @@
-!> The windows of all tips: built where the network has changed, and asked for intensities.
+!> The windows of all tips: built where the network has changed, and evaluated for intensities.
 !!
-!! Each tip has a window of its own, or the body is one window for all of them. Tips whose own
-!! windows would have to be nearly as large as the body share one that is the body.
+!! Each tip has a separate window, or the body is one window for all tips. Tips whose windows would
+!! have to be nearly as large as the body share one window, the body.
 !!
-!! Windows are evaluated side by side on as many threads as there are; each is what it is alone.
+!! Windows are evaluated in parallel on the available threads; the results do not depend on their
+!! number.
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -283,7 +284,7 @@ contains
          end if
          if (allocated(error)) return
          if (any(tips(window%serves)%is_free .and. window%at == 0)) then
-            call raise_error(error, "evaluate", "a window has not the tip that it is for")
+            call raise_error(error, "evaluate", "a window does not contain its tip")
             return
          end if
          window%made%is_projected = .false.

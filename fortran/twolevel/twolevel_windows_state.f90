@@ -1,5 +1,5 @@
-!> What windows remember from one state to the next, whatever their meshes are: contact on their
-!! fractures, and what is known of their tips.
+!> The state of windows, independent of their meshes: contact on their fractures, and properties of
+!! their tips.
 module twolevel_windows_state
    use base_kinds, only: ik
    use fine_contact, only: contact_t

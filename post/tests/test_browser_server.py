@@ -324,7 +324,7 @@ def test_ctrl_c_ends_it_with_its_status(wet_run: Path, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("take", "why"),
     [
-        ("*", "this folder holds no run"),
+        ("*", "this folder contains no run"),
         ("matrix*", "has no fields to show"),
         ("matrix*.vtu", "the file is missing, though its PVD collection names it"),
         ("history.csv", "has no history.csv"),

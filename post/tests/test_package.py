@@ -93,7 +93,7 @@ def test_fields_are_those_of_the_nearest_state(wet_run: Path) -> None:
 def test_what_is_no_run(tmp_path: Path) -> None:
     with pytest.raises(wingcrack.RunError, match="there is no such folder"):
         wingcrack.open(tmp_path / "nowhere")
-    with pytest.raises(wingcrack.RunError, match="this folder holds no run"):
+    with pytest.raises(wingcrack.RunError, match="this folder contains no run"):
         wingcrack.open(tmp_path)
     (tmp_path / "file").touch()
     with pytest.raises(wingcrack.RunError, match="it is a file"):

@@ -161,7 +161,7 @@ def test_files_and_what_is_missing(
     (stimulated / "slip_events.csv").write_text(HEAD, encoding="utf-8")
     figure = story(read_run(stimulated))
     assert "none" in [text.get_text() for text in panel(figure, "slip events").texts]
-    with pytest.raises(AbsentError, match="no well, or of an earlier version"):
+    with pytest.raises(AbsentError, match="no well, or an earlier version"):
         story(read_run(wet_run))
     with pytest.raises(AbsentError, match="mechanics only"):
         story(read_run(dry_run))

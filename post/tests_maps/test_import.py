@@ -161,7 +161,7 @@ def test_what_is_set_must_be_an_entry(
     ("name", "text", "reason"),
     [
         ("m.csv", "", "the file is empty"),
-        ("m.csv", "x1,y1,x2,y2\n", "it holds no lines"),
+        ("m.csv", "x1,y1,x2,y2\n", "it contains no lines"),
         ("m.csv", "a,b\n1,2\n", "the columns a, b hold no fractures; there must be x1, y1"),
         ("m.csv", "x1,y1,x2,y2\n0,0,1\n", "m.csv:2: the row has 3 values but must have 4"),
         ("m.csv", "x1,y1,x2,y2\n0,0,1,?\n", "m.csv:2: y2 is '?' but must be a number"),
@@ -174,7 +174,7 @@ def test_what_is_set_must_be_an_entry(
         ("m.csv", "x1,y1,x2,y2,friction\n0,0,9,1,-1\n", "check refuses the scene"),
         ("m.wkt", "LINESTRING (0 0, 1\n", "line 1 is no well-known text"),
         ("m.wkt", "SRID=4326;LINESTRING (0 0, 1 1)\n", "is in degrees of longitude and latitude"),
-        ("m.wkt", "POINT (1 1)\n", "it holds no lines and no polygons"),
+        ("m.wkt", "POINT (1 1)\n", "it contains no lines and no polygons"),
         ("m.geojson", "{", "not a JSON file"),
         ("m.geojson", "[]", "no GeoJSON"),
         ("m.geojson", '{"type": "FeatureCollection"}', 'has no list "features"'),

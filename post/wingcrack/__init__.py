@@ -5,11 +5,11 @@
 >>> run.history["well_pressure_pa"].max()  # doctest: +SKIP
 >>> run.plot_history("well_pressure_pa").figure.savefig("pressure.png")  # doctest: +SKIP
 
-Whatever cannot be done is said in one sentence by one of these exceptions:
+Each error is one sentence of one of these exceptions:
 
-* `RunError`: files are missing, damaged or not what was asked for;
-* `AbsentError`: a sound run that does not hold what is asked of it, such as pressure or tips;
-* `SceneError`: a scene that is refused, or an address in it that leads nowhere;
+* `RunError`: files are missing, damaged or of another kind;
+* `AbsentError`: a valid run without the requested quantity, such as pressure or tips;
+* `SceneError`: a scene that is refused, or an address in it that does not exist;
 * `RunFailedError`: a run that was started and ended without its results;
 * `EnvironmentLacksError`: this machine lacks a library or the solver.
 """

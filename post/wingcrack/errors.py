@@ -1,4 +1,4 @@
-"""What can go wrong; each message is one sentence for the user."""
+"""Errors of the package; each message is one sentence for the user."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def _numbers(run: Results, column: str) -> FloatArray:
     if values.size == 0:
         raise AbsentError(f"{run.directory}: history.csv has no rows yet")
     if values.dtype.kind not in "if":
-        raise RunError(f"history.csv: the column '{column}' holds words, which are no curve")
+        raise RunError(f"history.csv: the column '{column}' contains text and cannot be plotted")
     return values.astype(np.float64)
 
 

@@ -1,4 +1,4 @@
-"""What is in a run's folder: tables, network and fields."""
+"""The results in a run's folder: tables, network and fields."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Results:
     def status(self) -> str:
         """'finished', 'stopped', 'failed', or 'running' until run.json is there.
 
-        A run that was killed from outside leaves no run.json, and 'running' for good.
+        A run that was killed leaves no run.json, and 'running' for good.
         """
         return str(self.record.get("status", "running"))
 

@@ -49,7 +49,7 @@ def open_run(directory: str | Path) -> Run:
         what = "it is a file" if folder.exists() else "there is no such folder"
         raise RunError(f"{folder}: {what}; a run's folder was expected, such as out/wing_crack")
     if not any((folder / name).is_file() for name in _SIGNS):
-        raise RunError(f"{folder}: this folder holds no run (none of {', '.join(_SIGNS)} is in it)")
+        raise RunError(f"{folder}: this folder contains no run (none of {', '.join(_SIGNS)})")
     return Run(folder)
 
 

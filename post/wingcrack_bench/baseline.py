@@ -1,4 +1,4 @@
-"""Stored instruction counts, and what compilers and libraries they were made with."""
+"""Stored instruction counts, with the compilers and libraries of their measurement."""
 
 from __future__ import annotations
 

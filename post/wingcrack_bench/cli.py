@@ -1,4 +1,4 @@
-"""`wingcrack bench`: measurements of speed, judged by what is stored."""
+"""`wingcrack bench`: measurements of speed, compared with stored ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Running a measurement's scene, and what that cost."""
+"""Runs the scene of a measurement, and determines its cost."""
 
 from __future__ import annotations
 

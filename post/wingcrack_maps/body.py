@@ -1,4 +1,4 @@
-"""The body around a network: the map's own boundary, or a rectangle with room on all sides."""
+"""The body around a network: the map's own boundary, or a rectangle with a margin on all sides."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def make_scene(given: SimpleNamespace) -> int:
         return 130
     left = report.number("left")
     if left and given.repair is None:
-        print(f"{left} faults are left as they are; --repair DISTANCE repairs them.")
+        print(f"{left} faults remain; --repair DISTANCE repairs them.")
     print(f"{given.out} is written, and with {given.out.stem}.repairs.csv and .json what was done.")
     return 0
 
@@ -167,8 +167,8 @@ def _network(
     for area, values in zip(regions, region_values, strict=True):
         if not values:
             content.note(
-                "no rock", f"region '{area.name}' has no rock of its own: the scene has it as a"
-                " comment; an attribute or --region gives it some"
+                "no rock", f"region '{area.name}' has no rock properties: the scene has it as a"
+                " comment; an attribute or --region defines them"
             )  # fmt: skip
     cell = given.cell
     if cell is None and base is not None:
@@ -183,7 +183,7 @@ def _heading(given: SimpleNamespace, path: str) -> str:
     if given.command == "network":
         return f"Fractures drawn by wingcrack network with seed {given.seed}."
     words = "as they are" if given.repair is None else f"repaired within {given.repair:g} m"
-    return f"Fractures of {Path(path).name}, {words}; {given.out.stem}.repairs.csv tells the rest."
+    return f"Fractures of {Path(path).name}, {words}; {given.out.stem}.repairs.csv has details."
 
 
 def _write(out: Path, text: str, report: Report) -> None:

@@ -1,4 +1,4 @@
-"""Names and entries of scene groups from what a map says of its features."""
+"""Names and entries of scene groups from the attributes of a map's features."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a network, or hardly meant: found always, whether repaired or not."""
+"""Faults of a network, and features that are probably not intended; with and without repair."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a map holds, whatever file it comes from."""
+"""The features of a map, independent of its file format."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def add_geometry(
         if name and len(parts) > 1:
             name = f"{name}.{number}"
         if part.has_z:
-            content.note("height left out", f"{source}: coordinates have a height, which is left")
+            content.note("height left out", f"{source}: heights are ignored")
         if isinstance(part, LineString):
             if role not in ("", "fracture"):
                 raise SceneError(
@@ -62,7 +62,7 @@ def _add_polygon(content: Map, part: Polygon, area: Area, path: str, source: str
         content.note("closed line", f"{source}: the outline of the polygon is a closed fracture")
         return
     if part.interiors:
-        content.note("hole left out", f"{source}: holes of the polygon are left out")
+        content.note("hole left out", f"{source}: holes of the polygon are ignored")
     area.points, area.source = ring[:-1], source
     content.areas.append(area)
 

@@ -75,7 +75,7 @@ def _add_areas(
     if whole.is_empty or not isinstance(whole, Polygon):
         raise SceneError(f"{path}: the physical surfaces must be one piece, which is the body")
     if whole.interiors:
-        found.note("hole left out", "holes of the body are left out")
+        found.note("hole left out", "holes of the body are ignored")
     corners = _without_straight(np.array(whole.exterior.coords))[:-1]
     found.areas.append(Area("body", corners, "boundary", {}, "physical surfaces"))
     # of regions that overlap the later one counts: one within another comes after it

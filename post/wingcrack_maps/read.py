@@ -37,7 +37,7 @@ def read_map(path: Path, unit: str | None) -> Map:
     else:
         found, says_system = _read_text(path, ending)
     if not (found.lines or found.areas):
-        raise SceneError(f"{path}: it holds no lines and no polygons")
+        raise SceneError(f"{path}: it contains no lines and no polygons")
     if unit is None and ending in (".geojson", ".json") and not says_system:
         if could_be_degrees(found):
             raise SceneError(

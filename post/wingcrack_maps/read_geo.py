@@ -1,7 +1,7 @@
 """Maps from gmsh's .geo files: points, lines, surfaces and physical groups; nothing is executed.
 
-The whole grammar is in `_Reader.statement`. Whatever else a script of gmsh may hold (commands,
-fields, options, loops, arithmetic) is refused with its line.
+The whole grammar is in `_Reader.statement`. All other statements of gmsh's scripts (commands,
+fields, options, loops, arithmetic) are refused with their line.
 """
 
 from __future__ import annotations

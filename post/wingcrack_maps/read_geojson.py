@@ -38,7 +38,8 @@ def read_geojson(text: str, path: str) -> tuple[Map, bool]:
     for number, feature in enumerate(_features(content, path), start=1):
         _add(found, feature, path, f"feature {number}")
     if system:
-        found.note("coordinate system", f"the map says {system}; its unit is taken as asked for")
+        words = f"the map has {system}; lengths have the unit of --unit, by default m"
+        found.note("coordinate system", words)
     return found, bool(system)
 
 

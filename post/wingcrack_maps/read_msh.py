@@ -1,6 +1,6 @@
 """Maps from gmsh's meshes: MSH 2 and 4.1, as text or binary, by the format's definition.
 
-gmsh itself is not asked: it also executes what lies beside a mesh as `MESH.msh.opt`.
+gmsh itself is not used: it also executes a file `MESH.msh.opt` next to a mesh.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Maps from well-known text, one geometry a line; `SRID=25832;` may stand before it."""
+"""Maps from well-known text, one geometry a line; `SRID=25832;` may precede it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Repairs of a network, fault by fault, until nothing is left that can be repaired."""
+"""Repairs of a network, fault by fault, until no fault remains that can be repaired."""
 
 from __future__ import annotations
 
@@ -307,7 +307,7 @@ class _Network:
         line = self.lines[i]
         if not pieces:
             self.after[i] = []
-            return f"removed, {line.length:.6g} m long: nothing is left of it"
+            return f"removed, {line.length:.6g} m long: nothing remains"
         if len(pieces) == 1:
             self.after[i] = [replace(line, points=pieces[0])]
             return f"shortened by {line.length - self._whole([i]):.6g} m"

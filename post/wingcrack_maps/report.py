@@ -1,4 +1,4 @@
-"""What was found, done and left: on the terminal, as CSV and as JSON."""
+"""Faults that were found, repaired and left: on the terminal, as CSV and as JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scene: what the network gives, and for a scene of its own what else one needs."""
+"""The text of a scene: the groups of the network, and for a complete scene all others."""
 
 from __future__ import annotations
 

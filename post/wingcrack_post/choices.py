@@ -1,4 +1,4 @@
-"""What a call may choose among; the command line and the packages take it from here."""
+"""Choices of the options; the command line and the packages take them from here."""
 
 from __future__ import annotations
 

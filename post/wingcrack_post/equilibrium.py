@@ -1,9 +1,9 @@
 """The equilibrium path of length control: its branches, and the energy that a dead load releases.
 
 Along the path each tip that grows is at its toughness: G(f, a) = G_c with the load factor f and the
-length a. Where f falls as a grows (on the way of the load), a load that does not fall drives the
-tips on: growth is unstable until the path has come back to the factor f0 at which it left it. The
-energy that is set free meanwhile, per metre of thickness, is
+length a. Where f falls as a grows (in the direction of the load), a load that does not fall drives
+the tips: growth is unstable until the path returns to the factor f0 at which it began. The energy
+released meanwhile, per metre of thickness, is
 
     E = integral of (G(f0, a) - G_c) da  [J/m]
 
@@ -15,8 +15,8 @@ Where all of the load is in proportion to f, the strain energy is U = f^2 C(a)/2
 which is the area between the path and the straight line f = f0 over the quantity q = 2 U/f = f C
 [J/m] that is conjugate to f: a displacement under forces, a force under grips.
 
-Where loads that no factor changes drive the tips, the solver lets them grow at one factor, with
-K_eq above K_IC. There G is known at each state from K, and E is its integral, by trapezoids.
+Where loads that do not change with the factor drive the tips, they grow at one factor, with K_eq
+above K_IC. There G is known at each state from K, and E is its integral, by trapezoids.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ def gather_facts(run: Run) -> Facts:
     reason = str(record.get("reason", ""))
     ended = f"{status}: {reason}" if reason else status
     if not record:
-        ended = "running, or killed from outside: there is no run.json"
+        ended = "running, or killed: there is no run.json"
     return Facts(
         title=title if run.name in title else f"{run.name}: {title}",
         status=status,

@@ -1,4 +1,4 @@
-"""Which fractures of many come first: those with a well, that grow, that are long."""
+"""The order of many fractures: first those with a well, then those that grow, then long ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields of chosen states, and how maps draw them: the body, what is near the fractures, states."""
+"""Fields of chosen states, and how maps draw them: body, fractures, surroundings."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def draw_geometry(axes: Axes, run: Run) -> list[Artist]:
     scene = run.scene
     body = None if scene is None else scene.outline
     if scene is None or body is None:
-        axes.text(0.5, 0.5, "scene.nml tells no body", transform=axes.transAxes, ha="center")
+        axes.text(0.5, 0.5, "scene.nml has no body", transform=axes.transAxes, ha="center")
         axes.set_axis_off()
         return []
     unit = length_unit(body)

@@ -1,4 +1,4 @@
-"""How a fracture network has grown: initial fractures, their wings, and when each piece came."""
+"""How a fracture network has grown: initial fractures, wings, and the time of each segment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mechanics-only runs: the load against growth, and what figures have instead of a time."""
+"""Mechanics-only runs: the load against growth, and the coordinate of figures instead of time."""
 
 from __future__ import annotations
 

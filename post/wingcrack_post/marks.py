@@ -1,4 +1,4 @@
-"""Marks of what happens in a run: first growth, and a well that starts or stops."""
+"""Marks of events in a run: first growth, and a well that starts or stops."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Names on a map, each where it overlaps no other one; one for which there is no room is left out.
+"""Names on a map without overlaps; a name for which there is no space is omitted.
 
-Where there is room is known once the figure is laid out, so places are found when it is drawn.
+The free space is known once the figure is laid out, so places are found when it is drawn.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The fracture network: initial fractures thick, what has grown thin and coloured by its order."""
+"""The fracture network: initial fractures thick, grown segments thin, coloured by their order."""
 
 from __future__ import annotations
 

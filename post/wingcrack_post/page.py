@@ -91,7 +91,7 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
 
 def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:
     for title, lines, look in (
-        ("What came of it", facts.results, ""),
+        ("Results", facts.results, ""),
         ("Errors", [line.removeprefix("- ") for line in facts.errors if line != "errors:"], ""),
         ("Warnings", facts.warnings or ["none"], "warning" if facts.warnings else ""),
         ("What it used", facts.used, ""),

@@ -1,4 +1,4 @@
-"""What history.csv says of the wells: the pressure of each, and what they have given and drawn."""
+"""The wells in history.csv: the pressure of each, and the volumes injected and extracted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What drives a run without a fluid, and whether all of it is in proportion to the load factor."""
+"""The loads of a run without a fluid, and whether all are proportional to the load factor."""
 
 from __future__ import annotations
 

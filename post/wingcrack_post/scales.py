@@ -1,4 +1,4 @@
-"""What all figures of a run share: the unit of lengths, and what counts as zero."""
+"""Common scales of all figures of a run: the unit of lengths, and the limit of zero."""
 
 from __future__ import annotations
 

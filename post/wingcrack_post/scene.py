@@ -1,4 +1,4 @@
-"""The few values of ``scene.nml`` that figures show or use beside the results."""
+"""The few values of ``scene.nml`` that figures show or use in addition to the results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stimulation on one page: the network at the end, and what the injection did over time."""
+"""A stimulation on one page: the network at the end, and the effects of the injection over time."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def story(run: Run) -> Figure:
     if not table.has("injected_m2"):
         raise AbsentError("the run has no fluid (mechanics only)")
     if not table.has(*COLUMNS):
-        raise AbsentError("history.csv tells no rate (no well, or of an earlier version)")
+        raise AbsentError("history.csv has no rate (no well, or an earlier version)")
     if table.rows == 1:
         raise AbsentError("the run has one state, so nothing has flowed yet")
     cells = needed(run.fractures, "fractures.csv", "the states of the fractures")

@@ -1,4 +1,4 @@
-"""One page for any run: what was asked, what came of it, how far it can be trusted."""
+"""One page for any run: the scene, the results, and their error estimates."""
 
 from __future__ import annotations
 

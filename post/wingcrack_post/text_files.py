@@ -1,7 +1,7 @@
-"""JSON, TOML, CSV and namelists as values: the one place where a user's text becomes such.
+"""JSON, TOML, CSV and namelists as values: the one place where a user's text is converted.
 
-What the libraries refuse in ways of their own (another encoding, too deep, too large) is a
-`ValueError` here, whose text is one sentence; a file that cannot be read is an `OSError`.
+Errors of the libraries (another encoding, too deep, too large) become a `ValueError` here, whose
+text is one sentence; a file that cannot be read is an `OSError`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Which figures are still true: drawn from the same files, by the same program, in the same way.
+"""Figures that are up to date: drawn from the same files, by the same program, in the same way.
 
-Beside the figures lies a record with a fingerprint of all that each of them was drawn from, and of
-the pictures themselves. A figure whose fingerprint differs in any part is drawn again, and so is
-one whose record or pictures are not as they were left.
+A record next to the figures has fingerprints of the data of each figure, and of the pictures
+themselves. A figure is drawn again if any part of its fingerprint differs, or if its record or
+pictures have changed.
 """
 
 from __future__ import annotations

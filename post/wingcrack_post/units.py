@@ -1,4 +1,4 @@
-"""Units of figures: SI from the files, scaled to what reads well in print."""
+"""Units of figures: SI from the files, scaled to readable numbers."""
 
 from __future__ import annotations
 

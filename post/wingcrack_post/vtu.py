@@ -1,9 +1,9 @@
-"""VTU files as a run writes them: XML that says where each array lies in the raw bytes behind it.
+"""VTU files of a run: XML with the position of each array in the raw bytes that follow.
 
 Layout: VTK User's Guide, "VTK XML Formats", with one piece and raw appended arrays, each preceded
-by its size in bytes as UInt64. VTK's own reader takes what is missing of a file that was cut off
-for sizes, and ends the process for want of memory (9.7, tried); and loading VTK takes a hundred
-times as long as reading.
+by its size in bytes as UInt64. VTK's own reader takes wrong sizes from a truncated file, and
+ends the process for lack of memory (9.7, tried); and loading VTK takes a hundred times as long as
+reading.
 """
 
 from __future__ import annotations

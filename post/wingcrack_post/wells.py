@@ -1,4 +1,4 @@
-"""What each well did: pressures, flow, volume and injectivity against time."""
+"""Results of each well: pressures, flow, volume and injectivity against time."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Running the solver many times: each run once, and again only when something has changed."""
+"""Running the solver many times: each run once, and repeated only after a change."""

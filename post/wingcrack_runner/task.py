@@ -1,4 +1,4 @@
-"""One call of the solver or of another program, ready to start, in a folder of its own."""
+"""One call of the solver or of another program, ready to start, in a separate folder."""
 
 from __future__ import annotations
 

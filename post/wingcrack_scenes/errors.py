@@ -1,4 +1,4 @@
-"""What can be wrong with a call, a map or a scene; each message is one sentence for the user."""
+"""Errors of a call, a map or a scene; each message is one sentence for the user."""
 
 
 class SceneError(Exception):

@@ -1,4 +1,4 @@
-"""A scene to start from: the text of a kind with what the solver's table says of each name."""
+"""A template of a scene: the text of a kind, with the solver's description of each name."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def annotated(text: str) -> str:
             told.add(group.name)
         lines.append(line)
     lines.append("")
-    lines.append("! docs/input.md tells all groups and names. Groups that are not here:")
+    lines.append("! docs/input.md describes all groups and names. Groups that are not here:")
     absent = [f"&{name}" for name in table if name not in told]
     lines.extend(_comment(" ".join(absent), ""))
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""Where a study is run: this machine, or others by Dask's own classes."""
+"""Machines of a study: this one, or others by Dask's classes."""
 
 from __future__ import annotations
 

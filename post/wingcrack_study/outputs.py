@@ -1,4 +1,4 @@
-"""What the files of a run hold, so that a study which asks for something else is refused."""
+"""The contents of a run's files; a study that requires other quantities is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The one function that is sent to workers; it needs nothing of theirs but a Python."""
+"""The one function that is sent to workers; it requires only Python there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Running all scenes of a study, here or on a cluster, and what became of them."""
+"""Runs all scenes of a study, here or on a cluster, and collects their outcomes."""
 
 from __future__ import annotations
 

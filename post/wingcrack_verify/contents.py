@@ -1,4 +1,4 @@
-"""What a case of ``verification/`` holds, as typed values (docs/verification.md)."""
+"""The contents of a case of ``verification/`` as typed values (docs/verification.md)."""
 
 from __future__ import annotations
 

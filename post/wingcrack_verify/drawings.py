@@ -1,4 +1,4 @@
-"""Many drawings in one page: what they share stands there once, numbers as short as can be seen.
+"""Many drawings in one page: common parts are stored once, with numbers rounded to visible digits.
 
 matplotlib writes the shapes of all letters into every drawing, a style at every line, and places
 to a millionth of a point. That is three quarters of a drawing and more.

@@ -1,4 +1,4 @@
-"""Error against the number of unknowns: observed rates, and what a method saves beside another."""
+"""Error against the number of unknowns: observed rates, and comparison of methods."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the numbers were made with: revision, machine, compiler, packages."""
+"""The environment of the numbers: revision, machine, compiler, packages."""
 
 from __future__ import annotations
 

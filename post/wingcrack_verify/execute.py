@@ -1,4 +1,4 @@
-"""The runs of the cases: what each of them calls, and running all of them side by side."""
+"""The runs of the cases: the command of each, and their execution in parallel."""
 
 from __future__ import annotations
 

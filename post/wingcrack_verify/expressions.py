@@ -1,4 +1,4 @@
-"""Arithmetic in case files: columns and constants, nothing that could do more than compute."""
+"""Arithmetic in case files: columns and constants, without any other operation."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """Whether the default setting lies on the Pareto front of errors against work.
 
-A setting serves all quantities of its scene, so one that makes one of them cheaper and another one
-worse does not beat it: all checks of a case that ask for the front of the same runs count together.
+A setting applies to all quantities of its scene, so a setting that improves one of them and worsens
+another does not dominate it: all checks of a case with the front of the same runs count together.
 
-Work is unknowns times accepted states: it goes with the run time (within a third for the scenes of
-`verification/default_settings`), but is the same on every machine, however busy.
+Work is unknowns times accepted states: it is proportional to the run time (within a third for the
+scenes of `verification/default_settings`), but is the same on every machine, however busy.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The groups of the report: what physics a case is about."""
+"""The groups of the report: the physics of a case."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Entries that take what they do not say from another one: ``like = "NAME"``."""
+"""Entries that take missing values from another one: ``like = "NAME"``."""
 
 from __future__ import annotations
 

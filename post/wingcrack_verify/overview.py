@@ -1,4 +1,4 @@
-"""What stands first in the report: groups with their counts, and the largest errors."""
+"""The first part of the report: groups with their counts, and the largest errors."""
 
 from __future__ import annotations
 

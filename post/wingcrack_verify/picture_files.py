@@ -1,6 +1,6 @@
-"""The pictures of a run that a case can ask for, and what a run must have written for them.
+"""The pictures of a run that a case can request, and the files that they require.
 
-Apart from what draws them (`pictures`), which takes long to load.
+This module is separate from `pictures`, which draws them and takes long to load.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 """Judge a run with a fluid by its files alone: contact, mass, bounds, limits.
 
-`docs/sweeps.md` and the part Stability of `docs/verification.md` tell what is judged.
+The criteria are in `docs/sweeps.md` and the part Stability of `docs/verification.md`.
 
-
-Nothing here comes from the solver: the law of contact, the balance of fluid and the limits are
-computed again from scene.nml, the tables, the VTU files and run.json.
+This module is independent of the solver: the contact law, the balance of fluid and the limits are
+recomputed from scene.nml, the tables, the VTU files and run.json.
 """
 
 from __future__ import annotations

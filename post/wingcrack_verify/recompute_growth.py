@@ -1,7 +1,7 @@
 """Judge the growth of a run with a fluid by its files alone (docs/verification.md, Stability).
 
-The network is measured again: lengths, joints where its polylines meet, ends. What the tips tell is
-held against the toughness and against the events, what errors are stated is looked for.
+The network is measured independently: lengths, joints where its polylines meet, ends. The values of
+the tips are compared with the toughness and with the events, and stated errors are required.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The report as data: what report.json holds, and what the page is filled with."""
+"""The report as data: the contents of report.json and of the page."""
 
 from __future__ import annotations
 

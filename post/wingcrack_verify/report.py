@@ -1,4 +1,4 @@
-"""The report as a whole: its rows and verdict, and the files that hold it."""
+"""The report as a whole: its rows, its verdict and its files."""
 
 from __future__ import annotations
 

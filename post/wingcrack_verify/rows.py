@@ -1,4 +1,4 @@
-"""The rows of the report: what was measured against what, and what became of it."""
+"""The rows of the report: each measured value, its reference and the result of the comparison."""
 
 from __future__ import annotations
 

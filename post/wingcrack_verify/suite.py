@@ -1,4 +1,4 @@
-"""All cases of a call: reading the folders, listing their runs, judging what came out."""
+"""All cases of a call: reading the folders, listing their runs, judging the results."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Tables that stand for several: ``over``, its templates, and ``[defaults]`` of a file.
 
-Everything here turns tables into tables; what the keys mean is told by `case`.
+This module converts tables into tables; the keys are defined in `case`.
 """
 
 from __future__ import annotations

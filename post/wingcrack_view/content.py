@@ -1,4 +1,4 @@
-"""What the page asks of a run: what there is, a state, its mesh, colours, a history."""
+"""Data of a run for the page: contents, a state, its mesh, colours, a history."""
 
 from __future__ import annotations
 

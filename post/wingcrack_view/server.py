@@ -1,8 +1,8 @@
-"""The page's server: bound to this machine, and deaf to pages of other hosts.
+"""The page's server: bound to this machine; requests of pages of other hosts are refused.
 
-A page of another host that the browser has open could reach this one through a name of its own
-that leads to 127.0.0.1 (DNS rebinding); such requests carry that name and are refused. What it
-could fetch without such a trick its browser does not let it read, as no header here allows that.
+A page of another host that is open in the browser could reach this server through a host name that
+resolves to 127.0.0.1 (DNS rebinding); such requests carry that name and are refused. Without such a
+name the browser does not let the page read the answers, as no header here allows it.
 """
 
 from __future__ import annotations

@@ -30,8 +30,9 @@ KINDS = ("rate", "pressure", "limit", "stages", "conflict", "rock")
 
 # Reasons that say how the equations are solved, not what happens in the rock.
 OWN_REASONS = re.compile(
-    "did not converge|singular|not a number|no headway|no way was found|law of contact is not"
-    "|initial state was not found|error in time|reaches or leaves its limit|Euler|no finite number"
+    "did not converge|singular|NaN|not a number|no progress in time|no combination of well controls"
+    "|contact law is violated|no initial equilibrium|time error|reaches or leaves its limit|Euler"
+    "|no finite number"
 )
 
 

@@ -128,7 +128,7 @@ contains
       if (allocated(error)) call leave(error%message, exit_usage)
       if (.not. scene%has_fluid()) then
          call leave("ranks share the matrices of a body with a fluid, and "//argument(2)// &
-                    " has none: leave --ranks out", exit_usage)
+                    " has none: omit --ranks", exit_usage)
       end if
    end subroutine check_ranks
 

@@ -1,4 +1,4 @@
-!> All ways: both levels with a fluid, finite elements without.
+!> All kinds: both levels with a fluid, finite elements without.
 submodule(app_simulations) app_simulations_all
    use mechanics_body, only: body_spec
    use mechanics_simulation, only: mechanics_simulation_t

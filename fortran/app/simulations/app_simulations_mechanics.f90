@@ -1,4 +1,4 @@
-!> Without the coarse level: scenes without a fluid alone.
+!> Without the coarse level: only scenes without a fluid.
 submodule(app_simulations) app_simulations_mechanics
    use mechanics_body, only: body_spec
    use mechanics_simulation, only: mechanics_simulation_t

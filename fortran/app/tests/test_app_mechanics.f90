@@ -58,7 +58,7 @@ contains
       directory = "test_app_mechanics.out/broken"
       call run_scene(strip(), "", directory, .true., simulation, refused, was_interrupted, error)
       call checks%no_error(error, "the run")
-      call checks%is_true(index(file_text(directory//"/run.json"), "has come loose") > 0, &
+      call checks%is_true(index(file_text(directory//"/run.json"), "has separated") > 0, &
                           "the reason is on record")
       history = last_row(directory//"/history.csv", 2)
       fields = last_row(directory//"/fractures.csv", 7)

@@ -492,7 +492,7 @@ contains
          call checks%no_error(error, "drawing from a joint")
          call checks%is_true(report%converged .eqv. k == 0, "no more than flows there")
       end do
-      call checks%is_true(index(report%reason, "where fractures meet") > 0, "the reason")
+      call checks%is_true(index(report%reason, "extracted from an intersection") > 0, "the reason")
    end subroutine test_overdrawn
 
 end program test_coarse_joints

@@ -360,14 +360,14 @@ contains
       call checks%fails_with(error, "not been set", "no boundary conditions")
       boundary = free_boundary(model%mesh)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
-      call checks%fails_with(error, "can move freely", "floating body")
+      call checks%fails_with(error, "can move as a rigid body", "floating body")
       call hold_side(model%mesh, left, x, boundary)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
-      call checks%fails_with(error, "can move freely", "body on rollers on one side")
+      call checks%fails_with(error, "can move as a rigid body", "body on rollers on one side")
       boundary = free_boundary(model%mesh)
       boundary%prescribed(:, nearest_node(model%mesh, [0.0_rk, 0.0_rk])) = .true.
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
-      call checks%fails_with(error, "can move freely", "body on a hinge")
+      call checks%fails_with(error, "can move as a rigid body", "body on a hinge")
 
       ! A crack from side to side cuts off the upper half, unless its faces are tied.
       mesh = cracked_rectangle([0.0_rk, 3.0_rk], [0.0_rk, 2.0_rk], [6_ik, 4_ik], 2_ik, 1_ik, 6_ik)
@@ -377,7 +377,7 @@ contains
       call hold_side(model%mesh, bottom, y, boundary)
       conditions = loaded_everywhere(model%mesh)
       call model%prepare(conditions, error, boundary)
-      call checks%fails_with(error, "can move freely", "cut body")
+      call checks%fails_with(error, "can move as a rigid body", "cut body")
       conditions%condition = face_jump
       call model%prepare(conditions, error, boundary)
       call checks%no_error(error, "cut body with tied faces")

@@ -337,7 +337,7 @@ contains
 
       loads%body_force = [0.0_rk, weight]
       call model%solve(loads, displacement, error, contact)
-      call checks%fails_with(error, "only contact holds the piece at (", &
+      call checks%fails_with(error, "only contact holds the part at (", &
                              "a block that is lifted off has a place")
    end subroutine resting_block
 

@@ -25,7 +25,7 @@ contains
       call solve([2.0_rk, 4.0_rk], [0.0_rk, -2.5_rk], [1.0_rk, 1.0_rk], [1.0_rk, 1.0_rk], advance)
       call checks%is_close(maxval(abs(advance - [1.0_rk, 0.0_rk])), 0.0_rk, 0.0_rk, "stays behind")
       ! Tip 2 is ahead: K_2 = f + 1 - 4 a_2 comes to its end at f = 4, tip 1 at f = 3 before: that
-      ! leads, and tip 2 goes 0.75 m. On a segment of 0.5 m tip 2 leads, at f = 2, and tip 1 goes 0.5 m.
+      ! leads, and tip 2 goes 0.75 m. On a segment of 0.5 m tip 2 leads, at f = 2; tip 1 goes 0.5 m.
       call solve([2.0_rk, 4.0_rk], [0.0_rk, 1.0_rk], [1.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], advance)
       call checks%is_close(maxval(abs(advance - [1.0_rk, 0.75_rk])), 0.0_rk, 2.0e-3_rk, "leader")
       call solve([2.0_rk, 4.0_rk], [0.0_rk, 1.0_rk], [1.0_rk, 0.5_rk], [1.0_rk, 0.0_rk], advance)
@@ -43,7 +43,7 @@ contains
       integer :: try
 
       advance = start
-      matrix = reshape([-0.5_rk*fall(1), 0.0_rk, 0.0_rk, -1.5_rk*fall(2)], [2, 2])  ! a poor estimate
+      matrix = reshape([-0.5_rk*fall(1), 0.0_rk, 0.0_rk, -1.5_rk*fall(2)], [2, 2])  ! poor
       do try = 1, 15
          excess = offset - fall*advance
          excess = excess - maxval(excess)  ! the load is such that no tip exceeds its toughness

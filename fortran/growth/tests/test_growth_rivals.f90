@@ -99,8 +99,8 @@ contains
       call checks%is_close(maxval(abs(rivals%measured - truth())), 0.0_rk, 1.0e-15_rk, "measured")
    end subroutine test_learning
 
-   !> Influences of kinds: those of their tips together, or the slope of a segment where a tip has not
-   !! been measured.
+   !> Influences of kinds: those of their tips together, or the slope of a segment where a tip has
+   !! not been measured.
    subroutine test_matrix()
       type(rivals_t) :: rivals
       type(segment_t) :: segment(n)

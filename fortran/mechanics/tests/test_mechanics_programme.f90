@@ -48,13 +48,13 @@ contains
       call at(programme, 1.0_rk, [0.0_rk, 1.0_rk], 0.125_rk, 0.5_rk, "up, second step")
       call programme%go_on(1.0_rk)
       call at(programme, 0.7_rk, [1.0_rk, 0.4_rk], 0.25_rk, 1.0_rk, "down")
-      call checks%is_true(programme%not_reached() == ", and 3 of the scene's load factors are "// &
-                          "not reached", "cycle: what is left")
+      call checks%is_true(programme%not_reached() == ", and 3 of the scene's load factors "// &
+                          "were not reached", "cycle: what is left")
       call programme%go_on(0.4_rk)
       call at(programme, 0.8_rk, [0.0_rk, 1.2_rk], 0.5_rk, 0.4_rk, "up again")
       call programme%go_on(1.2_rk)
       call at(programme, 0.35_rk, [1.2_rk, -0.5_rk], 0.75_rk, 1.2_rk, "down again")
-      call checks%is_true(programme%not_reached() == ", and the scene's last load factor is "// &
+      call checks%is_true(programme%not_reached() == ", and the scene's last load factor was "// &
                           "not reached", "cycle: the last one is left")
       call programme%go_on(-0.5_rk)
       call checks%is_true(programme%not_reached() == "", "cycle: nothing is left")

@@ -75,11 +75,11 @@ contains
                   ":5: &side: edges is 1.5 but must be a whole number at least 1"//doc)
      call refuse(6, "&side name='top' edges=2, 6 y_traction=1 /", ":6: &side: name 'top' has a "// &
                   "part of the boundary that side 'floor' has, but sides must not overlap"//doc)
-      call refuse(6, "&side name='top' edges=2 normal_traction=-1 y_traction=1 /", ":6: &side: "// &
-                  "normal_traction is given beside y_traction but a side has either tractions "// &
-                  "along and across it, or values in x and y"//doc)
+      call refuse(6, "&side name='top' edges=2 normal_traction=-1 y_traction=1 /", ":6: "// &
+                  "&side: normal_traction is given with y_traction, but a side has either "// &
+                  "normal and shear tractions, or values in x and y"//doc)
       call refuse(6, "&side name='top' edges=2 shear_traction=-1 x_displacement=0 /", &
-                  ":6: &side: shear_traction is given beside x_displacement")
+                  ":6: &side: shear_traction is given with x_displacement")
     call refuse(6, "&side name='top' edges=2 arc_to_deg=1 /", ":6: &side: arc_to_deg is given, "// &
                   "but only a disc has arcs"//doc)
       call refuse(5, "&side name='floor' edges=6 y_displacement=0 /", "give a &side or a "// &
@@ -98,9 +98,9 @@ contains
    subroutine check_weight()
       call refuse(3, "&material young=1e9 poisson=0.2 /", ":7: &gravity: is given, but the "// &
                   "material has no density"//doc)
-     call refuse(8, "&in_situ syy_per_y=-2e4 /", ":8: &in_situ: syy_per_y is -20000.0 but must "// &
-                  "carry the weight: density times gravity asks for 20000.0 Pa/m"//doc)
-      call refuse(7, "", ":8: &in_situ: syy_per_y is 20000.0 but must carry the weight")
+      call refuse(8, "&in_situ syy_per_y=-2e4 /", ":8: &in_situ: syy_per_y is -20000.0 but "// &
+                  "must balance the weight: density times gravity requires 20000.0 Pa/m"//doc)
+      call refuse(7, "", ":8: &in_situ: syy_per_y is 20000.0 but must balance the weight")
       call refuse(7, "&gravity x=1 y=-10 /", ":7: &gravity: x is 1.0 but must be 0")
       call accept(8, "", "gravity as a load")
       call accept(7, "&in_situ sxx_per_y=1e4 /", "no weight", and_8="")

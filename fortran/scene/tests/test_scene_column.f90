@@ -46,15 +46,15 @@ contains
 
    !> One of the good lines is another one.
    subroutine check_faults()
-      call refuse(6, "", ":8: &in_situ: syy_per_y is 25000.0 but must carry the weight: "// &
-                  "density times gravity asks for 0.0 Pa/m"//doc)
-      call refuse(8, "  syy_per_y=2e4 /", ":8: &in_situ: syy_per_y is 20000.0 but must carry "// &
-                  "the weight: density times gravity asks for 25000.0 Pa/m"//doc)
+      call refuse(6, "", ":8: &in_situ: syy_per_y is 25000.0 but must balance the weight: "// &
+                  "density times gravity requires 0.0 Pa/m"//doc)
+      call refuse(8, "  syy_per_y=2e4 /", ":8: &in_situ: syy_per_y is 20000.0 but must "// &
+                  "balance the weight: density times gravity requires 25000.0 Pa/m"//doc)
       call refuse(8, "  syy_per_y=-2.5e4 /", ":8: &in_situ: syy_per_y is -25000.0 but must "// &
-                  "carry the weight: density times gravity asks for 25000.0 Pa/m"//doc)
+                  "balance the weight: density times gravity requires 25000.0 Pa/m"//doc)
       call refuse(3, "/", ":6: &gravity: is given, but the material has no density"//doc)
-      call refuse(6, "&gravity x=1 y=-10 /", ":6: &gravity: x is 1.0 but must be 0, for an "// &
-                  "in-situ stress that changes with y alone carries no weight in x"//doc)
+      call refuse(6, "&gravity x=1 y=-10 /", ":6: &gravity: x is 1.0 but must be 0, since an "// &
+                  "in-situ stress that varies only with y balances no weight in x"//doc)
       call refuse(5, "  density=0 /", ":5: &fluid: density is 0 but must be a finite number "// &
                   "greater than 0.0 [kg/m3]"//doc)
       call refuse(5, "  density=1g/cm3 /", ":5: &fluid: density is 1g but must be a finite "// &
@@ -90,13 +90,13 @@ contains
       lines(7) = "&in_situ sxx_per_y=1.7e4 syy_per_y=2.5e4 /"
       call put_lines(path, lines)
       call expect(":14: &region: density is 2700.0 but must be that of &material, 2500.0, "// &
-                  "beside a stress in situ that changes with y: one gradient does not carry "// &
-                  "two weights; leave sxx_per_y and syy_per_y out, and the body settles "// &
-                  "under its weight"//doc)
+                  "with a stress in situ that varies with y: one gradient does not balance "// &
+                  "two weights; omit sxx_per_y and syy_per_y, so that the body settles under "// &
+                  "its weight"//doc)
       lines(5:7) = [character(len=100) :: "/", "", ""]
       call put_lines(path, lines)
-      call expect(":14: &region: density is 2700.0 but nothing gives it weight; give &gravity, "// &
-                  "or leave the density out"//doc)
+      call expect(":14: &region: density is 2700.0 but there is no gravity; give &gravity, or "// &
+                  "omit the density"//doc)
       lines(5:6) = [character(len=100) :: "  density=1000 /", "&gravity y=-10 /"]
       lines(size(lines)) = layer//" density=99 /"
       call put_lines(path, lines)
@@ -115,12 +115,12 @@ contains
       lines = good
       lines(6:8) = ""
       call put_lines(path, lines)
-      call expect(":5: &fluid: density is 1000.0 but nothing gives the fluid weight; give "// &
-                  "&gravity y, on earth -9.81, or leave the density out"//doc)
+      call expect(":5: &fluid: density is 1000.0 but there is no gravity; give &gravity y, on "// &
+                  "earth -9.81, or omit the density"//doc)
       lines(6) = "&gravity x=1 y=-10 /"
       call put_lines(path, lines)
-      call expect(":6: &gravity: x is 1.0 but must be 0, for the pressure of a fluid with a "// &
-                  "density changes with y alone"//doc)
+      call expect(":6: &gravity: x is 1.0 but must be 0, since the pressure of a fluid with a "// &
+                  "density varies only with y"//doc)
    end subroutine check_weightless
 
    subroutine accept(number_1, line_1, number_2, line_2, name)

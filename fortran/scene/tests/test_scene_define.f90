@@ -60,12 +60,12 @@ contains
    end subroutine expect_value
 
    subroutine check_faults()
-      call expect_fault("", "it ends where a number or a name must stand")
-      call expect_fault("1 +", "it ends where a number or a name must stand")
+      call expect_fault("", "it ends where a number or a name is expected")
+      call expect_fault("1 +", "it ends where a number or a name is expected")
       call expect_fault("(1", "a bracket is not closed")
-      call expect_fault("1)", "')' stands where an operator or the end must stand")
-      call expect_fault("2 3", "'3' stands where an operator or the end must stand")
-      call expect_fault("*2", "'*' stands where a number or a name must stand")
+      call expect_fault("1)", "')' stands where an operator or the end is expected")
+      call expect_fault("2 3", "'3' stands where an operator or the end is expected")
+      call expect_fault("*2", "'*' stands where a number or a name is expected")
       call expect_fault("1/0", "it divides by zero")
       call expect_fault("1/(2-2)", "it divides by zero")
       call expect_fault("depth", "there is no value 'depth' of &define before it")
@@ -114,7 +114,7 @@ contains
                   "and '_', at most 64, and begins with a letter"//doc)
       call refuse("&define a = /", ":1: &define: a has no value"//doc)
       call refuse("&define a = 1.0 2.0 /", ":1: &define: '2.0' stands where 'name = value' or "// &
-                  "the closing '/' must stand"//doc)
+                  "the closing '/' is expected"//doc)
       call refuse("&define a = 1.0", ":2: &define: is not ended by '/' as it must be"//doc)
    end subroutine check_refusals
 

@@ -72,9 +72,9 @@ contains
       call refuse(good, 6, "  normal_stiffness=0.0 closure=5.0e-4", ":6: &fracture: "// &
                   "normal_stiffness is 0.0 but must be a finite number greater than 0.0 "// &
                   "[Pa/m]"//doc)
-      call refuse(good, 6, "  normal_stiffness=1.0e10 closure=1.0e-3", ":6: &fracture: closure "// &
-                  "is 0.001 m but must be at most 0.98 of the aperture, 9.8e-4 m, for some of "// &
-                  "it stays open under any stress"//doc)
+      call refuse(good, 6, "  normal_stiffness=1.0e10 closure=1.0e-3", ":6: &fracture: "// &
+                  "closure is 0.001 m but must be at most 0.98 of the aperture, 9.8e-4 m, "// &
+                  "since a part of it remains open under any stress"//doc)
    end subroutine check_closure
 
    subroutine check_bond()
@@ -105,15 +105,15 @@ contains
       call put_changed(path, dry, 1, dry(1), 1, dry(1))
       call read_scene(path, scene, error)
       call checks%no_error(error, "without a fluid there is no aperture to be closed")
-      call refuse(dry, 5, "  held_closed=.true. /", ":4: &fracture: normal_stiffness is given, "// &
-                  "but faces that are held closed, held_closed = .true., cannot close further; "// &
-                  "leave one out"//doc)
+      call refuse(dry, 5, "  held_closed=.true. /", ":4: &fracture: normal_stiffness is "// &
+                  "given, but faces that are held closed, held_closed = .true., cannot close "// &
+                  "further; omit one of them"//doc)
       call refuse(dry, 3, "&fracture name='f1' x=0.9, 1.1 y=0.5, 0.6 law='open'", ":4: "// &
                   "&fracture: normal_stiffness is given, but the faces of the law 'open' do "// &
                   "not touch; give 'friction' or 'frictionless'"//doc)
       call refuse(dry, 4, "  held_closed=.true. friction_residual=0.1 weakening_slip=1e-3 "// &
                   "cohesion=1e6", ":4: &fracture: cohesion is given, but a bond of faces that "// &
-                  "are held closed, held_closed = .true., never breaks; leave one out"//doc)
+                  "are held closed, held_closed = .true., never breaks; omit one of them"//doc)
       call refuse(dry, 4, "  skin=1.0e9", ":4: &fracture: skin needs a fluid, but the "// &
                   "group &fluid is missing"//doc)
    end subroutine check_dry

@@ -75,11 +75,11 @@ contains
       call refuse(26, "&probe name='p' x=0.5 y=0.5", ":26: &probe: is not ended by '/' as it "// &
                   "must be"//doc)
       call refuse(26, "&probe 'p' x=0.5 y=0.5 /", &
-                  ":26: &probe: ''p'' stands where 'name = value' or the closing '/' must stand")
+                  ":26: &probe: ''p'' stands where 'name = value' or the closing '/' is expected")
       call refuse(1, "onset &scene /", &
                   ": is no scene file, which begins with a group, as &domain, or with include")
       call refuse(7, "/ onset", &
-                  ":7: text stands outside of a group, where only comments may stand")
+                  ":7: text outside of a group, where only comments are allowed")
       call refuse(1, "&scene name='base /", ":1: a text in quotes is not closed on its line")
       call refuse(5, "  biot= porosity=0.01", ":5: &material: biot has no value"//doc)
       call refuse(10, "  x=0.9,,1.1", ":10: &fracture: x lacks a value before a comma"//doc)
@@ -159,12 +159,12 @@ contains
       call refuse(17, "&side name='left' x_traction=-20.0e6 /", &
                   ":17: &side: name 'left' is already taken on line 15 but must be unique"//doc)
       call refuse(15, "&side name='left' x_displacement=0.0 x_traction=1.0 /", &
-                  ":15: &side: x_traction is given beside x_displacement but only one of them "// &
+                  ":15: &side: x_traction is given with x_displacement, but only one of them "// &
                   "can be prescribed"//doc)
-      call refuse(15, "", ": nothing holds the body against moving in x; give a &side or a "// &
-                  "&restraint an x_displacement"//doc)
-      call refuse(16, "", ": nothing holds the body against moving in y; give a &side or a "// &
-                  "&restraint a y_displacement"//doc)
+      call refuse(15, "", ": the body can move in x; give a &side or a &restraint an "// &
+                  "x_displacement"//doc)
+      call refuse(16, "", ": the body can move in y; give a &side or a &restraint a "// &
+                  "y_displacement"//doc)
       call refuse_two(15, "&side name='left' y_displacement=0.0 /", &
                       16, "&side name='bottom' x_displacement=0.0 /", &
                       ": the body can rotate; give a &side, left or right, an x_displacement, "// &
@@ -180,13 +180,13 @@ contains
                       "coefficient B = alpha/(K S + alpha^2) of this rock 1.304, but that must "// &
                       "be at most 1; 3.15e-11 1/Pa would make it 1"//doc)
       call refuse(6, "  permeability=5e-20 permeability_xx=5e-20", &
-                  ":6: &material: permeability is given beside components of the tensor but "// &
-                  "must be given alone or not at all"//doc)
+                  ":6: &material: permeability is given with components of the tensor, but "// &
+                  "only one of the two may be given"//doc)
       call refuse(6, "  permeability_xx=5e-20", ":3: &material: permeability_yy is missing but "// &
                   "must be given with the other components of the tensor"//doc)
       call refuse(6, "  permeability_xx=4e-20 permeability_yy=1e-20 permeability_xy=2.1e-20", &
                   ":6: &material: permeability_xy is 2.1e-20 but must be smaller than "// &
-                  "sqrt(permeability_xx permeability_yy), for the tensor must be positive "// &
+                  "sqrt(permeability_xx permeability_yy), since the tensor must be positive "// &
                   "definite"//doc)
       call refuse(21, "  step=7200.0 /", ":21: &time: step is 7200.0 but must be at most "// &
                   "end, 3600.0"//doc)

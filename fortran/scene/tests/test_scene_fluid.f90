@@ -181,11 +181,10 @@ contains
                   ":6: &fluid: table_pressure has 1 value but must "// &
                   "have at least two"//doc)
       call refuse(6, "  table_pressure=0.0, 1.0e7, 1.0e7", &
-                  ":6: &fluid: table_pressure must rise, "// &
-                  "and does not from 1.0e7 to 1.0e7"//doc)
+                  ":6: &fluid: table_pressure must increase, but does not from 1.0e7 to 1.0e7"//doc)
       call refuse(6, "  table_pressure=2.0e7, 3.0e7, 5.0e7", &
-                  ":6: &fluid: table_pressure reaches "// &
-                  "from 2.0e7 to 5.0e7 but must hold the reference_pressure, 1.0e7"//doc)
+                  ":6: &fluid: table_pressure reaches from 2.0e7 to 5.0e7 but must contain "// &
+                  "the reference_pressure, 1.0e7"//doc)
       call refuse(7, "  table_viscosity=1.0e-3, 2.0e-3", ":7: &fluid: table_viscosity has 2 "// &
                   "values but must have one for each table_pressure, 3"//doc)
       call refuse(7, "  table_viscosity=1.0e-3, 0.0, 2.0e-3", ":7: &fluid: table_viscosity is "// &
@@ -199,8 +198,8 @@ contains
       call refuse(7, "  table_viscosity=0.9e-3, 1.0e-3, 2.0e-3 viscosity_exponent=1e-8", &
                   ":7: &fluid: viscosity_exponent is given, but only the viscosity_law "// &
                   "'exponential' has it, and not 'table'"//doc)
-      call refuse(8, "  table_density=1000.0, 1004.0, 1003.0", ":8: &fluid: table_density must "// &
-                  "not fall, and does from 1004.0 to 1003.0"//doc)
+      call refuse(8, "  table_density=1000.0, 1004.0, 1003.0", ":8: &fluid: table_density "// &
+                  "must not decrease, but does from 1004.0 to 1003.0"//doc)
       call refuse(8, "  table_density=1000.0, 1008.0, 1038.0", ":4: &fluid: compressibility is "// &
                   "4.0e-10 but must be that of the table at reference_pressure, 7.65e-10, "// &
                   "which "// &
@@ -212,7 +211,7 @@ contains
       call refuse_all([character(len=100) :: good(:3), &
                        "&fluid compressibility=4.0e-10 viscosity=1.0e-3 reference_pressure=1.0 /", &
                        good(10:)], ":4: &fluid: reference_pressure is given, but neither "// &
-                      "viscosity_law nor density_law depends on it; leave it out"//doc)
+                      "viscosity_law nor density_law depends on it; omit it"//doc)
       call refuse_all([character(len=100) :: good(:3), &
                        "&fluid compressibility=4e-10 viscosity=1e-3 table_pressure=0.0, 1.0 /", &
                        good(10:)], ":4: &fluid: table_pressure is given, but neither "// &

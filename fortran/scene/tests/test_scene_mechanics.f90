@@ -53,16 +53,17 @@ program test_scene_mechanics
                "&restraint either")
    call refuse(4, "&restraint x=0 y=0 y_displacement=0 /", "give a &side or a "// &
                "&restraint an x_displacement")
-   call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: holds nothing", &
+   call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: has no component", &
                and_4="&side name='left' x_displacement=0 y_displacement=0 /")
    call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must differ from from, 2.0")
    call accept("a load that falls", 8, "&load from=2 to=-1 /")
    call accept("a load that goes to and fro", 8, "&load factors=0 1 0.4 -0.5 steps=3 /")
    call accept("to and fro from elsewhere", 8, "&load factors=0.5 from=-1 control='dead' /")
-   call refuse(8, "&load factors=1 0 to=2 /", ":8: &load: to is given beside factors, whose "// &
-               "last it would be, but must not be")
+   call refuse(8, "&load factors=1 0 to=2 /", ":8: &load: to is given with factors, which "// &
+               "determine it, but must not be")
    call refuse(8, "&load factors=1 0 control='length' /", ":8: &load: control is 'length' but "// &
-               "must be 'dead' with factors, between which growth would take the load elsewhere")
+               "must be 'dead' with factors, since growth under length control changes the "// &
+               "load")
    call refuse(8, "&load factors=1 0.5 0.5 /", ":8: &load: factors has 0.5 twice in a row, but "// &
                "each factor must differ from the one before it")
    call refuse(8, "&load factors=2 from=2 /", ":8: &load: factors is 2.0 but must differ from "// &

@@ -129,37 +129,38 @@ contains
                   "the rest of region 'c' give an outline that crosses or touches itself near ")
       call refuse(9, "  x_other=3, -1 y_other=0.9, 0.9 permeability=1e-16 /", ":8: &region: x "// &
                   "and the rest of region 'b' give an outline that crosses or touches itself near ")
-    call refuse(5, "  y=1.1, 1.1, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
-                  "of region 'p' give a region without any part of the body but must give one "// &
-                  "that holds some of it"//doc)
-    call refuse(5, "  y=1.0, 1.0, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the rest "// &
-                  "of region 'p' give a region without any part of the body but must give one "// &
-                  "that holds some of it"//doc)
+      call refuse(5, "  y=1.1, 1.1, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the "// &
+                  "rest of region 'p' define a region outside the body, but it must contain a "// &
+                  "part of the body"//doc)
+      call refuse(5, "  y=1.0, 1.0, 1.4, 1.4 permeability=1e-14 /", ":4: &region: x and the "// &
+                  "rest of region 'p' define a region outside the body, but it must contain a "// &
+                  "part of the body"//doc)
    end subroutine check_points
 
    subroutine check_permeability()
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: name is given, but the region "// &
-                  "has no rock of its own: it must give at least one of young, poisson, biot, "// &
+                  "has no rock properties: it must have at least one of young, poisson, biot, "// &
                   "porosity, permeability, density, toughness"//doc)
      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
                   "is -1e-14 but must be a finite number greater than 0.0 [m2]"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-14 permeability_xx=1e-14 /", &
-                  ":5: &region: permeability is given beside components of the tensor but must "// &
-                  "be given alone or not at all"//doc)
+                  ":5: &region: permeability is given with components of the tensor, but only "// &
+                  "one of the two may be given"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 /", ":6: &region: permeability_yy is "// &
                   "missing but must be given with the other components of the tensor"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-14 "// &
-               "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must be "// &
-                  "smaller than sqrt(permeability_xx permeability_yy), for the tensor must be "// &
-                  "positive definite"//doc)
+                  "permeability_xy=2e-14 /", ":7: &region: permeability_xy is 2.0e-14 but must "// &
+                  "be smaller than sqrt(permeability_xx permeability_yy), since the tensor "// &
+                  "must be positive definite"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-18 /", &
-                  ":7: &region: permeability_xx and its companions make the rock 10000.0 times "// &
-                  "more permeable one way than across it, but the fluxes between cells hold "// &
-                  "for a ratio of at most 1000.0"//doc)
+                  ":7: &region: permeability_xx and the other components make the rock "// &
+                  "10000.0 times more permeable in one direction than across it, but the flux "// &
+                  "approximation is valid for a ratio of at most 1000.0"//doc)
       call refuse(7, "  y=1.0, 0.0 permeability_xx=1e-14 permeability_yy=1e-14 "// &
-                  "permeability_xy=0.9999e-14 /", ":7: &region: permeability_xx and its "// &
-                "companions make the rock 20000.0 times more permeable one way than across it, "// &
-                  "but the fluxes between cells hold for a ratio of at most 1000.0"//doc)
+                  "permeability_xy=0.9999e-14 /", ":7: &region: permeability_xx and the other "// &
+                  "components make the rock 20000.0 times more permeable in one direction "// &
+                  "than across it, but the flux approximation is valid for a ratio of at most "// &
+                  "1000.0"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-28 /", ":5: &region: permeability "// &
                 "of region 'p' and the permeability of the rock around it or of another region "// &
                   "differ by more than a factor of 1e12 but must not"//doc)
@@ -191,8 +192,8 @@ contains
       call refuse(5, first//"young=1e20 /", ":5: &region: young of region 'p' and that of the "// &
                   "rock around it or of another region differ by more than a factor of 1e9 "// &
                   "but must not"//doc)
-      call refuse(5, first//"density=2700.0 /", ":5: &region: density is 2700.0 but nothing "// &
-                  "gives it weight; give &gravity, or leave the density out"//doc)
+      call refuse(5, first//"density=2700.0 /", ":5: &region: density is 2700.0 but there is "// &
+                  "no gravity; give &gravity, or omit the density"//doc)
    end subroutine check_rock
 
    subroutine check_round_trip()

@@ -107,7 +107,7 @@ contains
       call checks%is_close(scene%sides(4)%traction(2), -1.0e6_rk, 0.0_rk, "a constant beside it")
       call expect_same()
       call read_with("&side name='top' schedule='"//table//"' pressure=1e6 /")
-      call checks%fails_with(error, path//":9: &side: pressure is given beside schedule", &
+      call checks%fails_with(error, path//":9: &side: pressure is given with schedule", &
                              "what a table says is given once")
    end subroutine check_table
 
@@ -118,10 +118,10 @@ contains
                   "one, unless time says when they hold")
       call expect("time=0,10 x_traction=-1e6", ":9: &side: time is given, but no value of the "// &
                   "side changes with it")
-      call expect("time=0,10,5 x_traction=0,1,2", ":9: &side: time goes back from 10.0 to 5.0")
+      call expect("time=0,10,5 x_traction=0,1,2", ":9: &side: time decreases from 10.0 to 5.0")
       call expect("time=0,5,5,5 x_traction=0,1,2,3", ":9: &side: time has 5.0 three times")
-      call expect("pressure=1e6 inflow=1e-9", ":9: &side: inflow is given beside pressure")
-      call expect("x_displacement=0 x_spring=1e9", ":9: &side: x_spring is given beside "// &
+      call expect("pressure=1e6 inflow=1e-9", ":9: &side: inflow is given with pressure")
+      call expect("x_displacement=0 x_spring=1e9", ":9: &side: x_spring is given with "// &
                   "x_displacement")
       call expect("y_spring=-1e9", ":9: &side: y_spring is -1e9 but must be a finite number"// &
                   " greater than 0.0")

@@ -33,7 +33,7 @@ contains
       call refuses(kind_real, "NaN", "is NaN but must be a finite number")
       call refuses(kind_real, "Infinity", "is Infinity but must be a finite number")
       call refuses(kind_real, "1e999", "is 1e999 but must be a finite number")
-      call refuses(kind_real, "1.7976931348623157e308", "must be a smaller number")
+      call refuses(kind_real, "1.7976931348623157e308", "is too large")
       call refuses(kind_real, "40GPa", "is 40GPa but must be a finite number")
       call refuses(kind_real, "1.0.0", "must be a finite number")
       call refuses(kind_real, "1e", "must be a finite number")

@@ -74,10 +74,10 @@ contains
       call put_lines(table, [character(len=40) :: "# stages", "rate_m2_s, time_s", " 1e-7 , 0", &
                              "", "2.5e-7,60", "# and shut in", "0,120"])
       call read_with("&injection fracture='f1' schedule='"//table//"' rate=1e-7 /")
-      call checks%fails_with(error, path//":10: &injection: rate is given beside schedule", &
+      call checks%fails_with(error, path//":10: &injection: rate is given with schedule", &
                              "what a table says is given once")
       call read_with("&injection fracture='f1' schedule='"//table//"' start=1.0 /")
-      call checks%fails_with(error, path//":10: &injection: start is given beside schedule", &
+      call checks%fails_with(error, path//":10: &injection: start is given with schedule", &
                              "when a table begins as well")
       call read_with("&injection fracture='f1' schedule='"//table//"' pressure=9e6 /")
       call checks%no_error(error, "a limit beside a table of rates")
@@ -135,24 +135,24 @@ contains
                   "fracture, or x and y in the rock"//doc)
       call refuse("&injection fracture='f1' rate=1e-7 radius=0.1 /", here//"radius is given, "// &
                   "but only a well in the rock has one, and this one is in a fracture"//doc)
-      call refuse("&injection fracture='f1' rate=1e-7 time=0 start=1 /", here//"start is given "// &
-                  "beside time, whose first value it would be, but must not be"//doc)
+      call refuse("&injection fracture='f1' rate=1e-7 time=0 start=1 /", here//"start is "// &
+                  "given with time, whose first value determines it, but must not be"//doc)
       call refuse("&injection fracture='f1' rate=1e-7,2e-7 /", here//"rate has 2 values but "// &
                   "must have one"//doc)
       call refuse("&injection fracture='f1' rate=1e-7,2e-7 time=0,10,20 /", here//"rate has 2 "// &
                   "values but must have as many as time, 3"//doc)
-      call refuse("&injection fracture='f1' rate=1e-7,2e-7,0 time=0,20,10 /", here//"time goes "// &
-                  "back: stage 3 begins at 10.0, but must begin after stage 2, 20.0"//doc)
+      call refuse("&injection fracture='f1' rate=1e-7,2e-7,0 time=0,20,10 /", here//"time "// &
+                  "decreases: stage 3 begins at 10.0, but must begin after stage 2, 20.0"//doc)
       call refuse("&injection fracture='f1' rate=1e-7,2e-7 time=0,20 end=15 /", here//"end is "// &
                   "15.0 but must be after the beginning of the last stage, 20.0"//doc)
       call refuse("&injection x=0.3 y=1.2 rate=1e-7 /", here//"x and y are (0.3, 1.2) but must "// &
                   "lie within the domain"//doc)
-      call refuse("&injection x=0.3 y=0.2 pressure=1e6 /", here//"radius is 0.1 but must be at "// &
-                  "most a twentieth of the smallest cells, 5.0e-4, where the rate follows from "// &
-                  "pressures"//doc)
+      call refuse("&injection x=0.3 y=0.2 pressure=1e6 /", here//"radius is 0.1 but must be "// &
+                  "at most a twentieth of the smallest cells, 5.0e-4, for a well with a "// &
+                  "pressure control"//doc)
       call refuse("&injection x=0.3 y=0.2 radius=1e-4 pressure=1e6 turbulence=1 /", here// &
-                  "turbulence is given, but a well in the rock whose rate follows from "// &
-                  "pressures must not have it"//doc)
+                  "turbulence is given, but a well in the rock with a pressure control must "// &
+                  "not have it"//doc)
       call refuse("&initial pressure=1e6 / &injection fracture='f1' rate=-1e-7 pressure=-1e5 /", &
                   here//"pressure is -100000.0 but must be at least the vapour pressure, 0.0"//doc)
       call refuse("&injection fracture='f1' rate=1e-7 storage=-1 /", here//"storage is -1 but "// &
@@ -175,9 +175,9 @@ contains
       call refuse_table("time_s,rate_m2_s", "0", ":2: the row has 1 values but must have 2, "// &
                         "one per column"//doc)
       call refuse_table("time_s,time_h", "0,1", ":1: the column 'time_s' is given twice"//doc)
-      call refuse_table("time_s,rate_m2_s", "0,5,1,2", ":2: the row has 4 values but must have "// &
-                        "2, one per column; where numbers have a decimal comma, semicolons or "// &
-                        "tabs must part the columns"//doc)
+      call refuse_table("time_s,rate_m2_s", "0,5,1,2", ":2: the row has 4 values but must "// &
+                        "have 2, one per column; with decimal commas, columns must be "// &
+                        "separated by semicolons or tabs"//doc)
       call refuse_table("time_s;rate_m2_s", "0;1.000,5", ":2: rate_m2_s has several values"//doc)
       call refuse_table("time_s;rate_m2_s", "0,1e-7", ":2: the row has 1 values but must have "// &
                         "2, one per column"//doc)

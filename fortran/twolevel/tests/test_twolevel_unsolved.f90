@@ -35,11 +35,11 @@ program test_twolevel_unsolved
    report%reason = "a fracture cell has less fluid than is drawn from it"
    call says("fracture 'long' has less fluid at (1.5, 0) m than flows out of it there", &
              [1.0_rk, 2.0_rk, 0.0_rk], "no well draws")
-  call says("fracture 'long' has less fluid at (1.5, 0) m than well 'b' draws: give the well a "// &
-             "pressure as its limit, or a smaller rate", [-5.0_rk, -2.0_rk, -3.0_rk], &
+   call says("fracture 'long' has less fluid at (1.5, 0) m than well 'b' extracts: give the "// &
+             "well a pressure as its limit, or a smaller rate", [-5.0_rk, -2.0_rk, -3.0_rk], &
              "the well that draws most from the cell")
-  call says("fracture 'long' has less fluid at (1.5, 0) m than well 'a' draws: give the well a "// &
-             "pressure as its limit, or a smaller rate", [-5.0_rk, 2.0_rk, 0.0_rk], &
+   call says("fracture 'long' has less fluid at (1.5, 0) m than well 'a' extracts: give the "// &
+             "well a pressure as its limit, or a smaller rate", [-5.0_rk, 2.0_rk, 0.0_rk], &
              "the well that draws from the fracture")
    report%cell = 3
    call says("fracture 'short' has less fluid at (0.25, 0.75) m than flows out of it there", &

@@ -1,4 +1,4 @@
-"""What commands are declared with: by these, Click makes the command line (`with_click`)."""
+"""Declarations of commands, from which Click makes the command line (`with_click`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What measures, tests, builds and documents the program."""
+"""Commands that measure, test, build and document the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line as a program: what it does on its way out of the ordinary."""
+"""The command line as a program, with its errors and interruptions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is made of runs: plot, view and study."""
+"""Commands that use runs: plot, view and study."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _judge_folder(directory: Path) -> None:
         whole(1, 1024),
     ),
     Parameter("--out", "DIR", "where the results go (default: out/STUDY)", Path),
-    flag("--quick", "the short form that the study's file tells in [quick]"),
+    flag("--quick", "the short form defined in [quick] of the study's file"),
     choice(
         "--cluster",
         CLUSTERS,

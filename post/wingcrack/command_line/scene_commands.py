@@ -1,4 +1,4 @@
-"""What writes scenes: new, import and network."""
+"""Commands that write scenes: new, import and network."""
 
 from __future__ import annotations
 

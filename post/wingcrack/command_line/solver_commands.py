@@ -1,4 +1,4 @@
-"""What is done by the solver: run and check."""
+"""Commands of the solver: run and check."""
 
 from __future__ import annotations
 
