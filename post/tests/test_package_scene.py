@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import wingcrack
-from wingcrack.parameter_table import read_description
+from wingcrack.runs.parameter_table import read_description
 
 TOP = Path(__file__).resolve().parents[2]
 ONSET = TOP / "inputs" / "paper_c" / "onset.nml"

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from wingcrack_study.distributions import read_draws
+from wingcrack.studies.distributions import read_draws
 from wingcrack_verify.errors import CaseError
 
 COUNT = 50

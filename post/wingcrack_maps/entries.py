@@ -8,11 +8,11 @@ import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from wingcrack.scenes.errors import SceneError
+from wingcrack.scenes.namelist import Value
+from wingcrack.scenes.parameters import Group, Parameter, groups
 from wingcrack_maps.features import Area, Line, Map
 from wingcrack_maps.geometry import NAMES
-from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.namelist import Value
-from wingcrack_scenes.parameters import Group, Parameter, groups
 
 _LONGEST = 64  # characters of a name
 _GEOMETRIC = ("name", "x", "y", "x_other", "y_other", "x_vertex", "y_vertex", "curvature", "shape")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post import text_files
+from wingcrack.figures import text_files
 from wingcrack_verify.contents import (
     Case,
     Check,

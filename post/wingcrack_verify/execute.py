@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from wingcrack_post.errors import EnvironmentLacksError
-from wingcrack_runner.outcome import Outcome
-from wingcrack_runner.pool import Pool
-from wingcrack_runner.task import Task, hash_of, tables_of
+from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.runner.outcome import Outcome
+from wingcrack.runner.pool import Pool
+from wingcrack.runner.task import Task, hash_of, tables_of
 from wingcrack_verify.contents import Run
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.scene import scene_text

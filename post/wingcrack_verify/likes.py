@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from wingcrack_post import text_files
+from wingcrack.figures import text_files
 from wingcrack_verify.errors import CaseError
 
 Table: TypeAlias = dict[str, Any]

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack_post.errors import RunError
-from wingcrack_post.growth import read_growth
-from wingcrack_post.table import Table
-from wingcrack_post.text_files import read_json
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.growth import read_growth
+from wingcrack.figures.table import Table
+from wingcrack.figures.text_files import read_json
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import Array
 

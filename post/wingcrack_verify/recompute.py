@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista
 
-from wingcrack_post.text_files import csv_rows, read_json
+from wingcrack.figures.text_files import csv_rows, read_json
 
 Numbers: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = dict[str, npt.NDArray[Any]]

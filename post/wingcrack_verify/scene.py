@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import f90nml
 
-from wingcrack_post.text_files import namelist_groups, read_text
+from wingcrack.figures.text_files import namelist_groups, read_text
 from wingcrack_verify.errors import CaseError
 
 _Groups: TypeAlias = dict[str, list[Any]]

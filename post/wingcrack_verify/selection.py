@@ -12,9 +12,9 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack_post.errors import RunError
-from wingcrack_post.table import Table, read_table
-from wingcrack_post.text_files import read_json
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.table import Table, read_table
+from wingcrack.figures.text_files import read_json
 from wingcrack_verify.errors import CaseError
 from wingcrack_verify.expressions import FUNCTIONS, Array, evaluate, names_in
 from wingcrack_verify.fields import Fields, as_number

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post.text_files import is_file, read_json
+from wingcrack.figures.text_files import is_file, read_json
 from wingcrack_verify.case import read_toml, refuse_doubles
 from wingcrack_verify.contents import Run
 from wingcrack_verify.draws import read_draw
