@@ -118,7 +118,7 @@ def test_plot_hands_over_to_the_figures(ready_tree: Tree, status: int) -> None:
 
 
 def test_modules_of_the_working_directory_are_not_executed(ready_tree: Tree) -> None:
-    for name in ("argparse", "numpy", "pathlib", "wingcrack.figures"):
+    for name in ("argparse", "numpy", "pathlib", "wingcrack"):
         (ready_tree.place / f"{name}.py").write_text("raise SystemExit('not this one')\n")
     paths = {"PYTHONPATH": str(ready_tree.place), "POST_IMPORTS": "argparse"}
     done = ready_tree.call("plot", ".", **paths)

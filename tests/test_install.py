@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from launcher_tree import TOP
 
-from wingcrack.figures import __version__
+from wingcrack import __version__
 
 
 @pytest.fixture(scope="module")

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from wingcrack.runs.run import Run, Scene
     from wingcrack.runs.run import open_run as open  # noqa: A004
 
+__version__ = "0.2.0"
+
 __all__ = [
     "AbsentError",
     "EnvironmentLacksError",

@@ -13,15 +13,12 @@ if TYPE_CHECKING:
     from wingcrack.figures.read import Run, read_run
     from wingcrack.figures.table import Table, read_table
 
-__version__ = "0.2.0"
-
 __all__ = [
     "AbsentError",
     "EnvironmentLacksError",
     "Run",
     "RunError",
     "Table",
-    "__version__",
     "read_run",
     "read_table",
 ]
