@@ -100,6 +100,24 @@ def test_requirements_hold_all_that_is_imported() -> None:
     assert undeclared(foreign, lines) == {}
 
 
+def test_packages_need_each_other_in_one_direction() -> None:
+    for own, others in {
+        "wingcrack": ["wingcrack_docs", "wingcrack_maps", "wingcrack_verify"],
+        "wingcrack_maps": ["wingcrack_docs", "wingcrack_verify"],
+        "wingcrack_verify": ["wingcrack_docs"],
+    }.items():
+        assert imported([own]).keys().isdisjoint(others)
+
+
+def test_what_is_in_the_wheel_needs_no_part_that_is_not() -> None:
+    _, inside, outside = wheel()
+    for path in (path for one in inside for path in (POST / one).rglob("*.py")):
+        place = ".".join(path.relative_to(POST).with_suffix("").parts)
+        if not any(fnmatch(place, pattern) for pattern in outside):
+            for module in imports(ast.parse(path.read_text("utf-8")), at_once=False):
+                assert not any(fnmatch(module, pattern) for pattern in outside), (place, module)
+
+
 def test_no_modules_import_each_other_in_a_circle() -> None:
     modules = {
         ".".join(path.relative_to(POST).with_suffix("").parts): path

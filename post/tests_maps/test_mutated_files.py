@@ -14,9 +14,9 @@ from test_gmsh_files import MESH, RECTANGLES
 from wingcrack.figures.errors import RunError
 from wingcrack.figures.read import read_run
 from wingcrack.studies.study import read_study
+from wingcrack.sweeps.errors import CaseError
 from wingcrack_maps import cli
 from wingcrack_verify.case import read_case
-from wingcrack_verify.errors import CaseError
 
 FRACTURES = """\
 &fluid viscosity = 1.0e-3 /

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from wingcrack.studies.distributions import read_draws
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 COUNT = 50
 

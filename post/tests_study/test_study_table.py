@@ -18,7 +18,7 @@ from wingcrack.studies.plots import Plot, read_plot
 from wingcrack.studies.running import done_before, tasks_of
 from wingcrack.studies.study import Study, read_study
 from wingcrack.studies.table import StudyTable, make_table, write_csv, write_parquet
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 DRAW = """\
 [draw]

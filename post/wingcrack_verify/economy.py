@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from wingcrack.figures.text_files import read_json
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
 from wingcrack_verify.orders import Point
 
 

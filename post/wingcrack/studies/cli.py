@@ -27,7 +27,7 @@ from wingcrack.studies.table import (
     write_statistics,
     write_text,
 )
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 _ENDED_BY = {signal.SIGINT: 130, signal.SIGTERM: 143}
 

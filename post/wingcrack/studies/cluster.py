@@ -11,8 +11,8 @@ from typing import Any
 
 from wingcrack.figures.choices import CLUSTERS
 from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
 
 # Module and class of each kind, and what must be installed for it.
 _CLASSES = {

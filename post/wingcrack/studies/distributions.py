@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.sweep import Table
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.sweep import Table
 
 KINDS = ("uniform", "log_uniform", "normal", "lognormal", "integers", "of")
 METHODS = ("latin_hypercube", "random")

@@ -19,9 +19,9 @@ from wingcrack.studies.quantities import Quantity
 from wingcrack.studies.study import Parameter, Study, StudyRun
 from wingcrack.studies.table import StudyTable
 from wingcrack.studies.units import NONE, axis_label, pretty_number, pretty_unit, spoken
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array
-from wingcrack_verify.selection import Values
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
+from wingcrack.sweeps.selection import Values
 
 _WIDTH, _HEIGHT = 0.7 * style.DOUBLE_COLUMN, 3.0  # [inch]
 _MOST_IN_LEGEND = 12

@@ -13,9 +13,9 @@ from wingcrack.figures.errors import RunError
 from wingcrack.figures.table import read_table
 from wingcrack.figures.text_files import read_json
 from wingcrack.studies import TOP
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.paths import COLUMNS, NETWORK
-from wingcrack_verify.selection import Selection, Values, names_of, select
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.paths import COLUMNS, NETWORK
+from wingcrack.sweeps.selection import Selection, Values, names_of, select
 
 OUTPUT_PAGE = TOP / "docs" / "output.md"
 

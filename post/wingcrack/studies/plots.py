@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.selection import Selection, read_selection
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.selection import Selection, read_selection
 
 KINDS = ("lines", "over", "band", "histogram")
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.units import column_name
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.selection import Selection, read_selection
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.selection import Selection, read_selection
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from wingcrack.runner.task import ONE_THREAD, Task, copy_tables, tables_of
 from wingcrack.studies import TOP, remote
 from wingcrack.studies.cluster import Cluster, connect
 from wingcrack.studies.study import Study, StudyRun
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.execute import scene_hash
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.scene import scene_hash
 
 SOLVER = Path("fortran") / "app" / "wingcrack-solver"
 RUNS = "runs"  # the folder of all runs' folders

@@ -17,12 +17,11 @@ from wingcrack.studies.outputs import judge_selection
 from wingcrack.studies.plots import Plot, read_plot
 from wingcrack.studies.quantities import Quantity, read_quantity
 from wingcrack.studies.units import NONE, column_name, spoken, unit_of_path
-from wingcrack_verify.case import TIME_LIMIT_S, read_toml
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.scene import scene_text
-from wingcrack_verify.selection import Selection
-from wingcrack_verify.sweep import Table, filled, grid_points
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import TIME_LIMIT_S, Fields, read_toml
+from wingcrack.sweeps.scene import scene_text
+from wingcrack.sweeps.selection import Selection
+from wingcrack.sweeps.sweep import Table, filled, grid_points
 
 INPUT_PAGE = TOP / "docs" / "input.md"
 MOST_RUNS = 10_000

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.sweeps.errors import CaseError
 from wingcrack_verify.bench.baseline import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
@@ -37,7 +38,6 @@ from wingcrack_verify.bench.table import (
     instructions_ratio,
 )
 from wingcrack_verify.environment import machine, revision
-from wingcrack_verify.errors import CaseError
 
 
 def bench(given: SimpleNamespace) -> int:

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from wingcrack.sweeps.scene import scene_text
 from wingcrack_verify.bench.catalogue import TOP, Benchmark
-from wingcrack_verify.scene import scene_text
 
 
 def write_scene(benchmark: Benchmark, folder: Path, more: Mapping[str, Any] | None = None) -> Path:

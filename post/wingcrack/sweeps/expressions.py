@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 Array = npt.NDArray[np.float64]
 

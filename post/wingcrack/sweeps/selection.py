@@ -15,10 +15,10 @@ import numpy.typing as npt
 from wingcrack.figures.errors import RunError
 from wingcrack.figures.table import Table, read_table
 from wingcrack.figures.text_files import read_json
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import FUNCTIONS, Array, evaluate, names_in
-from wingcrack_verify.fields import Fields, as_number
-from wingcrack_verify.paths import NETWORK, network_table
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import FUNCTIONS, Array, evaluate, names_in
+from wingcrack.sweeps.fields import Fields, as_number
+from wingcrack.sweeps.paths import NETWORK, network_table
 
 T = TypeVar("T")
 Mask = npt.NDArray[np.bool_]

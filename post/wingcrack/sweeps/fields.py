@@ -5,10 +5,13 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-from wingcrack_verify.errors import CaseError
+from wingcrack.figures import text_files
+from wingcrack.sweeps.errors import CaseError
 
+TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
 REQUIRED: Any = object()
 
 
@@ -113,6 +116,16 @@ class Fields:
         if not isinstance(value, kind) or value == "":
             raise CaseError(f"{self.place}: '{key}' must be {name}")
         return value
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file; a `CaseError` tells what is wrong with it."""
+    try:
+        return text_files.read_toml(path)
+    except FileNotFoundError:
+        raise CaseError(f"{path.name} is missing") from None
+    except (OSError, ValueError) as reason:
+        raise CaseError(f"{path.name}: {reason}") from None
 
 
 def as_number(value: Any, place: str) -> float:

@@ -11,10 +11,10 @@ import re
 from collections.abc import Mapping, Sequence, Set
 from typing import Any, TypeAlias
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import FUNCTIONS, evaluate, names_in
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.likes import Likes, joined
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import FUNCTIONS, evaluate, names_in
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.likes import Likes, joined
 
 Table: TypeAlias = dict[str, Any]
 

@@ -11,8 +11,8 @@ from wingcrack.figures.errors import RunError
 from wingcrack.figures.growth import read_growth
 from wingcrack.figures.table import Table
 from wingcrack.figures.text_files import read_json
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
 
 NETWORK = "network.json"  # the file that is read as a table of vertices
 COLUMNS = ("fracture", "name", "part", "vertex", "s_m", "x_m", "y_m")

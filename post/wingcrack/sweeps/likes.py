@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from wingcrack.figures import text_files
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 Table: TypeAlias = dict[str, Any]
 
