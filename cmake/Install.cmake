@@ -31,7 +31,7 @@ install(
   PATTERN "tests*" EXCLUDE
   PATTERN "__pycache__" EXCLUDE
   PATTERN "*.egg-info" EXCLUDE
-  PATTERN "wingcrack_bench" EXCLUDE
+  PATTERN "bench" EXCLUDE
   PATTERN "wingcrack_docs" EXCLUDE
 )
 install(DIRECTORY inputs docs DESTINATION share/wingcrack)

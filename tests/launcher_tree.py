@@ -172,18 +172,10 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)
     (root / "fortran" / "a_solver.sh").write_text(_SOLVER)
     # The real command line understands the arguments; what is done with them is replaced.
-    shutil.copytree(TOP / "post" / "wingcrack", root / "post" / "wingcrack")
-    for package in (
-        "wingcrack_post",
-        "wingcrack_view",
-        "wingcrack_study",
-        "wingcrack_verify",
-        "wingcrack_bench",
-        "wingcrack_scenes",
-        "wingcrack_maps",
-    ):
+    for package in ("wingcrack", "wingcrack_verify", "wingcrack_maps"):
         shutil.copytree(TOP / "post" / package, root / "post" / package)
-        (root / "post" / package / "cli.py").write_text(_POST)
+    for file in (root / "post").rglob("cli.py"):
+        file.write_text(_POST)
     place = folder / "place"
     place.mkdir()
     return Tree(root, place)

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from wingcrack.command_line import main, understand
-from wingcrack_bench import cli
-from wingcrack_bench.baseline import Baseline, differences, made_with, read_baseline, store
-from wingcrack_bench.catalogue import TOP, read_benchmarks
-from wingcrack_bench.growth import exponents, fit
-from wingcrack_bench.measure import Measurement, Run
-from wingcrack_bench.scenes import write_scene
-from wingcrack_bench.table import as_growth, as_phases, as_table
+from wingcrack_verify.bench import cli
+from wingcrack_verify.bench.baseline import Baseline, differences, made_with, read_baseline, store
+from wingcrack_verify.bench.catalogue import TOP, read_benchmarks
+from wingcrack_verify.bench.growth import exponents, fit
+from wingcrack_verify.bench.measure import Measurement, Run
+from wingcrack_verify.bench.scenes import write_scene
+from wingcrack_verify.bench.table import as_growth, as_phases, as_table
 
 
 def _run(cpu_s: float, cells: int = 100) -> Run:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from launcher_tree import TOP
 
-from wingcrack_post import __version__
+from wingcrack import __version__
 
 LAUNCHER = TOP / "wingcrack"
 SCENE = TOP / "inputs" / "paper_c" / "onset.nml"

@@ -118,7 +118,7 @@ def test_plot_hands_over_to_the_figures(ready_tree: Tree, status: int) -> None:
 
 
 def test_modules_of_the_working_directory_are_not_executed(ready_tree: Tree) -> None:
-    for name in ("argparse", "numpy", "pathlib", "wingcrack_post"):
+    for name in ("argparse", "numpy", "pathlib", "wingcrack"):
         (ready_tree.place / f"{name}.py").write_text("raise SystemExit('not this one')\n")
     paths = {"PYTHONPATH": str(ready_tree.place), "POST_IMPORTS": "argparse"}
     done = ready_tree.call("plot", ".", **paths)
@@ -158,7 +158,7 @@ def test_a_library_that_is_gone_is_named(own_tree: Tree) -> None:
 
 
 def test_fonts_are_listed_beside_the_environment(ready_tree: Tree) -> None:
-    package = ready_tree.root / "post" / "wingcrack_post" / "cli.py"
+    package = ready_tree.root / "post" / "wingcrack" / "figures" / "cli.py"
     stand_in = package.read_text()
     package.write_text(
         "import os\ndef plot(_given):\n    print(os.environ['MPLCONFIGDIR'])\n    return 0\n"

@@ -183,7 +183,7 @@ def test_python_of_the_environment_finds_the_packages(own_tree: Tree) -> None:
             [
                 own_tree.root / ".venv/bin/python",
                 "-c",
-                "import wingcrack_post as p; print(p.__file__)",
+                "import wingcrack as p; print(p.__file__)",
             ],
             cwd=own_tree.place,
             capture_output=True,
@@ -192,7 +192,7 @@ def test_python_of_the_environment_finds_the_packages(own_tree: Tree) -> None:
         )
         return done.stdout.strip()
 
-    expected = str(own_tree.root / "post" / "wingcrack_post" / "__init__.py")
+    expected = str(own_tree.root / "post" / "wingcrack" / "__init__.py")
     assert own_tree.call("check", own_tree.scene()).returncode == 0
     assert found() == expected
     (path,) = own_tree.root.glob(".venv/lib/python3*/site-packages/wingcrack.pth")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from launcher_tree import TOP
 
-from wingcrack_post import __version__
+from wingcrack import __version__
 
 
 @pytest.fixture(scope="module")
@@ -83,4 +83,7 @@ def test_a_python_that_will_not_do_is_named(prefix: Path, tmp_path: Path) -> Non
 
 
 def test_tests_stay_with_the_sources(prefix: Path) -> None:
-    assert not list((prefix / "lib" / "wingcrack" / "post").glob("tests*"))
+    packages = prefix / "lib" / "wingcrack" / "post"
+    assert not list(packages.glob("tests*"))
+    assert (packages / "wingcrack_verify").is_dir()
+    assert not (packages / "wingcrack_verify" / "bench").exists()

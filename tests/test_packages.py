@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fnmatch import fnmatch
 from graphlib import TopologicalSorter
 from importlib.metadata import packages_distributions
@@ -31,11 +31,16 @@ def imports(node: ast.AST, *, at_once: bool) -> Iterator[str]:
         yield from imports(child, at_once=at_once)
 
 
-def imported(packages: list[str], *, at_once: bool = False) -> dict[str, str]:
-    """Foreign packages that are imported, each with a file that does so."""
+def imported(
+    packages: list[str], *, at_once: bool = False, without: Sequence[str] = ()
+) -> dict[str, str]:
+    """Packages that are imported, each with a file that does so; `without` parts of some names."""
     found: dict[str, str] = {}
     for package in packages:
         for path in sorted((POST / package).rglob("*.py")):
+            place = ".".join(path.relative_to(POST).with_suffix("").parts)
+            if any(fnmatch(place, pattern) for pattern in without):
+                continue
             tree = ast.parse(path.read_text("utf-8"))
             for module in imports(tree, at_once=at_once):
                 found[module.partition(".")[0]] = str(path.relative_to(POST))
@@ -61,23 +66,25 @@ def undeclared(found: dict[str, str], requirements: list[str]) -> dict[str, str]
     }
 
 
-def wheel() -> tuple[dict[str, Any], list[str]]:
-    """What pyproject.toml says of the wheel, and which packages are in it."""
+def wheel() -> tuple[dict[str, Any], list[str], list[str]]:
+    """What pyproject.toml says of the wheel, which packages are in it, and which parts are not."""
     content = tomllib.loads((TOP / "pyproject.toml").read_text("utf-8"))
-    patterns = content["tool"]["setuptools"]["packages"]["find"]["include"]
-    inside = [name for name in OWN if any(fnmatch(name, pattern) for pattern in patterns)]
+    find = content["tool"]["setuptools"]["packages"]["find"]
+    inside = [name for name in OWN if any(fnmatch(name, one) for one in find["include"])]
     assert "wingcrack" in inside
-    return content["project"], inside
+    return content["project"], inside, find["exclude"]
 
 
 def test_the_wheel_declares_what_it_imports() -> None:
-    project, inside = wheel()
+    project, inside, outside = wheel()
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]
-    at_once = imported(inside, at_once=True)
+    at_once = imported(inside, at_once=True, without=outside)
     assert {"numpy", "matplotlib", "f90nml"} <= set(at_once)
     foreign = {name: path for name, path in at_once.items() if name not in inside}
     assert undeclared(foreign, project["dependencies"]) == {}
-    every = {name: path for name, path in imported(inside).items() if name not in inside}
+    every = {
+        name: path for name, path in imported(inside, without=outside).items() if name not in inside
+    }
     assert {"pandas", "pyvista"} <= set(every)
     assert undeclared(every, [*project["dependencies"], *extras]) == {}
     names = set(every) | {name.replace("_", "-") for name in every} | {"pillow"}
@@ -91,6 +98,24 @@ def test_requirements_hold_all_that_is_imported() -> None:
     lines = [line for path in lists for line in path.read_text("utf-8").splitlines()]
     foreign = {name: path for name, path in imported(OWN).items() if name not in OWN}
     assert undeclared(foreign, lines) == {}
+
+
+def test_packages_need_each_other_in_one_direction() -> None:
+    for own, others in {
+        "wingcrack": ["wingcrack_docs", "wingcrack_maps", "wingcrack_verify"],
+        "wingcrack_maps": ["wingcrack_docs", "wingcrack_verify"],
+        "wingcrack_verify": ["wingcrack_docs"],
+    }.items():
+        assert imported([own]).keys().isdisjoint(others)
+
+
+def test_what_is_in_the_wheel_needs_no_part_that_is_not() -> None:
+    _, inside, outside = wheel()
+    for path in (path for one in inside for path in (POST / one).rglob("*.py")):
+        place = ".".join(path.relative_to(POST).with_suffix("").parts)
+        if not any(fnmatch(place, pattern) for pattern in outside):
+            for module in imports(ast.parse(path.read_text("utf-8")), at_once=False):
+                assert not any(fnmatch(module, pattern) for pattern in outside), (place, module)
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:

@@ -7,7 +7,7 @@ import re
 import yaml  # type: ignore[import-untyped]
 from launcher_tree import TOP
 
-from wingcrack_post import __version__
+from wingcrack import __version__
 
 
 def test_the_version_is_the_same_everywhere() -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 from system_scene import TOP, call, numbers, record, rows, run
 
-from wingcrack_post import read_run
+from wingcrack.figures import read_run
 
 pytestmark = pytest.mark.usefixtures("program")
 

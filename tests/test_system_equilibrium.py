@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from system_scene import TOP, numbers, record, rows, run
 
-from wingcrack_post import read_run
-from wingcrack_post.equilibrium import equilibrium_path
+from wingcrack.figures import read_run
+from wingcrack.figures.equilibrium import equilibrium_path
 
 pytestmark = pytest.mark.usefixtures("program")
 

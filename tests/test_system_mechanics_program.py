@@ -11,8 +11,8 @@ import pytest
 from callgrind_profile import profile
 from system_scene import SCENE, SOLVER
 
-from wingcrack_bench.catalogue import read_benchmarks
-from wingcrack_bench.scenes import write_scene
+from wingcrack_verify.bench.catalogue import read_benchmarks
+from wingcrack_verify.bench.scenes import write_scene
 
 WITHOUT = SOLVER.with_name("wingcrack-mechanics")
 

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 from system_scene import SOLVER, TOP
 
+from wingcrack.sweeps.scene import scene_text
 from wingcrack_verify import recompute, recompute_growth
-from wingcrack_verify.scene import scene_text
 from wingcrack_verify.stability import ALL_FIELDS
 
 pytestmark = pytest.mark.usefixtures("program")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from system_scene import call, numbers, record, rows, run
 
-from wingcrack_post.facts import gather_facts
-from wingcrack_post.read import read_run
-from wingcrack_post.story import story
+from wingcrack.figures.facts import gather_facts
+from wingcrack.figures.read import read_run
+from wingcrack.figures.story import story
 
 pytestmark = pytest.mark.usefixtures("program")
 

@@ -26,10 +26,10 @@ import pytest
 import wingcrack
 from synthetic_run import HOUR, STEPS, fracture_cells, times, well_pressure
 from wingcrack.command_line import main
-from wingcrack.fields import read_fields
-from wingcrack_view import content
-from wingcrack_view.content import Content
-from wingcrack_view.server import serve
+from wingcrack.runs.fields import read_fields
+from wingcrack.view import content
+from wingcrack.view.content import Content
+from wingcrack.view.server import serve
 
 POST = Path(__file__).resolve().parents[1]
 _KINDS = {"Float32Array": "<f4", "Float64Array": "<f8", "Uint32Array": "<u4", "Uint8Array": "u1"}
@@ -200,7 +200,7 @@ def test_pages_of_other_hosts_cannot_use_what_they_fetch(page: Page) -> None:
     assert answer.headers["Content-Security-Policy"].startswith("default-src 'self'")
     assert answer.headers["Cross-Origin-Resource-Policy"] == "same-origin"
     assert "Access-Control-Allow-Origin" not in answer.headers
-    for file in (POST / "wingcrack_view" / "page").iterdir():
+    for file in (POST / "wingcrack" / "view" / "page").iterdir():
         text = file.read_text(encoding="utf-8").replace("http://www.w3.org/2000/svg", "")
         assert not re.search(r"https?://|//[a-z]+\.[a-z]+/", text), file
 
@@ -349,7 +349,7 @@ def test_a_browser_opens_where_there_is_a_display(
 ) -> None:
     addresses: list[str] = []
     monkeypatch.setattr("webbrowser.open", addresses.append)
-    monkeypatch.setattr("wingcrack_view.server.serve", lambda *_: _Ended())
+    monkeypatch.setattr("wingcrack.view.server.serve", lambda *_: _Ended())
     monkeypatch.setenv("DISPLAY", display)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     assert main(["view", str(wet_run)]) == 0

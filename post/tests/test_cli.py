@@ -13,9 +13,9 @@ import pytest
 from matplotlib.image import imread
 
 from wingcrack.command_line import main
-from wingcrack_post import style
-from wingcrack_post.figures import Outcome
-from wingcrack_post.read import Run
+from wingcrack.figures import style
+from wingcrack.figures.figures import Outcome
+from wingcrack.figures.read import Run
 
 POST = Path(__file__).resolve().parents[1]
 
@@ -79,7 +79,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         file.touch()
         return Outcome(kind.name, (file,))
 
-    monkeypatch.setattr("wingcrack_post.figures._drawn", pretend)
+    monkeypatch.setattr("wingcrack.figures.figures._drawn", pretend)
     return names
 
 
@@ -252,9 +252,9 @@ def test_help_has_an_example() -> None:
 
 def test_figure_libraries_are_loaded_only_when_needed() -> None:
     code = (
-        "import sys, wingcrack.command_line, wingcrack_post.cli\n"
+        "import sys, wingcrack.command_line, wingcrack.figures.cli\n"
         "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
-        "import wingcrack_post.figures\n"
+        "import wingcrack.figures.figures\n"
         "assert not {'pyvista', 'vtk', 'matplotlib.pyplot'} & set(sys.modules)\n"
     )
     done = subprocess.run(

@@ -9,8 +9,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 
-from wingcrack_post import read_run
-from wingcrack_post.geometry import draw_geometry
+from wingcrack.figures import read_run
+from wingcrack.figures.geometry import draw_geometry
 
 
 def test_tractions_are_arrows_and_told_where_they_are_uniform(own_run: Path) -> None:

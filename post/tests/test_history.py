@@ -20,9 +20,9 @@ from synthetic_run import (
     times,
     wing_length,
 )
-from wingcrack_post import AbsentError, read_run, style
-from wingcrack_post.history import balance, development, intensities
-from wingcrack_post.probes import probe_histories
+from wingcrack.figures import AbsentError, read_run, style
+from wingcrack.figures.history import balance, development, intensities
+from wingcrack.figures.probes import probe_histories
 
 
 def test_intensities_of_both_methods(wet_run: Path) -> None:

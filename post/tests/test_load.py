@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, TriMesh
 
 from synthetic_run import square
-from wingcrack_post import AbsentError, Run, read_run, style
-from wingcrack_post.fields import MatrixField, read_matrix
-from wingcrack_post.frames import Window, extent, usual_limit
-from wingcrack_post.history import development, intensities
-from wingcrack_post.load import abscissa, load_figure, moment_label
-from wingcrack_post.stress import MEAN_COLOURS, stress_maps
+from wingcrack.figures import AbsentError, Run, read_run, style
+from wingcrack.figures.fields import MatrixField, read_matrix
+from wingcrack.figures.frames import Window, extent, usual_limit
+from wingcrack.figures.history import development, intensities
+from wingcrack.figures.load import abscissa, load_figure, moment_label
+from wingcrack.figures.stress import MEAN_COLOURS, stress_maps
 
 
 @pytest.fixture

@@ -12,11 +12,11 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from synthetic_run import HOUR, STATES, fracture_cells, save_raw, times
-from wingcrack_post import AbsentError, read_run, style
-from wingcrack_post.fields import FractureField
-from wingcrack_post.frames import Window, zoom_window
-from wingcrack_post.maps import pressure_maps
-from wingcrack_post.units import MEGAPASCAL
+from wingcrack.figures import AbsentError, read_run, style
+from wingcrack.figures.fields import FractureField
+from wingcrack.figures.frames import Window, zoom_window
+from wingcrack.figures.maps import pressure_maps
+from wingcrack.figures.units import MEGAPASCAL
 
 
 def _maps(figure: Figure) -> list[Axes]:

@@ -12,13 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from wingcrack.command_line import main
-from wingcrack_post import figures, profiles
-from wingcrack_post import foremost as foremost_module
-from wingcrack_post.foremost import MOST, foremost
-from wingcrack_post.growth import Growth
-from wingcrack_post.names import Names, _candidates
-from wingcrack_post.scene import Scene, Well
-from wingcrack_post.table import FloatArray
+from wingcrack.figures import figures, profiles
+from wingcrack.figures import foremost as foremost_module
+from wingcrack.figures.foremost import MOST, foremost
+from wingcrack.figures.growth import Growth
+from wingcrack.figures.names import Names, _candidates
+from wingcrack.figures.scene import Scene, Well
+from wingcrack.figures.table import FloatArray
 
 
 def drawn(lines: dict[str, FloatArray], points: FloatArray | None = None) -> Names:

@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from wingcrack_post import AbsentError, RunError, read_run
-from wingcrack_post.growth import read_growth
-from wingcrack_post.network import THICK, network_figure
+from wingcrack.figures import AbsentError, RunError, read_run
+from wingcrack.figures.growth import read_growth
+from wingcrack.figures.network import THICK, network_figure
 
 
 def fracture(x: list[float], s_start: float) -> dict[str, Any]:

@@ -13,8 +13,8 @@ import pytest
 import wingcrack
 from synthetic_run import GROWTH_STEP, HOUR, STEPS, times, well_pressure
 from wingcrack.names import columns
-from wingcrack.units import column_unit, column_words, field_unit
-from wingcrack_view.content import Content
+from wingcrack.runs.units import column_unit, column_words, field_unit
+from wingcrack.view.content import Content
 
 TOP = Path(__file__).resolve().parents[2]
 

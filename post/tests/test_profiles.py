@@ -15,8 +15,8 @@ from synthetic_run import (
     times,
     wing_length,
 )
-from wingcrack_post import AbsentError, RunError, read_run
-from wingcrack_post.profiles import arc_length, fracture_profiles, state_numbers
+from wingcrack.figures import AbsentError, RunError, read_run
+from wingcrack.figures.profiles import arc_length, fracture_profiles, state_numbers
 
 LAST = STEPS - 1
 

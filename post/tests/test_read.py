@@ -16,8 +16,8 @@ from synthetic_run import (
     times,
     well_pressure,
 )
-from wingcrack_post import RunError, read_run
-from wingcrack_post.fields import nearest, read_fractures, read_matrix, read_series
+from wingcrack.figures import RunError, read_run
+from wingcrack.figures.fields import nearest, read_fractures, read_matrix, read_series
 
 
 def test_history_and_names(wet_run: Path) -> None:

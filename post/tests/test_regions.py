@@ -11,9 +11,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from wingcrack_post.regions import _LESS, _MORE, Region, draw_regions, read_region, region_label
-from wingcrack_post.scene import read_scene
-from wingcrack_post.units import METRE
+from wingcrack.figures.regions import _LESS, _MORE, Region, draw_regions, read_region, region_label
+from wingcrack.figures.scene import read_scene
+from wingcrack.figures.units import METRE
 
 HEAD = """\
 &domain x_min = 0.0, x_max = 2.0, y_min = 0.0, y_max = 1.0 /

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from wingcrack_post.errors import RunError
-from wingcrack_post.scene import read_groups, read_scene
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.scene import read_groups, read_scene
 
 # in the form in which the solver writes it
 WRITTEN = """\

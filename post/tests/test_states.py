@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from synthetic_run import GROWTH_STEP, HOUR, LAST_WING, STEPS, times, wing_length
-from wingcrack_post import Run, read_run
-from wingcrack_post.states import (
+from wingcrack.figures import Run, read_run
+from wingcrack.figures.states import (
     _history_rows,
     growth_start,
     last_settled,

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from synthetic_run import LENGTH, STEPS, polyline, times, wing_length
 from wingcrack.command_line import main
-from wingcrack_post import AbsentError, read_run
-from wingcrack_post.story import story
+from wingcrack.figures import AbsentError, read_run
+from wingcrack.figures.story import story
 
 TITLES = [
     "(a)  network at the end",

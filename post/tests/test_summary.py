@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from wingcrack.command_line import main
-from wingcrack_post import read_run
-from wingcrack_post.facts import gather_facts
-from wingcrack_post.loading import read_loading
-from wingcrack_post.page import write_page
-from wingcrack_post.summary import summary
+from wingcrack.figures import read_run
+from wingcrack.figures.facts import gather_facts
+from wingcrack.figures.loading import read_loading
+from wingcrack.figures.page import write_page
+from wingcrack.figures.summary import summary
 
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]])
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 361)

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wingcrack.tables import column
-from wingcrack_post.errors import RunError
-from wingcrack_post.table import read_table
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.table import read_table
+from wingcrack.runs.tables import column
 
 
 def _file(folder: Path, text: str) -> Path:

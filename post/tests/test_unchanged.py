@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from wingcrack.command_line import main
-from wingcrack_post import unchanged
+from wingcrack.figures import unchanged
 
 POST = Path(__file__).resolve().parents[1]
 ALL = ["probes", "view"]
@@ -151,7 +151,7 @@ def test_another_way_of_drawing(drawn_run: Path, capsys: pytest.CaptureFixture[s
 def test_another_program(
     drawn_run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wingcrack_post.figures.program", lambda: "of tomorrow")
+    monkeypatch.setattr("wingcrack.figures.figures.program", lambda: "of tomorrow")
     assert _drawn(drawn_run, capsys) == ALL
 
 
@@ -167,13 +167,13 @@ def test_the_program_is_all_of_its_files_and_libraries(monkeypatch: pytest.Monke
 def test_a_drawing_that_fails_leaves_no_word_that_it_was_drawn(
     drawn_run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wingcrack_post.figures.program", lambda: "of tomorrow")
+    monkeypatch.setattr("wingcrack.figures.figures.program", lambda: "of tomorrow")
 
     def failing(*_: object) -> None:
         raise KeyboardInterrupt
 
     with monkeypatch.context() as broken:
-        broken.setattr("wingcrack_post.style.save", failing)
+        broken.setattr("wingcrack.figures.style.save", failing)
         with pytest.raises(KeyboardInterrupt):
             main(["plot", str(drawn_run), "--only", "probes"])
     entries = json.loads((drawn_run / "figures" / unchanged.RECORD).read_text())

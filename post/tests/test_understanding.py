@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from wingcrack.command_line.declaring import command
+
 POST = Path(__file__).resolve().parents[1]
 SCENE = POST.parent / "inputs" / "paper_c" / "onset.nml"
 LAWS = ["--box=0,0,9,9", "--density=p20=1", "--length", "constant:1", "--orientation", "uniform"]
@@ -93,3 +95,12 @@ def test_both_ways_help(words: list[str], tmp_path: Path) -> None:
         status, out, error = understood(way, words, tmp_path)
         assert (status, error) == (0, "")
         assert "example:\n  ./wingcrack " in out
+
+
+def test_what_is_not_installed_is_not_here() -> None:
+    for does, is_here in {
+        "wingcrack_verify.bench.cli:bench": True,
+        "no_such_package.part.cli:bench": False,
+        "wingcrack.no_such_part.cli:bench": False,
+    }.items():
+        assert command("bench", does, example="")(lambda _: None).is_here is is_here

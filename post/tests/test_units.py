@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from synthetic_run import HOUR
-from wingcrack_post.durations import parse_times
-from wingcrack_post.units import area_unit, displacement_unit, time_unit
+from wingcrack.figures.durations import parse_times
+from wingcrack.figures.units import area_unit, displacement_unit, time_unit
 
 
 def test_times_in_all_units() -> None:

@@ -13,11 +13,11 @@ from matplotlib.colors import to_rgba, to_rgba_array
 from matplotlib.figure import Figure
 
 from synthetic_run import BODY, STEPS, save_raw, times
-from wingcrack_post import AbsentError, Run, RunError, read_run, style
-from wingcrack_post import view as module
-from wingcrack_post.frames import Frame, read_frame
-from wingcrack_post.stress import MEAN_COLOURS
-from wingcrack_post.view import WARP_SHARE, displacement_at, view
+from wingcrack.figures import AbsentError, Run, RunError, read_run, style
+from wingcrack.figures import view as module
+from wingcrack.figures.frames import Frame, read_frame
+from wingcrack.figures.stress import MEAN_COLOURS
+from wingcrack.figures.view import WARP_SHARE, displacement_at, view
 
 
 def _body(figure: Figure, panel: int = 0) -> PolyCollection:

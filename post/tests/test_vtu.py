@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from synthetic_run import save_raw
-from wingcrack_post import RunError
-from wingcrack_post.fields import read_matrix
-from wingcrack_post.vtu import read_vtu
+from wingcrack.figures import RunError
+from wingcrack.figures.fields import read_matrix
+from wingcrack.figures.vtu import read_vtu
 
 pyvista = pytest.importorskip("pyvista")
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from documents import TOP
 from wingcrack import command_line
-from wingcrack_scenes.solver import SOLVER
+from wingcrack.scenes.solver import SOLVER
 
 # What stands for something of the reader's own, and what is put in its place.
 STAND_INS = {

@@ -10,7 +10,7 @@ import pytest
 
 from calls import launch, short_form, stand_in, understand, understand_other
 from documents import NAMES, TOP, blocks, spans
-from wingcrack_scenes import solver
+from wingcrack.scenes import solver
 from workplaces import make_workplace
 
 # Subcommands that cannot be understood without more: their names are enough in a sentence.

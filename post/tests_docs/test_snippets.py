@@ -12,7 +12,7 @@ import pytest
 import wingcrack
 from calls import launch
 from documents import NAMES, TOP, Block, blocks, spans
-from wingcrack_scenes import solver
+from wingcrack.scenes import solver
 from workplaces import make_workplace
 
 SNIPPETS = [block for page in NAMES for block in blocks(page)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wingcrack.parameter_table import parameters
+from wingcrack.runs.parameter_table import parameters
 from wingcrack_docs.tables import pages
 
 

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from documents import TOP
-from wingcrack_scenes import solver
+from wingcrack.scenes import solver
 
 _TRACES = (((0.0, 0.0), (9.0, 6.0)), ((2.0, 7.0), (8.0, 0.0)))  # [m] from the origin
 _MAP = {

@@ -10,7 +10,7 @@ import f90nml
 import pytest
 
 from wingcrack.command_line import main
-from wingcrack_scenes.solver import SOLVER
+from wingcrack.scenes.solver import SOLVER
 
 TOP = Path(__file__).resolve().parents[2]
 OUTCROP = TOP / "inputs" / "examples" / "outcrop.geojson"

@@ -12,8 +12,8 @@ import gmsh
 import pytest
 
 from map_calls import fractures, imported, needs_solver
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.read import read_map
-from wingcrack_scenes.errors import SceneError
 
 POST = Path(__file__).resolve().parents[1]
 

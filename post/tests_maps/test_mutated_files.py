@@ -11,12 +11,12 @@ import pytest
 
 from map_calls import imported, needs_solver
 from test_gmsh_files import MESH, RECTANGLES
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.read import read_run
+from wingcrack.studies.study import read_study
+from wingcrack.sweeps.errors import CaseError
 from wingcrack_maps import cli
-from wingcrack_post.errors import RunError
-from wingcrack_post.read import read_run
-from wingcrack_study.study import read_study
 from wingcrack_verify.case import read_case
-from wingcrack_verify.errors import CaseError
 
 FRACTURES = """\
 &fluid viscosity = 1.0e-3 /
@@ -161,8 +161,8 @@ def judge_run(folder: Path, name: str, content: bytes) -> None:
 
 def judge_base(folder: Path, content: bytes) -> None:
     """Read a damaged scene that a map is added to, and as the base of a study."""
+    from wingcrack.scenes.errors import SceneError
     from wingcrack_maps.base import read_base
-    from wingcrack_scenes.errors import SceneError
 
     (folder / "scene.nml").write_bytes(content)
     try:

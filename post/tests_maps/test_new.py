@@ -11,11 +11,11 @@ import pytest
 from map_calls import needs_solver
 from wingcrack.command_line import main
 from wingcrack.command_line.scene_commands import KINDS
-from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.namelist import Value, group_text
-from wingcrack_scenes.new import KINDS as FOLDER
-from wingcrack_scenes.new import annotated
-from wingcrack_scenes.solver import call, check
+from wingcrack.scenes.errors import SceneError
+from wingcrack.scenes.namelist import Value, group_text
+from wingcrack.scenes.new import KINDS as FOLDER
+from wingcrack.scenes.new import annotated
+from wingcrack.scenes.solver import call, check
 
 
 def test_every_kind_has_a_file_and_every_file_is_a_kind() -> None:

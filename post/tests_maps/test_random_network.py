@@ -12,8 +12,8 @@ from shapely.geometry import LineString
 
 from map_calls import fractures, needs_solver, rows
 from wingcrack.command_line import main
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.random_network import Set, draw_angles, draw_lengths, random_network
-from wingcrack_scenes.errors import SceneError
 
 COUNT = 40_000
 BOX = (0.0, 0.0, 100.0, 80.0)

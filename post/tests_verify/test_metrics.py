@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array, evaluate, names_in
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array, evaluate, names_in
 from wingcrack_verify.metrics import Pair, measure
 from wingcrack_verify.orders import Point, advise, observed_order, pareto_front
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from small_case import CHECKS, SmallCase, small_case
+from wingcrack.sweeps.likes import NAMED_BY
 from wingcrack_verify.case import read_case
 from wingcrack_verify.contents import Case
 from wingcrack_verify.judge import ERROR, FAILED, PASSED
-from wingcrack_verify.likes import NAMED_BY
 from wingcrack_verify.suite import BrokenCase, read_suite
 
 TOP = Path(__file__).resolve().parents[2]

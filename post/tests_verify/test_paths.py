@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from small_case import small_case
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
+from wingcrack.sweeps.paths import network_table, path_distance
 from wingcrack_verify.judge import ERROR, PASSED
-from wingcrack_verify.paths import network_table, path_distance
 
 
 def path(*points: tuple[float, float]) -> Array:

@@ -9,8 +9,8 @@ from typing import Any
 import f90nml
 import pytest
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.scene import scene_text
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.scene import scene_text
 
 _SCENE = """\
 ! a scene / with a slash in a comment

@@ -25,11 +25,13 @@ from wingcrack.errors import (
 )
 
 if TYPE_CHECKING:
-    from wingcrack.comparison import compare
-    from wingcrack.fields import Fields
-    from wingcrack.parameter_table import Parameter, parameters
-    from wingcrack.run import Run, Scene
-    from wingcrack.run import open_run as open  # noqa: A004
+    from wingcrack.runs.comparison import compare
+    from wingcrack.runs.fields import Fields
+    from wingcrack.runs.parameter_table import Parameter, parameters
+    from wingcrack.runs.run import Run, Scene
+    from wingcrack.runs.run import open_run as open  # noqa: A004
+
+__version__ = "0.2.0"
 
 __all__ = [
     "AbsentError",
@@ -47,13 +49,13 @@ __all__ = [
 ]
 
 _PLACES = {
-    "Fields": ("fields", "Fields"),
-    "Parameter": ("parameter_table", "Parameter"),
-    "Run": ("run", "Run"),
-    "Scene": ("run", "Scene"),
-    "compare": ("comparison", "compare"),
-    "open": ("run", "open_run"),
-    "parameters": ("parameter_table", "parameters"),
+    "Fields": ("runs.fields", "Fields"),
+    "Parameter": ("runs.parameter_table", "Parameter"),
+    "Run": ("runs.run", "Run"),
+    "Scene": ("runs.run", "Scene"),
+    "compare": ("runs.comparison", "compare"),
+    "open": ("runs.run", "open_run"),
+    "parameters": ("runs.parameter_table", "parameters"),
 }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from wingcrack_post.errors import AbsentError, EnvironmentLacksError, RunError
+from wingcrack.figures.errors import AbsentError, EnvironmentLacksError, RunError
 
 __all__ = ["AbsentError", "EnvironmentLacksError", "RunError", "RunFailedError", "SceneError"]
 

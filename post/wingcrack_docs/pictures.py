@@ -11,6 +11,10 @@ from io import StringIO
 from pathlib import Path
 
 import wingcrack
+from wingcrack.runner.pool import Pool
+from wingcrack.runner.task import Task, tables_of
+from wingcrack.scenes.new import new_scene
+from wingcrack.scenes.solver import SOLVER
 from wingcrack_docs.errors import PicturesError
 from wingcrack_docs.gallery import write_gallery
 from wingcrack_docs.places import PICTURES, SCENES, TOP
@@ -21,10 +25,6 @@ from wingcrack_docs.thumbnail import (
     new_figure,
     save_small,
 )
-from wingcrack_runner.pool import Pool
-from wingcrack_runner.task import Task, tables_of
-from wingcrack_scenes.new import new_scene
-from wingcrack_scenes.solver import SOLVER
 
 _RUNS = TOP / "build" / "pictures"
 _LIMIT_S = 3600.0

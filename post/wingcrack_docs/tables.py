@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from wingcrack.names import table
+from wingcrack.scenes.parameters import groups
 from wingcrack_docs.places import DOCS
-from wingcrack_scenes.parameters import groups
 
 _PAGES = Path(__file__).with_name("pages")
 _WIDTH = 110

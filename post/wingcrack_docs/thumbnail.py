@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import wingcrack
-from wingcrack.colours import default_field
-from wingcrack.units import column_words
-from wingcrack_post.style import line_look
+from wingcrack.figures.style import line_look
+from wingcrack.runs.colours import default_field
+from wingcrack.runs.units import column_words
 
 _INCHES = (4.8, 3.6)
 _DOTS_PER_INCH = 130

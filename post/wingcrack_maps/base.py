@@ -9,8 +9,8 @@ from typing import Any
 
 from shapely.geometry import Polygon
 
-from wingcrack_post.text_files import namelist_groups, read_text
-from wingcrack_scenes.errors import SceneError
+from wingcrack.figures.text_files import namelist_groups, read_text
+from wingcrack.scenes.errors import SceneError
 
 
 @dataclass

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from shapely.geometry import Polygon, box
 
+from wingcrack.scenes.errors import SceneError
+from wingcrack.scenes.namelist import Value
 from wingcrack_maps.features import Area, Line, Map
-from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.namelist import Value
 
 
 def assign_roles(content: Map, polygons: str | None, path: str) -> None:

@@ -12,6 +12,9 @@ from typing import NoReturn
 
 from shapely.geometry import Polygon
 
+from wingcrack.scenes.errors import SceneError
+from wingcrack.scenes.parameters import groups
+from wingcrack.scenes.solver import check
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
 from wingcrack_maps.entries import complete, entry_values, give_names, set_regions, setting
@@ -23,9 +26,6 @@ from wingcrack_maps.repair import Repair, repair
 from wingcrack_maps.report import Report, file_texts, terminal_text
 from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_size, scene_text
 from wingcrack_maps.units import shift
-from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.parameters import groups
-from wingcrack_scenes.solver import check
 
 
 def make_scene(given: SimpleNamespace) -> int:

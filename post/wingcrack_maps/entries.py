@@ -8,12 +8,12 @@ import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from wingcrack.parameter_table import Parameter
+from wingcrack.runs.parameter_table import Parameter
+from wingcrack.scenes.errors import SceneError
+from wingcrack.scenes.namelist import Value
+from wingcrack.scenes.parameters import Group, groups
 from wingcrack_maps.features import Area, Line, Map
 from wingcrack_maps.geometry import NAMES
-from wingcrack_scenes.errors import SceneError
-from wingcrack_scenes.namelist import Value
-from wingcrack_scenes.parameters import Group, groups
 
 _LONGEST = 64  # characters of a name
 _GEOMETRIC = ("name", "x", "y", "x_other", "y_other", "x_vertex", "y_vertex", "curvature", "shape")

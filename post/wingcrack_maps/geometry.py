@@ -8,8 +8,8 @@ import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Area, Attributes, Line, Map, Points
-from wingcrack_scenes.errors import SceneError
 
 NAMES = ("name", "label", "id", "fid")
 ROLES = ("boundary", "region", "fracture")

@@ -10,8 +10,8 @@ from shapely.geometry import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import linemerge
 
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Area, Line, Map, Points
-from wingcrack_scenes.errors import SceneError
 
 
 @dataclass

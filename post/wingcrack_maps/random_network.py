@@ -12,9 +12,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 
-from wingcrack.units import FARTHEST
+from wingcrack.runs.units import FARTHEST
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Line, Map
-from wingcrack_scenes.errors import SceneError
 
 Law: TypeAlias = tuple[str, tuple[float, ...]]
 Numbers: TypeAlias = NDArray[np.float64]

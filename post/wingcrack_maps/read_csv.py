@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from shapely.geometry import LineString
 
+from wingcrack.figures.text_files import csv_rows
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Attributes, Line, Map
 from wingcrack_maps.geometry import add_geometry, name_of
 from wingcrack_maps.read_wkt import geometry_of
-from wingcrack_post.text_files import csv_rows
-from wingcrack_scenes.errors import SceneError
 
 _GEOMETRY = ("wkt", "geometry", "geom", "the_geom")
 _SEGMENT = (("x1", "y1", "x2", "y2"), ("x_1", "y_1", "x_2", "y_2"))

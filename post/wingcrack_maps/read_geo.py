@@ -15,9 +15,9 @@ import numpy as np
 from shapely import unary_union
 from shapely.geometry import Polygon
 
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
 from wingcrack_maps.physical import Groups, map_of_groups
-from wingcrack_scenes.errors import SceneError
 
 T = TypeVar("T")
 

@@ -9,11 +9,11 @@ from typing import Any
 import shapely
 from shapely.geometry import shape
 
+from wingcrack.figures.text_files import json_value
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
 from wingcrack_maps.geometry import add_geometry
 from wingcrack_maps.units import refuse_degrees
-from wingcrack_post.text_files import json_value
-from wingcrack_scenes.errors import SceneError
 
 _DEPTHS = {"Point": 0, "MultiPoint": 1, "LineString": 1, "MultiLineString": 2, "Polygon": 2,
            "MultiPolygon": 3}  # fmt: skip

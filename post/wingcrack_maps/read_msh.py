@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from shapely import coverage_union_all, polygons
 from shapely.errors import ShapelyError
 
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
 from wingcrack_maps.physical import Groups, map_of_groups
-from wingcrack_scenes.errors import SceneError
 
 Numbers: TypeAlias = NDArray[np.int64]
 

@@ -7,10 +7,10 @@ from itertools import accumulate
 import numpy as np
 import shapely
 
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
 from wingcrack_maps.geometry import add_geometry
 from wingcrack_maps.units import refuse_degrees
-from wingcrack_scenes.errors import SceneError
 
 _DEEPEST = 100  # brackets within one another: GEOS ends the process at some thousand
 

@@ -10,10 +10,10 @@ import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.strtree import STRtree
 
+from wingcrack.scenes.namelist import Value, group_text
 from wingcrack_maps.base import Base
 from wingcrack_maps.body import domain_values
 from wingcrack_maps.features import Area, Line
-from wingcrack_scenes.namelist import Value, group_text
 
 FRACTURE_DEFAULTS: dict[str, Value] = {"friction": 0.6, "dilation_deg": 3.0, "aperture": 1.0e-4}
 """Of fractures where neither map nor call says it: ours, to start from."""

@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 
-from wingcrack.units import FARTHEST
+from wingcrack.runs.units import FARTHEST
+from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map, Points
-from wingcrack_scenes.errors import SceneError
 
 METRES = {"m": 1.0, "km": 1000.0, "ft": 0.3048, "cm": 0.01, "mm": 0.001}
 

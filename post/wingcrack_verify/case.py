@@ -9,7 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post import text_files
+from wingcrack.figures import text_files
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import TIME_LIMIT_S, Fields, as_number, read_toml
+from wingcrack.sweeps.likes import Likes, shared_likes
+from wingcrack.sweeps.selection import read_selection
+from wingcrack.sweeps.sweep import Defaults, read_tables
 from wingcrack_verify.contents import (
     Case,
     Check,
@@ -21,27 +26,11 @@ from wingcrack_verify.contents import (
     Run,
 )
 from wingcrack_verify.economy import read_economy
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields, as_number
 from wingcrack_verify.groups import GROUPS
-from wingcrack_verify.likes import Likes, shared_likes
 from wingcrack_verify.metrics import METRICS
 from wingcrack_verify.picture_files import PICTURES
-from wingcrack_verify.selection import read_selection
-from wingcrack_verify.sweep import Defaults, read_tables
 
-TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
 _DEFAULTS = ("run", "check", "figure")  # kinds of entries that have some
-
-
-def read_toml(path: Path) -> dict[str, Any]:
-    """Read a TOML file; a `CaseError` tells what is wrong with it."""
-    try:
-        return text_files.read_toml(path)
-    except FileNotFoundError:
-        raise CaseError(f"{path.name} is missing") from None
-    except (OSError, ValueError) as reason:
-        raise CaseError(f"{path.name}: {reason}") from None
 
 
 def read_case(folder: Path) -> Case:

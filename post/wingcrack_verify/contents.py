@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from wingcrack.sweeps.selection import Selection
 from wingcrack_verify.economy import Economy
-from wingcrack_verify.selection import Selection
 
 
 @dataclass(frozen=True)

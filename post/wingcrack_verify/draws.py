@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
-from wingcrack_verify.sweep import Table, read_tables
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.sweep import Table, read_tables
 
 
 def read_draw(data: Any, place: str) -> list[tuple[str, Table]]:

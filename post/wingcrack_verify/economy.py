@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack_post.text_files import read_json
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.fields import Fields
+from wingcrack.figures.text_files import read_json
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
 from wingcrack_verify.orders import Point
 
 

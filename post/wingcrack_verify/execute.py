@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
-from wingcrack_post.errors import EnvironmentLacksError
-from wingcrack_runner.outcome import Outcome
-from wingcrack_runner.pool import Pool
-from wingcrack_runner.task import Task, hash_of, tables_of
+from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.runner.outcome import Outcome
+from wingcrack.runner.pool import Pool
+from wingcrack.runner.task import Task, tables_of
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.scene import scene_hash, scene_text
 from wingcrack_verify.contents import Run
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.scene import scene_text
 
-__all__ = ["Job", "Outcome", "Programs", "Runner", "scene_hash"]
+__all__ = ["Job", "Outcome", "Programs", "Runner"]
 
 
 @dataclass(frozen=True)
@@ -88,9 +87,3 @@ class Runner:
         folder = self._cache / job.case
         limit = run.time_limit_s
         return Task(run.name, folder, program, text, run.args, tables, limit, scene_hash())
-
-
-@lru_cache(maxsize=1)
-def scene_hash() -> str:
-    """Hash of the module that changes scenes; judging is always done anew."""
-    return hash_of((Path(__file__).parent / "scene.py").read_bytes())

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from wingcrack_post.style import CYCLE, new_figure, styled
+from wingcrack.figures.style import CYCLE, new_figure, styled
 from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
 from wingcrack_verify.orders import Point, pareto_front

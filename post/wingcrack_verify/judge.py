@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array, evaluate
+from wingcrack.sweeps.selection import Selection, Values, interpolated, select
 from wingcrack_verify.contents import Case, Check, FigureRequest, Run
 from wingcrack_verify.economy import Saving, saving, unknowns_of
-from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
-from wingcrack_verify.expressions import Array, evaluate
 from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
 from wingcrack_verify.picture_files import require_files
-from wingcrack_verify.selection import Selection, Values, interpolated, select
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
 VERDICTS = (PASSED, GAP, FAILED, ERROR)  # from good to bad

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.expressions import Array
-from wingcrack_verify.paths import path_distance
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
+from wingcrack.sweeps.paths import path_distance
 
 TENTH = 0.1  # a tolerance is at most this share of the signal
 

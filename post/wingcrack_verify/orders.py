@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wingcrack_verify.errors import CaseError
+from wingcrack.sweeps.errors import CaseError
 
 ROUND_OFF = 1.0e-13  # relative errors below this say nothing about discretization
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from wingcrack_verify.errors import CaseError
-from wingcrack_verify.paths import NETWORK, network_table
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.paths import NETWORK, network_table
 
 _FIELDS = "matrix.pvd"
 # Its network, its contact states, its pore pressure; each with the file without which it cannot be.

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from wingcrack_post.maps import pressure_maps
-from wingcrack_post.network import network_figure
-from wingcrack_post.read import Run, read_run
-from wingcrack_post.story_map import draw_map
-from wingcrack_post.style import new_figure, outside_legend
+from wingcrack.figures.maps import pressure_maps
+from wingcrack.figures.network import network_figure
+from wingcrack.figures.read import Run, read_run
+from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.style import new_figure, outside_legend
 
 _STATE_SIZE = (4.3, 3.6)  # [inch]
 

@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 import pyvista
 
+from wingcrack.figures.text_files import csv_rows, read_json
 from wingcrack.names import table as name_table
-from wingcrack_post.text_files import csv_rows, read_json
 
 Numbers: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = dict[str, npt.NDArray[Any]]

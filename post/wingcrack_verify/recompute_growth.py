@@ -15,7 +15,7 @@ import f90nml
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack_post.text_files import read_json
+from wingcrack.figures.text_files import read_json
 from wingcrack_verify.recompute import Findings, Table, read_table
 
 Points: TypeAlias = npt.NDArray[np.float64]

@@ -9,18 +9,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wingcrack_post.text_files import is_file, read_json
-from wingcrack_verify.case import read_toml, refuse_doubles
+from wingcrack.figures.text_files import is_file, read_json
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields, read_toml
+from wingcrack.sweeps.likes import Likes, shared_likes
+from wingcrack.sweeps.selection import read_selection, select
+from wingcrack.sweeps.sweep import Defaults, read_tables
+from wingcrack_verify.case import refuse_doubles
 from wingcrack_verify.contents import Run
 from wingcrack_verify.draws import read_draw
-from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Outcome
-from wingcrack_verify.fields import Fields
 from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
-from wingcrack_verify.likes import Likes, shared_likes
-from wingcrack_verify.selection import read_selection, select
-from wingcrack_verify.sweep import Defaults, read_tables
 
 TIME_LIMIT_S = 20.0  # unless the file says otherwise: some hundred times what a trial takes
 # In words of a trial; a run that crashed, or took too long, is neither.

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack.sweeps.errors import CaseError
 from wingcrack_verify import case_folders
 from wingcrack_verify.case import read_case
 from wingcrack_verify.contents import Case, Run
-from wingcrack_verify.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome
 from wingcrack_verify.groups import UNREADABLE
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of

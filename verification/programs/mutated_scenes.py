@@ -31,7 +31,7 @@ import f90nml
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "post"))
 
-from wingcrack_verify.scene import scene_text  # noqa: E402
+from wingcrack.sweeps.scene import scene_text  # noqa: E402
 
 BUILD = TOP / "build" / "release"
 SOLVER = BUILD / "fortran" / "app" / "wingcrack-solver"

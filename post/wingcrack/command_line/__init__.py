@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from wingcrack.command_line.declaring import Call, RefusedError, UsageError
-from wingcrack_post.errors import EnvironmentLacksError
+from wingcrack.figures.errors import EnvironmentLacksError
 
 try:
     from wingcrack.command_line import with_click as way

@@ -93,7 +93,11 @@ class Command:
         """Whether what does it is installed: not everywhere are all packages, and the tools."""
         if not self.does:
             return (TOP / "tools" / "lint.sh").is_file()
-        return find_spec(self.does.partition(":")[0].rpartition(".")[0]) is not None
+        package = self.does.partition(":")[0].rpartition(".")[0]
+        try:
+            return find_spec(package) is not None
+        except ModuleNotFoundError:  # the package that it is a part of
+            return False
 
     def call(self, **values: Any) -> Call:
         """Judge the values together; give what they ask for."""

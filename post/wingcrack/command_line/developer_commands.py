@@ -53,7 +53,7 @@ def verify(given: SimpleNamespace) -> None:
 
 @command(
     "bench",
-    "wingcrack_bench.cli:bench",
+    "wingcrack_verify.bench.cli:bench",
     _NAMES,
     Parameter("--repeat", "N", "runs of each but the longest; the median counts (3)", whole(1), 3),
     flag("--quick", "the short form, for CI"),
@@ -88,7 +88,7 @@ there.""",
 )
 def bench(given: SimpleNamespace) -> None:
     """Measure how long scenes take, and where the time goes."""
-    known, _ = load("wingcrack_bench.catalogue:read_benchmarks")()
+    known, _ = load("wingcrack_verify.bench.catalogue:read_benchmarks")()
     for name in given.names:
         if name not in known:
             raise UsageError(f"there is no measurement '{name}' (there are: {', '.join(known)})")

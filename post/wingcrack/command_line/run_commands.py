@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 from wingcrack.command_line.declaring import TOP, Parameter, UsageError, choice, command, flag
 from wingcrack.command_line.values import absolute, each_of, whole
-from wingcrack_post.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
-from wingcrack_post.durations import parse_times
+from wingcrack.figures.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
+from wingcrack.figures.durations import parse_times
 
 _FORMATS = Parameter(
     "--format",
@@ -22,7 +22,7 @@ _FORMATS = Parameter(
 
 @command(
     "plot",
-    "wingcrack_post.cli:plot",
+    "wingcrack.figures.cli:plot",
     Parameter("directories", "DIR...", read=Path, many=True),
     Parameter(
         "--times",
@@ -75,7 +75,7 @@ def plot(given: SimpleNamespace) -> None:
 
 @command(
     "view",
-    "wingcrack_view.cli:view",
+    "wingcrack.view.cli:view",
     Parameter("directory", "DIR", read=Path),
     Parameter("--port", "N", "port of the page (default: a free one)", whole(1, 65535), 0),
     flag("--no-browser", "only print the address, open no browser"),
@@ -103,7 +103,7 @@ def _judge_folder(directory: Path) -> None:
 
 @command(
     "study",
-    "wingcrack_study.cli:study",
+    "wingcrack.studies.cli:study",
     Parameter("study", "STUDY.toml", read=Path, required=True),
     Parameter(
         "--jobs",

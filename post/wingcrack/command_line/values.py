@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from wingcrack.units import FARTHEST
+from wingcrack.runs.units import FARTHEST
 
 _WIDEST = 20.0  # SIGMA
 _LENGTHS = {"constant": (1, 1), "power": (3, 3), "lognormal": (2, 4), "exponential": (1, 3)}

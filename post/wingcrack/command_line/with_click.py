@@ -10,9 +10,9 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+from wingcrack import __version__
 from wingcrack.command_line.declaring import Call, Command, Parameter, UsageError, load
 from wingcrack.command_line.values import absolute, place
-from wingcrack_post import __version__
 
 _SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 _ASKING = "_WINGCRACK_COMPLETE"  # set where a shell asks how words could be completed

@@ -1,0 +1,138 @@
+"""A run's figures as one page for a browser: the facts in words, then all pictures."""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from string import Template
+from urllib.parse import quote
+
+from wingcrack.figures.facts import Facts, gather_facts
+from wingcrack.figures.read import Run
+from wingcrack.figures.text_files import read_json
+
+NAME = "index.html"
+_COSTS = (
+    ("wall_s", "wall time", "s"),
+    ("cpu_s", "processor time", "s"),
+    ("peak_memory_mb", "memory", "MB"),
+)
+_MATH = ((r"$K_\mathrm{eq}/K_\mathrm{IC}$", "K_eq/K_IC"), ("$M_w$", "M_w"), ("$", ""))
+
+_PAGE = Template("""\
+<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>$name</title>
+<style>
+body { font: 16px/1.45 sans-serif; color: #111; margin: 0 auto; max-width: 62rem; padding: 1rem; }
+h1 { font-size: 1.3rem; margin: 0; }
+h2 { font-size: 1rem; margin: 1rem 0 .2rem; }
+.finished { color: #00724f; } .stopped { color: #8a5a00; } .failed, .warning { color: #b34700; }
+.parts { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 0 2rem; }
+ul { margin: 0; padding-left: 1.1rem; overflow-wrap: anywhere; }
+figure { margin: 1rem 0; break-inside: avoid; } figcaption { font-size: .85rem; }
+img { max-width: 100%; height: auto; }
+</style>
+</head>
+<body>
+<h1>$title</h1>
+<p class="$status">$ended</p>
+<div class="parts">
+$parts
+</div>
+$figures
+</body>
+</html>
+""")
+
+
+def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
+    """Write the page beside the figures that are there; it appears whole.
+
+    Parameters
+    ----------
+    run : Run
+    folder : Path
+        Where the figures are.
+    order : sequence of str
+        Names of figures, or their beginnings, as they shall follow each other.
+    """
+    facts = gather_facts(run)
+
+    def place(name: str) -> tuple[int, list[tuple[int, str]]]:
+        kinds = [k for k, kind in enumerate(order) if name.startswith(kind)]
+        return min(kinds, default=len(order)), _natural(name)
+
+    pictures = sorted((path.name for path in folder.glob("[!.]*.png")), key=place)
+    text = _PAGE.substitute(
+        name=html.escape(run.name),
+        title=html.escape(_plain(facts.title)),
+        status=html.escape(facts.status, quote=True),
+        ended=html.escape(facts.ended),
+        parts="\n".join(_parts(facts, _costs(run.directory))),
+        figures="\n".join(_figures(folder, pictures)),
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    target = folder / NAME
+    aside = folder / f".{NAME}.{os.getpid()}"
+    try:
+        aside.write_text(text, encoding="utf-8")
+        aside.replace(target)
+    finally:
+        aside.unlink(missing_ok=True)
+    return target
+
+
+def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:
+    for title, lines, look in (
+        ("Results", facts.results, ""),
+        ("Errors", [line.removeprefix("- ") for line in facts.errors if line != "errors:"], ""),
+        ("Warnings", facts.warnings or ["none"], "warning" if facts.warnings else ""),
+        ("What it used", facts.used, ""),
+        ("What it did without", facts.left_out, ""),
+        ("What it took", costs, ""),
+    ):
+        if lines:
+            items = "".join(f"<li>{html.escape(_plain(line))}</li>" for line in lines)
+            yield f'<section class="{look}"><h2>{title}</h2><ul>{items}</ul></section>'
+
+
+def _figures(folder: Path, pictures: Sequence[str]) -> Iterable[str]:
+    for name in pictures:
+        stem = name.removesuffix(".png")
+        link = ""
+        if (folder / f"{stem}.pdf").exists():
+            link = f' (<a href="{quote(stem)}.pdf">PDF</a>)'
+        words = html.escape(stem.replace("_", " "))
+        yield (
+            f'<figure><a href="{quote(name)}"><img src="{quote(name)}" alt="{words}"'
+            ' loading="lazy"></a>'
+            f"<figcaption>{words}{link}</figcaption></figure>"
+        )
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Key of a name in which numbers count as such: fracture_2 comes before fracture_10."""
+    return [(int(part or 0), words) for words, part in re.findall(r"(\D*)(\d*)", name)]
+
+
+def _costs(directory: Path) -> list[str]:
+    """Time and memory; nothing while the run goes on."""
+    try:
+        record = read_json(directory / "run.json")
+        return [f"{what}: {record[key]:.3g} {unit}" for key, what, unit in _COSTS if key in record]
+    except (OSError, ValueError, TypeError):
+        return []
+
+
+def _plain(text: str) -> str:
+    """Words without the marks of formulas."""
+    for mark, word in _MATH:
+        text = text.replace(mark, word)
+    return text

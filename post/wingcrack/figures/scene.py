@@ -1,0 +1,290 @@
+"""The few values of ``scene.nml`` that figures show or use in addition to the results."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from wingcrack.figures.errors import RunError
+from wingcrack.figures.proportional import control_of, drive_of
+from wingcrack.figures.regions import Region, read_region
+from wingcrack.figures.table import FloatArray
+from wingcrack.figures.text_files import read_text
+
+# quoted text (a doubled quote stands for one), comment, group, slash, equal sign, plain word
+_TOKEN = re.compile(r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|![^\n]*|&\w+|/|=|[^\s,=/!&'\"]+")
+
+
+@dataclass(frozen=True)
+class FractureLaw:
+    """What the scene says about one fracture."""
+
+    name: str
+    friction: float | None  # mu_s [-]
+    toughness_pa_sqrtm: float | None = None  # its own [Pa m^1/2]
+
+
+@dataclass(frozen=True)
+class Well:
+    """When one injection starts and, unless it lasts to the end of the run, when it stops [s].
+
+    `place_m` is where it feeds its fracture [m]; None: along all of it.
+    """
+
+    start_s: float
+    stop_s: float | None
+    fracture: str = ""
+    place_m: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What figures use of a scene.
+
+    Attributes
+    ----------
+    name, title : str
+    toughness_pa_sqrtm : float or None
+        K_IC [Pa m^1/2]; None if the scene has none.
+    fractures : tuple of FractureLaw
+        In the order of the file, which is the order of the numbers in the results.
+    outline : (n, 2) array or None
+        Closed line around the body [m]; None if the scene does not tell it.
+    young_pa : float or None
+        Young's modulus [Pa].
+    step_s : float or None
+        Regular time step [s]; None without a fluid, or where none is given.
+    chosen_steps : bool
+        Whether time steps follow from their error.
+    wells : tuple of Well
+        Injections.
+    load_pa, load_name : float or None, str
+        Stress that stands for the load, at load factor 1 [Pa], and how it is called; None where
+        the scene has no load of a kind for which there is one.
+    regions : tuple of Region
+        Parts of the rock with a permeability of their own, in the order in which they count.
+    permeability_m2 : tuple of float or None
+        Components xx and yy of the rock elsewhere [m2].
+    breadth_m : float
+        Assumed length of the fractures out of the plane [m].
+    control : str
+        How growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
+        without such growth.
+    drive : str
+        Whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''.
+    """
+
+    name: str
+    title: str
+    toughness_pa_sqrtm: float | None
+    fractures: tuple[FractureLaw, ...]
+    outline: FloatArray | None = None
+    young_pa: float | None = None
+    step_s: float | None = None
+    chosen_steps: bool = False
+    wells: tuple[Well, ...] = ()
+    load_pa: float | None = None
+    load_name: str = ""
+    regions: tuple[Region, ...] = ()
+    permeability_m2: tuple[float, float] | None = None
+    breadth_m: float = 1.0
+    control: str = ""
+    drive: str = ""
+
+    def fracture(self, label: str) -> FractureLaw | None:
+        """The law of a fracture known by its name or by its number from 1."""
+        for fracture in self.fractures:
+            if fracture.name == label:
+                return fracture
+        if label.isdecimal() and len(label) < 10 and 1 <= int(label) <= len(self.fractures):
+            return self.fractures[int(label) - 1]
+        return None
+
+
+def read_groups(text: str) -> list[tuple[str, dict[str, list[str]]]]:
+    """Split a Fortran namelist text into its groups, each a name and the raw values by name.
+
+    >>> read_groups("&fracture name = 'a', x = 0.1 0.2 / ! the flaw")
+    [('fracture', {'name': ["'a'"], 'x': ['0.1', '0.2']})]
+    """
+    groups: list[tuple[str, dict[str, list[str]]]] = []
+    inside = False
+    values: list[str] = []
+    tokens = [token for token in _TOKEN.findall(text) if not token.startswith("!")]
+    for token, following in pairwise([*tokens, "/"]):
+        if token.startswith("&"):
+            groups.append((token[1:].lower(), {}))
+            inside = True
+        elif token == "/":
+            inside = False
+        elif inside and following == "=":
+            values = groups[-1][1].setdefault(token.lower(), [])
+        elif inside and token != "=":
+            values.append(token)
+    return groups
+
+
+def read_scene(path: Path) -> Scene | None:
+    """Read ``scene.nml``; None where the run has none."""
+    try:
+        text = read_text(path)
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError) as reason:
+        raise RunError(f"{path}: the file cannot be read ({reason}).") from None
+    groups = read_groups(text)
+    first: dict[str, dict[str, list[str]]] = {}
+    for group, values in groups:
+        first.setdefault(group, values)
+
+    def number(group: str, key: str) -> float | None:
+        return _number(path, group, first.get(group, {}), key)
+
+    laws = [
+        FractureLaw(
+            _text(values, "name"),
+            _number(path, group, values, "friction"),
+            _number(path, group, values, "toughness"),
+        )
+        for group, values in groups
+        if group == "fracture"
+    ]
+    wells = [
+        Well(
+            _number(path, group, values, "start") or 0.0,
+            _number(path, group, values, "end"),
+            _text(values, "fracture"),
+            _place(path, values),
+        )
+        for group, values in groups
+        if group == "injection"
+    ]
+    load, load_name = _load(path, groups)
+    outline = _outline(path, first["domain"]) if "domain" in first else None
+    along_x, along_y = (
+        number("material", key) or number("material", "permeability")
+        for key in ("permeability_xx", "permeability_yy")
+    )
+    return Scene(
+        name=_text(first.get("scene", {}), "name"),
+        title=_text(first.get("scene", {}), "title"),
+        toughness_pa_sqrtm=number("material", "toughness"),
+        fractures=tuple(laws),
+        outline=outline,
+        young_pa=number("material", "young"),
+        step_s=number("time", "step"),
+        chosen_steps=(number("time", "tolerance") or 0.0) > 0.0,
+        wells=tuple(wells),
+        load_pa=load,
+        load_name=load_name,
+        regions=_regions(path, groups, outline),
+        permeability_m2=None if along_x is None or along_y is None else (along_x, along_y),
+        breadth_m=number("output", "out_of_plane_length") or 1.0,
+        control=control_of(groups),
+        drive=drive_of(groups),
+    )
+
+
+def _place(path: Path, values: dict[str, list[str]]) -> tuple[float, float] | None:
+    """Where a well stands [m]; None along a whole fracture."""
+    x, y = (_number(path, "injection", values, key) for key in ("x", "y"))
+    return None if x is None or y is None else (x, y)
+
+
+def _regions(
+    path: Path, groups: list[tuple[str, dict[str, list[str]]]], outline: FloatArray | None
+) -> tuple[Region, ...]:
+    """Regions with an outline, in the order of the file."""
+    if outline is None:
+        return ()
+    found = []
+    for group, values in groups:
+        if group != "region":
+            continue
+        numbers = {
+            key: [
+                number for raw in raws if (number := _one_number(path, group, raw, key)) is not None
+            ]
+            for key, raws in values.items()
+            if key not in ("name", "shape")
+        }
+        region = read_region(
+            _text(values, "name"), _text(values, "shape") or "polygon", numbers, outline
+        )
+        if region is not None:
+            found.append(region)
+    return tuple(found)
+
+
+def _one_number(path: Path, group: str, raw: str, key: str) -> float | None:
+    return _number(path, group, {key: [raw]}, key)
+
+
+def _load(path: Path, groups: list[tuple[str, dict[str, list[str]]]]) -> tuple[float | None, str]:
+    """Stress that stands for the load [Pa]: P / (pi R) of a disc, else the largest traction."""
+
+    def largest(group: str, *keys: str) -> float:
+        found = [_number(path, name, v, key) for name, v in groups if name == group for key in keys]
+        return max((abs(value) for value in found if value is not None), default=0.0)
+
+    force, radius = largest("point_load", "x_force", "y_force"), largest("domain", "radius")
+    if force > 0.0:
+        return (force / (np.pi * radius), r"$P/(\pi R)$") if radius > 0.0 else (None, "")
+    sides = ("x_traction", "y_traction", "normal_traction", "shear_traction")
+    traction = largest("side", *sides)
+    if traction > 0.0:
+        return traction, "largest traction on a side"
+    pressure = largest("fracture", "face_pressure")
+    return (pressure, "largest pressure on faces") if pressure > 0.0 else (None, "")
+
+
+def _outline(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
+    """Closed line around a rectangle or a disc [m]."""
+    shape = _text(values, "shape") or "rectangle"
+    names: tuple[str, ...] = ("x_min", "x_max", "y_min", "y_max")
+    if shape == "disc":
+        names = ("x_centre", "y_centre", "radius")
+    found = [_number(path, "domain", values, name) for name in names]
+    if shape == "polygon":
+        return _polygon(path, values)
+    if shape not in ("rectangle", "disc") or any(value is None for value in found):
+        return None
+    numbers = np.array(found, dtype=np.float64)
+    if shape == "disc":
+        angle = np.linspace(0.0, 2.0 * np.pi, 361)
+        circle = np.column_stack((np.cos(angle), np.sin(angle)))
+        return np.asarray(numbers[:2] + numbers[2] * circle)
+    (left, right), (bottom, top) = numbers[:2], numbers[2:]
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+    return np.array(corners, dtype=np.float64)
+
+
+def _polygon(path: Path, values: dict[str, list[str]]) -> FloatArray | None:
+    """Closed line through the corners of a polygon [m]."""
+    corners = [
+        [_number(path, "domain", {name: [raw]}, name) for raw in values.get(name, [])]
+        for name in ("x", "y")
+    ]
+    if len(corners[0]) < 3 or len(corners[0]) != len(corners[1]):
+        return None
+    points = np.array(corners, dtype=np.float64).T
+    return np.concatenate((points, points[:1]))
+
+
+def _text(values: dict[str, list[str]], key: str) -> str:
+    raw = "".join(values.get(key, [])[:1])
+    return raw[1:-1].replace(raw[:1] * 2, raw[:1]).strip() if raw[:1] in ("'", '"') else raw
+
+
+def _number(path: Path, group: str, values: dict[str, list[str]], key: str) -> float | None:
+    if not values.get(key):
+        return None
+    raw = values[key][0]
+    try:
+        return float(raw.lower().replace("d", "e"))
+    except ValueError:
+        raise RunError(f"{path}: '{raw}' for {key} in &{group} is no number.") from None

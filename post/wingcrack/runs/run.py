@@ -1,0 +1,307 @@
+"""Scenes that are run, and runs with their figures."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wingcrack.errors import RunError, RunFailedError, SceneError
+from wingcrack.figures.choices import DEFAULT_FORMATS
+from wingcrack.runs.parameter_table import solver
+from wingcrack.runs.results import Results
+from wingcrack.runs.scene_files import SceneFile
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SIGNS = ("run.json", "history.csv", "scene.nml")  # files that only a run's folder has
+_BAD_INPUT = 2
+
+
+def open_run(directory: str | Path) -> Run:
+    """Open the folder of a run that has ended, has failed, or still goes on.
+
+    Parameters
+    ----------
+    directory : str or Path
+        What ``wingcrack run`` wrote, for instance ``out/wing_crack``.
+
+    Raises
+    ------
+    RunError
+        If there is no such folder, or no run in it.
+
+    Examples
+    --------
+    >>> run = wingcrack.open("out/wing_crack")  # doctest: +SKIP
+    >>> run.tips.groupby("tip").keq_pa_sqrtm.max()  # doctest: +SKIP
+    """
+    folder = Path(directory)
+    if not folder.is_dir():
+        what = "it is a file" if folder.exists() else "there is no such folder"
+        raise RunError(f"{folder}: {what}; a run's folder was expected, such as out/wing_crack")
+    if not any((folder / name).is_file() for name in _SIGNS):
+        raise RunError(f"{folder}: this folder contains no run (none of {', '.join(_SIGNS)})")
+    return Run(folder)
+
+
+class Run(Results):
+    """What a run has written; files are read when they are asked for, once until `refresh`.
+
+    All values are SI. Frames tell the units of their columns in ``.attrs["units"]``.
+
+    Parameters
+    ----------
+    directory : Path
+    """
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene as understood, every default written out.
+
+        Raises
+        ------
+        AbsentError
+            If the run has written none.
+        """
+        return Scene.read(self._scene_file)
+
+    # Figures
+
+    def draw(
+        self, only: Sequence[str] = (), formats: Sequence[str] = DEFAULT_FORMATS
+    ) -> list[Path]:
+        """Draw the figures that ``wingcrack plot`` draws, into ``figures`` in the run's folder.
+
+        `only` names groups of them, or ``all``; default: those in which something happens.
+        Those that are there and still true are not drawn again.
+        """
+        from wingcrack.figures.figures import draw_figures
+
+        outcomes = draw_figures(self.directory, tuple(only), tuple(formats))
+        return [file for outcome in outcomes for file in outcome.files]
+
+    def figure(self, name: str) -> Figure:
+        """Give one of the figures of ``wingcrack plot`` by its name, as 'story' or 'fracture_1'.
+
+        Raises
+        ------
+        AbsentError
+            If the run does not hold what the figure needs.
+        RunError
+            If there is no figure of that name.
+        """
+        from wingcrack.figures.figures import figure_of
+
+        return figure_of(self.files, name)
+
+    def plot_history(self, column: str | None = None, ax: Axes | None = None, **look: Any) -> Axes:
+        """Draw a column of the history against time or load; default: pressure, else length.
+
+        Parameters
+        ----------
+        column : str, optional
+            As ``well_pressure_pa`` or ``fracture_length_m``.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; default: axes of a new figure.
+        **look
+            How, for matplotlib's plot: colour, label, ...
+        """
+        from wingcrack.runs import plots
+
+        return plots.plot_history(self, column, ax, **look)
+
+    def plot_tips(self, quantity: str = "keq", ax: Axes | None = None) -> Axes:
+        """Draw a stress intensity factor of every tip: 'k1', 'k2' or 'keq' (with K_IC)."""
+        from wingcrack.runs import plots
+
+        return plots.plot_tips(self, quantity, ax)
+
+    def plot_network(self, colour: str = "growth", ax: Axes | None = None) -> Axes:
+        """Draw the network at the end, coloured by the order of 'growth' or by 'state'."""
+        from wingcrack.runs import plots
+
+        return plots.plot_network(self, colour, ax)
+
+    def plot_map(
+        self,
+        field: str = "pressure",
+        time: float | None = None,
+        ax: Axes | None = None,
+        *,
+        close: bool = False,
+    ) -> Axes:
+        """Draw a field of the rock with the fractures coloured by their state.
+
+        Parameters
+        ----------
+        field : str
+            As ``pressure``, ``stress.xx`` or ``displacement.x``.
+        time : float or None
+            Time [s] or load factor [-], of which the nearest written state is drawn; None: the
+            last one.
+        ax : matplotlib.axes.Axes, optional
+        close : bool
+            Show what is near the fractures, not the whole body.
+        """
+        from wingcrack.runs import plots
+
+        return plots.plot_map(self, field, time, ax, close=close)
+
+    def plot_profile(
+        self,
+        column: str = "jump_t_m",
+        fracture: str | int = 1,
+        times: Sequence[float] = (),
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw a column of fractures.csv along a fracture, known by number or name, over time."""
+        from wingcrack.runs import plots
+
+        return plots.plot_profile(self, column, fracture, times, ax)
+
+    def plot_wells(self, quantity: str = "pressure", ax: Axes | None = None) -> Axes:
+        """Draw 'pressure' or 'flow' of each well."""
+        from wingcrack.runs import plots
+
+        return plots.plot_wells(self, quantity, ax)
+
+    def plot_states(self, ax: Axes | None = None) -> Axes:
+        """Draw how many fracture cells stick, slip and are open."""
+        from wingcrack.runs import plots
+
+        return plots.plot_states(self, ax)
+
+    def plot_load(self, ax: Axes | None = None) -> Axes:
+        """Draw the load factor against the fractures' length, in runs without a fluid."""
+        from wingcrack.runs import plots
+
+        return plots.plot_load(self, ax)
+
+    def plot_equilibrium(self, against: str = "length", ax: Axes | None = None) -> Axes:
+        """Draw the load factor of length control against 'length', 'opening' or 'conjugate'.
+
+        The last is the quantity over which the energy that unstable growth releases is an area.
+        """
+        from wingcrack.runs import plots
+
+        return plots.plot_equilibrium(self, against, ax)
+
+    def scene3d(self, field: str | None = None, time: float | None = None) -> pyvista.Plotter:
+        """Give a pyvista scene: fractures by state over a field, with a slider for the states.
+
+        ``run.scene3d().show()`` opens a window; without a display ``.screenshot("a.png")`` draws.
+        """
+        from wingcrack.runs.pictures import build_scene
+
+        return build_scene(self, field, time)
+
+    def movie(
+        self,
+        path: str | Path,
+        field: str | None = None,
+        *,
+        frames_per_second: float = 8.0,
+        size: tuple[int, int] = (960, 720),
+        progress: bool = True,
+    ) -> Path:
+        """Write a movie of all written states, MP4 or GIF by the end of its name; needs no display.
+
+        Parameters
+        ----------
+        path : str or Path
+            Appears whole, once the movie is done.
+        field : str, optional
+            As for `plot_map`; default: pressure, without a fluid the mean stress.
+        frames_per_second : float
+            Written states per second [1/s].
+        size : tuple of int
+            Width and height [pixel].
+        progress : bool
+            Whether a bar on stderr shows how far it is.
+        """
+        from wingcrack.runs.movies import write_movie
+
+        return write_movie(self, Path(path), field, frames_per_second, size, progress=progress)
+
+
+class Scene(SceneFile):
+    """A scene file in memory; nothing is known here that the solver's own table does not tell.
+
+    Entries have addresses: ``group.name``, or in groups that are repeated ``group.item.name``,
+    where an item is its number from 1 or its name.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where it came from, or how it would be called: the stem names a scene without a name, and
+        tables that it mentions lie beside it.
+
+    Examples
+    --------
+    >>> scene = wingcrack.Scene.read("inputs/paper_c/onset.nml")  # doctest: +SKIP
+    >>> scene["fracture.f1.friction"] = 0.4  # doctest: +SKIP
+    >>> print(scene.check())  # doctest: +SKIP
+    >>> run = scene.run("out/weaker")  # doctest: +SKIP
+    """
+
+    def run(self, out: str | Path, *, threads: int = 1, quiet: bool = True) -> Run:
+        """Run the scene to its end.
+
+        Parameters
+        ----------
+        out : str or Path
+            Folder for the results.
+        threads : int
+            For windows side by side and loops.
+        quiet : bool
+            No progress on the terminal.
+
+        Raises
+        ------
+        SceneError
+            If the scene is refused; nothing is written then.
+        RunFailedError
+            If the run does not reach its end; its `directory` holds the last good state.
+        """
+        if threads < 1:
+            raise SceneError(f"threads must be at least 1, not {threads}")
+        with tempfile.TemporaryDirectory() as folder:
+            file = self._file(folder)
+            words = [str(solver()), "run", str(file), "--out", str(out)]
+            status, said = _supervised([*words, "--quiet"] if quiet else words, threads)
+            if status == _BAD_INPUT:
+                raise SceneError(self._said(said, file))
+            if status != 0:
+                reason = self._said(said, file).splitlines()[-1]
+                raise RunFailedError(reason, Path(out), status)
+        return open_run(out)
+
+
+def _supervised(words: list[str], threads: int) -> tuple[int, str]:
+    """Exit status and last words of the solver; an interrupt reaches it, and is waited for."""
+    count = str(threads)
+    surroundings = {
+        **os.environ,
+        "OPENBLAS_NUM_THREADS": count,
+        "OMP_NUM_THREADS": count,
+        "OMP_WAIT_POLICY": "passive",
+    }
+    with subprocess.Popen(
+        words, env=surroundings, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL
+    ) as process:
+        try:
+            _, said = process.communicate()
+        except KeyboardInterrupt:
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            raise
+    return process.returncode, said

@@ -1,0 +1,107 @@
+"""Machines of a study: this one, or others by Dask's classes."""
+
+from __future__ import annotations
+
+import importlib
+import logging
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any
+
+from wingcrack.figures.choices import CLUSTERS
+from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.fields import Fields
+
+# Module and class of each kind, and what must be installed for it.
+_CLASSES = {
+    "local": ("distributed", "LocalCluster", "distributed"),
+    "slurm": ("dask_jobqueue", "SLURMCluster", "dask-jobqueue"),
+    "pbs": ("dask_jobqueue", "PBSCluster", "dask-jobqueue"),
+    "ssh": ("distributed", "SSHCluster", "asyncssh"),
+}
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """``[cluster]`` of a study.
+
+    Attributes
+    ----------
+    kind : str
+        "none" for processes of this call, or one of Dask's classes.
+    workers : int or None
+        How many runs at a time; None for the cores at hand.
+    arguments : mapping of str to mapping
+        What is handed to the class of each kind.
+    """
+
+    kind: str
+    workers: int | None
+    arguments: Mapping[str, Mapping[str, Any]]
+
+
+def read_cluster(data: Mapping[str, Any], place: str) -> Cluster:
+    """Read ``[cluster]`` with ``[cluster.slurm]`` and so on, so that one file serves everywhere.
+
+    Raises
+    ------
+    CaseError
+        If a kind is unknown or the number of workers is none.
+    """
+    fields = Fields(data, place)
+    kind = fields.choice("kind", CLUSTERS, "none")
+    workers = fields.take("workers", None)
+    arguments = {name: fields.mapping(name) for name in _CLASSES}
+    fields.done()
+    if workers is not None and (
+        isinstance(workers, bool) or not isinstance(workers, int) or workers < 1
+    ):
+        raise CaseError(f"{place}: 'workers' must be a whole number from 1 on")
+    return Cluster(kind, workers, arguments)
+
+
+def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
+    """Start a cluster and give a client of it; leaving the stack closes both.
+
+    Raises
+    ------
+    EnvironmentLacksError
+        If what the kind takes is not installed, or the cluster cannot be started.
+    """
+    module, name, needs = _CLASSES[cluster.kind]
+    try:
+        start = getattr(importlib.import_module(module), name)
+        if cluster.kind == "ssh":
+            importlib.import_module("asyncssh")
+    except ImportError:
+        raise EnvironmentLacksError(
+            f"a cluster of kind '{cluster.kind}' takes the Python package {needs}, "
+            f"which is not in .venv (.venv/bin/python -m pip install {needs})"
+        ) from None
+    given = dict(cluster.arguments[cluster.kind])
+    if cluster.kind == "local":
+        given = {
+            "n_workers": workers,
+            "threads_per_worker": 1,
+            "dashboard_address": None,
+            "silence_logs": logging.CRITICAL,  # a worker that is lost is told by the study
+            **given,
+        }
+    elif cluster.kind == "ssh" and "hosts" not in given:
+        raise CaseError("cluster.ssh: 'hosts' is missing: the scheduler's, then one per worker")
+    try:
+        started = stack.enter_context(start(**given))
+        if cluster.kind in ("slurm", "pbs"):
+            started.scale(jobs=workers)
+        client: Any = importlib.import_module("distributed").Client
+        return stack.enter_context(client(started, set_as_default=False))
+    except (TypeError, ValueError, OSError, RuntimeError) as reason:
+        root: BaseException = reason
+        while root.__cause__ is not None:  # the first one says why, the others that it failed
+            root = root.__cause__
+        said = str(root).strip().splitlines() or [type(root).__name__]
+        raise EnvironmentLacksError(
+            f"the cluster of kind '{cluster.kind}' cannot be started ({said[0]})"
+        ) from None

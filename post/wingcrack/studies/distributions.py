@@ -1,0 +1,157 @@
+"""Values drawn at random: from distributions with bounds, evenly (Latin hypercube) or freely."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.expressions import Array
+from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.sweep import Table
+
+KINDS = ("uniform", "log_uniform", "normal", "lognormal", "integers", "of")
+METHODS = ("latin_hypercube", "random")
+SAMPLE = "sample"  # the parameter that numbers the draws, from 1
+
+
+def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Table:
+    """Lists of equal length, one per drawn parameter, and the numbers of the samples.
+
+    Parameters
+    ----------
+    data : table
+        ``count``, ``seed``, ``method`` and ``parameters``: a distribution for each name.
+    place : str
+        For errors.
+    most : int
+        How many samples there may be.
+    count : int, optional
+        Instead of that of the table.
+
+    Raises
+    ------
+    CaseError
+        If there are too many, or a distribution is unknown, impossible, or has no probability
+        within its bounds.
+    """
+    fields = Fields(data, place)
+    given, seed = _whole(fields, "count", 1), _whole(fields, "seed", 0)
+    method = fields.choice("method", METHODS, METHODS[0])
+    parameters = fields.mapping("parameters")
+    fields.done()
+    if not parameters:
+        raise CaseError(f"{place}: 'parameters' is missing: which entries are drawn?")
+    count = given if count is None else count
+    if count > most:
+        raise CaseError(f"{place}: {count} runs are more than {most}")
+    shares = _shares(count, len(parameters), seed, method)
+    points: Table = {SAMPLE: list(range(1, count + 1))}
+    for (name, entry), column in zip(parameters.items(), shares.T, strict=True):
+        if name == SAMPLE:
+            raise CaseError(f"{place}: '{SAMPLE}' numbers the draws; give the parameter a name")
+        points[name] = _values(entry, column, f"{place}: parameters.{name}")
+    return points
+
+
+def _whole(fields: Fields, key: str, least: int) -> int:
+    value = fields.take(key)
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise CaseError(f"{fields.place}: '{key}' must be a whole number from {least} on")
+    return value
+
+
+def _shares(count: int, dimension: int, seed: int, method: str) -> Array:
+    """(count, dimension) numbers between 0 and 1."""
+    if method == "random":
+        return np.random.default_rng(seed).random((count, dimension))
+    from scipy.stats import qmc  # takes a second, which a study without draws does not need
+
+    sampler = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed))
+    return np.asarray(sampler.random(count))
+
+
+def _values(data: Any, shares: Array, place: str) -> list[Any]:
+    """Values of a distribution at shares of its probability, within its bounds."""
+    if not isinstance(data, Mapping):
+        raise CaseError(f"{place} must be a table with one of: {', '.join(KINDS)}")
+    fields = Fields(data, place)
+    kinds = [kind for kind in KINDS if fields.has(kind)]
+    if len(kinds) != 1:
+        raise CaseError(f"{place} must have exactly one of: {', '.join(KINDS)}")
+    kind = kinds[0]
+    if kind == "of":
+        values = fields.take("of")
+        fields.done()
+        if not isinstance(values, list) or not values:
+            raise CaseError(f"{place}: 'of' must be a list of at least one value")
+        return [values[min(int(share * len(values)), len(values) - 1)] for share in shares]
+    first, second = _pair(fields, kind)
+    lower, upper = fields.number("min", -math.inf), fields.number("max", math.inf)
+    fields.done()
+    if not lower < upper:
+        raise CaseError(f"{place}: 'min' must be less than 'max'")
+    _refuse_impossible(kind, first, second, place)
+    if kind == "integers":
+        return _integers(first, second, lower, upper, shares, place)
+    return _within(kind, first, second, (lower, upper), shares, place)
+
+
+def _pair(fields: Fields, kind: str) -> tuple[float, float]:
+    numbers = fields.numbers(kind)
+    if len(numbers) != 2:
+        raise CaseError(f"{fields.place}: '{kind}' takes two numbers")
+    return numbers[0], numbers[1]
+
+
+def _refuse_impossible(kind: str, first: float, second: float, place: str) -> None:
+    if kind in ("uniform", "log_uniform", "integers") and not first < second:
+        raise CaseError(f"{place}: '{kind}' takes the lower number first")
+    if kind in ("log_uniform", "lognormal") and not first > 0.0:
+        raise CaseError(f"{place}: '{kind}' needs numbers above 0")
+    if kind == "normal" and not second > 0.0:
+        raise CaseError(f"{place}: the standard deviation must be above 0")
+    if kind == "lognormal" and not second > 1.0:
+        raise CaseError(
+            f"{place}: 'lognormal' takes the median and the factor of one standard deviation, "
+            "which must be above 1"
+        )
+
+
+def _integers(
+    first: float, second: float, lower: float, upper: float, shares: Array, place: str
+) -> list[Any]:
+    if first != int(first) or second != int(second):
+        raise CaseError(f"{place}: 'integers' takes two whole numbers")
+    least, most = max(int(first), math.ceil(max(lower, first))), int(min(second, upper))
+    if least > most:
+        raise CaseError(f"{place}: no whole number lies within 'min' and 'max'")
+    return [min(least + int(share * (most - least + 1)), most) for share in shares]
+
+
+def _within(
+    kind: str,
+    first: float,
+    second: float,
+    bounds: tuple[float, float],
+    shares: Array,
+    place: str,
+) -> list[Any]:
+    """Quantiles of the distribution cut off at the bounds (no heap of values at them)."""
+    from scipy import stats
+
+    law = {
+        "uniform": lambda: stats.uniform(first, second - first),
+        "log_uniform": lambda: stats.loguniform(first, second),
+        "normal": lambda: stats.norm(first, second),
+        "lognormal": lambda: stats.lognorm(math.log(second), scale=first),
+    }[kind]()
+    below, above = float(law.cdf(bounds[0])), float(law.cdf(bounds[1]))
+    if not above - below > 1.0e-9:
+        raise CaseError(f"{place}: the distribution has nothing between 'min' and 'max'")
+    inside = np.clip(shares, 1.0e-12, 1.0 - 1.0e-12)  # the ends of a normal law are infinite
+    values = np.clip(law.ppf(below + inside * (above - below)), *bounds)
+    return [float(value) for value in values]

@@ -1,0 +1,185 @@
+"""Runs all scenes of a study, here or on a cluster, and collects their outcomes."""
+
+from __future__ import annotations
+
+import logging
+import os
+import resource
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import fields
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.runner.outcome import Outcome, read_outcome
+from wingcrack.runner.pool import Pool
+from wingcrack.runner.task import ONE_THREAD, Task, copy_tables, tables_of
+from wingcrack.studies import TOP, remote
+from wingcrack.studies.cluster import Cluster, connect
+from wingcrack.studies.study import Study, StudyRun
+from wingcrack.sweeps.errors import CaseError
+from wingcrack.sweeps.scene import scene_hash
+
+SOLVER = Path("fortran") / "app" / "wingcrack-solver"
+RUNS = "runs"  # the folder of all runs' folders
+
+_SILENCE_S = 10.0
+
+
+def tasks_of(study: Study, build: Path, out: Path) -> dict[int, Task]:
+    """What is to be run, by the runs' numbers.
+
+    Raises
+    ------
+    EnvironmentLacksError
+        If the solver is not built.
+    """
+    solver = build / SOLVER
+    if not solver.is_file():
+        raise EnvironmentLacksError(f"not built: {solver} is missing")
+    found = {}
+    for run in study.runs:
+        tables = tables_of(study.scene.resolve(), run.text)
+        limit = study.time_limit_s
+        place = out / RUNS
+        found[run.number] = Task(
+            run.label, place, solver, run.text, (), tables, limit, scene_hash()
+        )
+    return found
+
+
+def done_before(tasks: Mapping[int, Task]) -> dict[int, Outcome]:
+    """Outcomes of runs that an earlier call has left."""
+    found = {number: read_outcome(task.folder) for number, task in tasks.items()}
+    return {number: outcome for number, outcome in found.items() if outcome is not None}
+
+
+def check_scenes(runs: Sequence[StudyRun], tasks: Mapping[int, Task], parallel: int) -> None:
+    """Let the solver read and judge the scenes; nothing is run.
+
+    Raises
+    ------
+    CaseError
+        With the solver's reason for the first scene that it refuses.
+    """
+    with tempfile.TemporaryDirectory(prefix="wingcrack-study-") as name:
+        place = Path(name)
+
+        def check(run: StudyRun) -> str:
+            return _check(tasks[run.number], place / str(run.number))
+
+        if runs:  # what is wrong with the study is mostly wrong with all: ask about one first
+            _refuse(runs[0], check(runs[0]))
+        with ThreadPoolExecutor(parallel) as threads:
+            told_s = time.monotonic()
+            reasons = threads.map(check, runs[1:])
+            for count, (run, reason) in enumerate(zip(runs[1:], reasons, strict=True), start=2):
+                _refuse(run, reason)
+                if time.monotonic() - told_s > _SILENCE_S:
+                    told_s = time.monotonic()
+                    print(f"{count} of {len(runs)} scenes are checked", flush=True)
+
+
+def _refuse(run: StudyRun, reason: str) -> None:
+    if reason:
+        raise CaseError(f"run {run.number} ({run.label}): {reason}")
+
+
+def _check(task: Task, folder: Path) -> str:
+    """Why the solver refuses a scene; empty if it does not."""
+    folder.mkdir()
+    (folder / "scene.nml").write_text(task.text or "", encoding="utf-8")
+    copy_tables(task, folder)
+    done = subprocess.run(
+        [str(task.program), "check", "scene.nml"],
+        cwd=folder,
+        env=os.environ | ONE_THREAD,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+    )
+    if done.returncode == 0:
+        return ""
+    lines = done.stderr.strip().splitlines() or [f"check ends with status {done.returncode}"]
+    return lines[-1].removeprefix("wingcrack: ")
+
+
+def run_tasks(
+    tasks: Mapping[int, Task],
+    cluster: Cluster,
+    workers: int,
+    progress: Callable[[int, Outcome], None],
+) -> None:
+    """Run all tasks; `progress` is told of each as it ends, and keeps it.
+
+    Raises
+    ------
+    EnvironmentLacksError
+        If the cluster cannot be started.
+    """
+    if cluster.kind == "none":
+        pool: Pool[int] = Pool(workers)
+        pool.run_all(tasks, lambda number: pool.run_task(tasks[number]), progress)
+    elif tasks:
+        _run_on_cluster(tasks, cluster, workers, progress)
+
+
+def _run_on_cluster(
+    tasks: Mapping[int, Task],
+    cluster: Cluster,
+    workers: int,
+    progress: Callable[[int, Outcome], None],
+) -> None:
+    """As `run_tasks`. A run whose worker is lost is given to another one, up to three times."""
+    with ExitStack() as stack:
+        client = connect(cluster, workers, stack)
+        from cloudpickle import register_pickle_by_value
+
+        as_completed: Any = import_module("distributed").as_completed
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        register_pickle_by_value(remote)
+        post = str(TOP / "post")
+        waiting = {
+            client.submit(remote.run_there, post, _plain(task), pure=False): number
+            for number, task in tasks.items()
+        }
+        for future in as_completed(waiting, loop=client.loop):
+            number = waiting[future]
+            failure = future.exception()
+            if failure is None:
+                outcome = Outcome(**future.result())
+            else:
+                said = str(failure).strip().splitlines() or [type(failure).__name__]
+                place = str(tasks[number].folder)
+                outcome = Outcome(place, "crashed", f"no worker ran it: {said[0]}", 0.0, 0.0)
+            progress(number, outcome)
+            future.release()
+
+
+def _plain(task: Task) -> dict[str, object]:
+    return {field.name: getattr(task, field.name) for field in fields(task)}
+
+
+class Clock:
+    """Wall and CPU time of a call, with all that it started and has ended [s]."""
+
+    def __init__(self) -> None:
+        self._begin = time.perf_counter()
+
+    def wall_s(self) -> float:
+        """Wall time since the start [s]."""
+        return time.perf_counter() - self._begin
+
+    def cpu_s(self) -> float:
+        """CPU time of this process and its children so far [s]."""
+        parts = [
+            resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+        ]
+        return sum(part.ru_utime + part.ru_stime for part in parts)
