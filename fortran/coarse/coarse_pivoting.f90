@@ -45,7 +45,7 @@ contains
       integer(ik) :: fluid(eq%layout%n_cells), i
       type(condensed_jumps_t) :: body
 
-      has_start = eq%settings%equilibrate
+      has_start = eq%paths%settings%equilibrate
       if (.not. has_start) return
       fluid = eq%layout%at_pressure([(i, i=1, eq%layout%n_cells)])
       eq%held_pressure = x(fluid)
@@ -74,8 +74,8 @@ contains
       real(rk) :: reached, step, trial(size(x))
       integer(ik) :: k
 
-      how = iteration_settings_t(tolerance=eq%settings%tolerance, allows_rounding=.true., &
-                                 iterations_max=eq%settings%iterations_max)
+      how = iteration_settings_t(tolerance=eq%paths%settings%tolerance, allows_rounding=.true., &
+                                 iterations_max=eq%paths%settings%iterations_max)
       call iterate_from(eq, x, how, report)
       has_start = report%outcome == outcome_converged
       reached = 0.0_rk
@@ -118,7 +118,7 @@ contains
       eq%is_without_contact = .true.
       call eq%evaluate(x)
       eq%is_without_contact = .false.
-      call full_slopes(eq%condensed%stiffness, eq%slopes, eq%x_of_q, eq%q_per_x, jacobian)
+      call full_slopes(eq%condensed%stiffness, eq%slopes, jacobian)
       body%jumps = [(((eq%layout%at_jump(i, end) + k, k=0, 1), end=1, 2), i=1, eq%layout%n_cells)]
       is_other = .true.
       is_other(body%jumps) = .false.
