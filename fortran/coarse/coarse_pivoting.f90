@@ -18,7 +18,7 @@ module coarse_pivoting
    use contact_law, only: contact_law_t
    use contact_newton, only: iterate_from, iteration_report_t, iteration_settings_t, &
                              outcome_converged
-   use contact_pivoting, only: pivot_to_solution
+   use contact_pivoting, only: pivot_to_solution, slips_t
    implicit none(type, external)
    private
 
@@ -164,9 +164,9 @@ contains
          load(i) = share((i + 1)/2)*load(i)
       end do
       call pivot_to_solution(stiffness, load, law, eq%stiffness*law%compliance/share, &
-                             spread(.false., 1, n), &
-                             eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
-                             spread(0.0_rk, 1, n), found, is_solved)
+                             slips_t(spread(.false., 1, n), &
+                                     eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
+                                     spread(0.0_rk, 1, n)), found, is_solved)
       if (.not. is_solved) return
       x(body%others) = x(body%others) + matmul(body%response(:, :2*n), found - x(body%jumps)) &
                        + body%response(:, 2*n + 1)

@@ -117,14 +117,10 @@ contains
       integer(ik) :: k, m, n, n_bulk
 
       n_bulk = condensed%coupling%n_bulk
-      n = slopes%n_local
-      do k = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, k) > 0) n = n + entries_of(slopes%force(m, k)) + 1
-         end do
-      end do
-      allocate (row(n), col(n), values(n))
-      allocate (row_scale(slopes%n), row_factor(slopes%n))
+      associate (force => pack(slopes%force, slopes%force > 0), first => condensed%coupling%first)
+         n = slopes%n_local + sum(first(force + 1) - first(force) + 1)
+      end associate
+      allocate (row(n), col(n), values(n), row_scale(slopes%n), row_factor(slopes%n))
       n = 0
       do k = 1, slopes%n_local
          call add(slopes%row(k), n_bulk + slopes%col(k), slopes%value(k))
@@ -138,12 +134,6 @@ contains
                       row_factor)
 
    contains
-
-      pure integer(ik) function entries_of(force)
-         integer(ik), intent(in) :: force
-
-         entries_of = condensed%coupling%first(force + 1) - condensed%coupling%first(force)
-      end function entries_of
 
       subroutine add(i, j, value)
          integer(ik), intent(in) :: i, j

@@ -135,24 +135,18 @@ contains
       known = self%n_kept
       self%n_kept = 0
       do k = 1, known
-         associate (place => self%n_kept + 1)
-            self%direction(:, place) = self%direction(:, k)
-            self%force(:, place) = self%force(:, k)
-            call use_direction(place, independent, is_used)
-            if (is_used) self%n_kept = place
-         end associate
+         self%direction(:, self%n_kept + 1) = self%direction(:, k)
+         self%force(:, self%n_kept + 1) = self%force(:, k)
+         call use_direction(self%n_kept + 1, independent, is_used)
       end do
       is_done = maxval(abs(left)) <= enough
       do k = 1, most_directions
          if (is_done .or. self%n_kept == most_kept) return
-         associate (place => self%n_kept + 1)
-            call precondition(self, condensed, slopes, left, self%direction(:, place), &
-                              self%force(:, place), error)
-            if (allocated(error)) return
-            call use_direction(place, 0.0_rk, is_used)
-            if (.not. is_used) return
-            self%n_kept = place
-         end associate
+         call precondition(self, condensed, slopes, left, self%direction(:, self%n_kept + 1), &
+                           self%force(:, self%n_kept + 1), error)
+         if (allocated(error)) return
+         call use_direction(self%n_kept + 1, 0.0_rk, is_used)
+         if (.not. is_used) return
          is_done = maxval(abs(left)) <= enough
       end do
 
@@ -161,7 +155,7 @@ contains
       !> Make the answer to a direction orthogonal to those before, and go along it. What is left is
       !! formed anew from the answer, not from the factors.
       subroutine use_direction(place, least_share, is_used)
-         integer(ik), intent(in) :: place
+         integer(ik), value :: place
          real(rk), intent(in) :: least_share
          logical, intent(out) :: is_used
 
@@ -174,6 +168,7 @@ contains
             share = norm2(answer(:, place))
             is_used = share > least_share*before .and. share > 0.0_rk
             if (.not. is_used) return
+            self%n_kept = place
             answer(:, place) = answer(:, place)/share
             p = p/share
             f = f/share
@@ -244,8 +239,8 @@ contains
       if (.not. is_known .or. self%of /= condensed%factorizations) then
          call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
          if (is_known) is_known = size(row) == self%n_rock
-         if (is_known) is_known = all(self%row(:size(row)) == row) &
-                                  .and. all(self%col(:size(col)) == col)
+         if (is_known) is_known = all(self%row(:self%n_rock) == row)
+         if (is_known) is_known = all(self%col(:self%n_rock) == col)
          if (is_known) then
             self%values(:size(values)) = values
          else
@@ -287,8 +282,6 @@ contains
       if (self%estimated_for == self%of .and. &
           self%factorizations < self%estimated_at + estimate_every) return
       call estimate_condition(self, condensed, slopes, is_flow, error)
-      self%estimated_for = self%of
-      self%estimated_at = self%factorizations
    end subroutine renew
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
@@ -303,17 +296,16 @@ contains
       real(rk) :: norm(2), v(slopes%n), x(slopes%n)
       integer(ik) :: kase, part, save(3), signs(slopes%n)
 
+      self%estimated_for = self%of
+      self%estimated_at = self%factorizations
       norm = 0.0_rk
       do part = 1, 2
          kase = 0
          do
             call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
             if (kase == 0) exit
-            if (part == 1) then
-               call multiply(kase == 1)
-            else
-               call solve(kase == 1)
-            end if
+            if (part == 1) call multiply(kase == 1)
+            if (part == 2) call solve(kase == 1)
             if (allocated(error)) return
          end do
       end do

@@ -11,7 +11,7 @@ module contact_pairs
    use contact_dense, only: solve_by_parts, solve_full
    use contact_law, only: contact_equations, contact_equations_t, contact_law_t, contact_residual
    use contact_newton, only: contact_system_t, step_quality_t
-   use contact_pivoting, only: pivot_to_solution
+   use contact_pivoting, only: pivot_to_solution, slips_t
    implicit none(type, external)
    private
 
@@ -245,8 +245,8 @@ contains
       mean = sum(self%length)/self%n
       call pivot_to_solution(on_spring/(self%stiffness*mean), self%load/mean, self%law, &
                              self%stiffness*self%law%compliance*mean/self%length, &
-                             self%slip_given, self%stiffness*self%slip_before, &
-                             self%stiffness*self%given, x, has_start)
+                             slips_t(self%slip_given, self%stiffness*self%slip_before, &
+                                     self%stiffness*self%given), x, has_start)
       self%way = 0
       if (has_start) return
       x = 0.0_rk
