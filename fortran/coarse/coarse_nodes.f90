@@ -95,7 +95,7 @@ contains
       integer(ik), intent(in) :: region
       real(rk), intent(inout) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
       real(rk), intent(inout) :: weight(:)  !< (n_nodes) their number [-]
-      real(rk) :: flux(regions%flow_faces%length(region))
+      real(rk) :: flux(regions%flow_faces%length(region)), value(3)
       integer(ik) :: c, cell, k, v
 
       call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
@@ -105,8 +105,9 @@ contains
             if (regions%regions_of_block(k, cell) == region) exit
          end do
          v = mesh%cell_nodes(k, cell)
-         values(:, v) = values(:, v) + extrapolate(mesh, rock, regions, unknowns, cell, k, &
-                                                   at_corners(:, :, k, cell), flux)
+         call extrapolate(mesh, rock, regions, unknowns, cell, k, at_corners(:, :, k, cell), flux, &
+                          value)
+         values(:, v) = values(:, v) + value
          weight(v) = weight(v) + 1.0_rk
       end do
    end subroutine extrapolate_around
@@ -153,7 +154,7 @@ contains
       integer(ik), intent(in) :: node
       real(rk) :: mean(3)  !< [m], [m], [Pa]
       real(rk) :: flux(regions%flow_faces%length(regions%region_of_node(node)))
-      real(rk) :: gradient(2, 2, 3)
+      real(rk) :: gradient(2, 2, 3), value(3)
       integer(ik) :: c, cell, k, n, region
 
       mean = 0.0_rk
@@ -165,14 +166,15 @@ contains
          k = findloc(mesh%cell_nodes(:, cell), node, dim=1)
          if (k == 0) cycle  ! on another side of a fracture
          call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
-         mean = mean + extrapolate(mesh, rock, regions, unknowns, cell, k, gradient(:, :, k), flux)
+         call extrapolate(mesh, rock, regions, unknowns, cell, k, gradient(:, :, k), flux, value)
+         mean = mean + value
          n = n + 1
       end do
       mean = mean/n
    end function node_values
 
    !> Displacement and pressure at a corner, from those of the cell and its gradients.
-   pure function extrapolate(mesh, rock, regions, unknowns, cell, k, gradient, flux) result(value)
+   pure subroutine extrapolate(mesh, rock, regions, unknowns, cell, k, gradient, flux, value)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
@@ -180,13 +182,13 @@ contains
       integer(ik), intent(in) :: cell, k
       real(rk), intent(in) :: gradient(2, 2)  !< of the displacement at the corner [-]
       real(rk), intent(in) :: flux(:)  !< of region_fluxes around it [m/s]
-      real(rk) :: value(3)  !< [m], [m], [Pa]
+      real(rk), intent(out) :: value(3)  !< [m], [m], [Pa]
       real(rk) :: offset(2), pressure_gradient(2)
 
       offset = mesh%xy(:, mesh%cell_nodes(k, cell)) - cell_centre(mesh, cell)
       call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
       value(1:2) = unknowns(1:2, cell) + matmul(gradient, offset)
       value(3) = unknowns(3, cell) + dot_product(pressure_gradient, offset)
-   end function extrapolate
+   end subroutine extrapolate
 
 end module coarse_nodes
